@@ -239,6 +239,7 @@ class _Steps:
             "startedUtc": f"2026-03-02T{9 + number // 3600:02d}:{number // 60 % 60:02d}:00Z",
             "completedUtc": "2026-03-02T12:00:20Z",
             "completionTimeS": 90.0,
+            "touchRule": "on skin",
             "points": points,
             "rejectedTouches": 1,
             "undoneTouches": 1,

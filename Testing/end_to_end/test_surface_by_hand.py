@@ -9,6 +9,7 @@ import pytest
 
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.protocol import MIN_TRACE_POINTS
+from rastrainer.trial.scoring import SCORE_VERSION
 from Testing.end_to_end.drawing_trainee import COARSE, METHOD, DrawingTrainee
 from Testing.end_to_end.hands import GamepadHands, KeyHands
 from Testing.end_to_end.lab import Lab
@@ -77,6 +78,6 @@ def test_the_match_shown_to_the_trainee_is_the_one_that_is_registered(drawn):
 
 
 def test_the_trial_is_scored_and_the_true_error_revealed(drawn):
-    assert drawn["scored"]["details"]["scoreVersion"] == "3-surface"
+    assert drawn["scored"]["details"]["scoreVersion"] == SCORE_VERSION
     shown = {fact.label: fact.value for fact in drawn["result"].facts}
     assert float(shown["True error at the target (TRE)"].removesuffix(" mm")) < 5.0

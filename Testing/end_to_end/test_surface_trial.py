@@ -14,6 +14,7 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.study.database.study import Study
 from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.export.trial_files import write_slicer_files
 from rastrainer_simulator.record.trial_context import setup_of
 from rastrainer_simulator.replay.resimulation import replay
@@ -129,7 +130,7 @@ def test_the_simulator_and_slicer_register_and_score_it_identically_to_the_last_
     assert own["registration"]["matrix"] == analysis.rigid.matrix.ravel().tolist()
     assert own["registration"]["freMm"] == analysis.rigid.fre_mm < 0.5
     assert own["scored"]["score"] == analysis.score.score
-    assert analysis.score.version == own["scored"]["details"]["scoreVersion"] == "3-surface"
+    assert analysis.score.version == own["scored"]["details"]["scoreVersion"] == SCORE_VERSION
     assert analysis.score.is_accurate
     assert analysis.truth.true_tre_mm < 1.0
     assert analysis.score.measures.common_bias_mm is None

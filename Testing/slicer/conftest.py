@@ -154,6 +154,7 @@ def make_record(scenario):
             "startedUtc": "2026-03-02T09:59:50Z",
             "completedUtc": "2026-03-02T10:00:20Z",
             "completionTimeS": 90.0,
+            "touchRule": "on skin",
             "points": points,
             "rejectedTouches": 1,
             "undoneTouches": 1,

@@ -3,6 +3,7 @@
 import csv
 import json
 import uuid
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.procedure.plan import ProcedureKind
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.slicer.logic.trainee_logic import TraineeLogic
 from rastrainer.slicer.scene.nodes import Role, findNode
 from rastrainer.slicer.scene.score_tables import (
@@ -25,8 +27,9 @@ from rastrainer.slicer.scene.score_tables import (
 from rastrainer.slicer.scene.tables import showCalibration, showHistory, showLearningCurve
 from rastrainer.study.database.study import Study
 from rastrainer.trial.ctps import CTPS_WARNING, Trial
+from rastrainer.trial.scoring import score_trial
 from Testing.domain.report.studied_procedures import outcome
-from Testing.domain.trial.trial_records import first_score, gentle_score, second_score
+from Testing.domain.trial.trial_records import REFERENCE, gentle_score, make_traced
 from Testing.slicer.recorded_trial import scored_analysis
 
 COHORT = [Trial("desktop", str(n), "1", 80.0 + 10.0 * n, 1.0 + 0.1 * n) for n in range(4)]
@@ -181,18 +184,17 @@ def test_a_study_without_truths_has_an_empty_plot_and_a_message(scene, logic, ma
     ]
 
 
-def test_a_learning_curve_over_two_score_versions_says_so(scene, logic, add_trial):
+def test_a_learning_curve_over_two_methods_says_so(scene, add_trial):
     first, second = add_trial(1), add_trial(2)
     assert (
         showLearningCurve(scene, "T-001", [first, second]).GetTitle() == "Learning curve of T-001"
     )
-    logic.study.add_results(first.record.trial_id, score=first_score(60.0, 0.1))
-    trials = logic.study.history(first.record.trainee)
-    chart = showLearningCurve(scene, "T-001", trials)
-    assert chart.GetTitle().endswith("(scores of versions 1 and 3 cannot be compared)")
+    by_surface = replace(first, record=replace(first.record, method=RegistrationMethod.SURFACE))
+    chart = showLearningCurve(scene, "T-001", [by_surface, second])
+    assert chart.GetTitle().endswith("(scores by fiducials and surface cannot be compared)")
     table = findNode(scene, "vtkMRMLTableNode", Role.HISTORY)
-    column = table.GetColumnIndex("score version")
-    assert [table.GetCellText(row, column) for row in range(2)] == ["1", "3"]
+    column = table.GetColumnIndex("method")
+    assert [table.GetCellText(row, column) for row in range(2)] == ["surface", "fiducials"]
 
 
 def test_a_trial_without_results_has_empty_cells(scene, logic, make_record):
@@ -247,23 +249,23 @@ def test_a_trial_is_compared_with_the_trainees_own_others_and_a_reference_group(
 
 def test_the_score_of_a_trial_beyond_a_limit_is_called_not_acceptable(logic, add_trial):
     trial = add_trial(1)
-    assert {row.title: row.note for row in scoreRows(trial)}["Score"] == "Version 3"
+    assert {row.title: row.note for row in scoreRows(trial)}["Score"] == "Version 1"
     logic.study.add_results(trial.record.trial_id, score=gentle_score(60.0, 9.0))
     beyond = logic.study.trial(trial.record.trial_id)
     notes = {row.title: row.note for row in scoreRows(beyond)}
-    assert notes["Score"] == "not acceptable; version 3"
+    assert notes["Score"] == "not acceptable; version 1"
     assert notes["… its part for accuracy"] == "beyond a limit"
-    logic.study.add_results(trial.record.trial_id, score=second_score(60.0, 0.3))
-    earlier = logic.study.trial(trial.record.trial_id)
-    notes = {row.title: row.note for row in scoreRows(earlier)}
-    assert notes["Score"] == "Version 2"
+    measures = replace(gentle_score(60.0, 0.3).measures, common_bias_mm=None)
+    score = score_trial(measures, REFERENCE, RegistrationMethod.SURFACE)
+    notes = {row.title: row.note for row in scoreRows(replace(trial, score=score))}
+    assert notes["Score"] == "Version 1"
     assert notes["… its part for accuracy"] == "within the limit of 1.5 mm"
     assert "Bias that all touches share" not in notes
 
 
-def test_a_score_is_compared_only_with_those_of_the_same_version(logic, add_trial):
-    other = add_trial(1, trainee="b")
-    logic.study.add_results(other.record.trial_id, score=first_score(60.0, 0.1))
+def test_a_score_is_compared_only_with_those_of_the_same_method(logic, add_trial):
+    traced = make_traced(trialId=str(uuid.UUID(int=1)), trainee="b")
+    logic.study.add_trial(traced, score=gentle_score(60.0, 0.1))
     trial = add_trial(2, trainee="a")
     groups = {(s.group, s.title) for s in standings(logic.study, trial)}
     assert ("others", "Score") not in groups

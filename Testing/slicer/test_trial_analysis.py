@@ -16,7 +16,6 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.score_reference import fiducial_normals, region_of
 from rastrainer.trial.scoring import ScoreReference
 from rastrainer_headless.main import results_json
-from Testing.domain.trial.trial_records import first_score
 
 PUBLISHED = Path(__file__).parents[2] / "assets" / "studies" / "published.csv"
 
@@ -119,13 +118,6 @@ def test_only_the_score_detects_an_offset_shared_by_all_touches(scenario, make_r
     assert aside.score.measures.tre_mm == pytest.approx(9.0, abs=1.0)
     assert not aside.score.acceptable
     assert aside.score.score < 10 < honest.score.score
-
-
-def test_a_score_keeps_the_version_in_which_it_was_computed(scenario, record):
-    first, truth = first_score(60.0, 0.4), truth_of(scenario)
-    analysis = analyze_trial(record, scenario).scored_as(first, scenario, truth)
-    assert analysis.score == analysis.feedback.score == first
-    assert "expected at the target" in analysis.feedback.score_sentences[2]
 
 
 def test_ctps_compares_with_the_published_trials_of_the_same_mode(scenario, record):

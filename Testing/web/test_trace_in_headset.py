@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from rastrainer.protocol import MIN_TRACE_POINTS
+from rastrainer.trial.scoring import SCORE_VERSION
 from Testing.end_to_end.drawing_trainee import METHOD, DrawingTrainee
 from Testing.simulator.landmarked import write_landmarked
 from Testing.web.chromium import enter_headset, open_page
@@ -82,5 +83,5 @@ def test_the_simulator_registers_the_trace_and_scores_it(drawn):
     registered = drawn["registered"]
     assert drawn["match"]["Residual"] == f"{registered['freMm']:.2f} mm"
     assert registered["freMm"] < 1.0
-    assert drawn["scored"]["details"]["scoreVersion"] == "3-surface"
+    assert drawn["scored"]["details"]["scoreVersion"] == SCORE_VERSION
     assert drawn["registered"]["expectedTreMm"] < 3.0

@@ -99,8 +99,6 @@ MEMBERS: Mapping[str, Callable[[Any], Any]] = {
     "touch": one_of(*(stage.value for stage in TouchStage)),
 }
 """What a simulator reports about its seat, and how each member is checked."""
-_OF_LATER_SIMULATORS = {"assignments": ""}
-"""Members that earlier versions lack, and their defaults."""
 
 
 class SeatLink(str, Enum):
@@ -183,12 +181,11 @@ class WatchedSeat:
 
 
 def checked_seat(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what a simulator reports about its seat; additions of newer versions are ignored.
+    """Return what a simulator reports about its seat; further members are ignored.
 
     Raises:
         InputError: something is missing or cannot be.
     """
-    values = {**_OF_LATER_SIMULATORS, **values}
     missing = MEMBERS.keys() - values.keys()
     if missing:
         raise InputError(f"What a simulator says of its seat lacks {', '.join(sorted(missing))}.")

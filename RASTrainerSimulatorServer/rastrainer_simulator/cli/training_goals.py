@@ -11,6 +11,7 @@ from statistics import fmean
 from rastrainer.errors import InputError
 from rastrainer.files.writing import write_text
 from rastrainer.number_text import fixed, percent
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.statistics.competence import PassMark, pass_mark
 from rastrainer.study.curriculum.curriculum import read_curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
@@ -24,7 +25,6 @@ from rastrainer.study.curriculum.standing import (
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import protocol_text, read_study_protocol
-from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer.trial.trial_feedback import PastTrial
 from rastrainer_simulator.cli.options import add_study
 
@@ -147,12 +147,12 @@ def run_pass_mark(arguments: argparse.Namespace) -> int:
             for pseudonym in {*arguments.novices, *arguments.experts}
             for attempt in AbortedTrials(study).attempts(pseudonym)
         )
-    version = _version(counted)
+    method = _method(counted)
     novices, experts = (
         [fmean(trial.score for trial in trials) for trials in group] for group in counted
     )
     mark = pass_mark(novices, experts)
-    print(_sentence(mark, novices, experts, version))
+    print(_sentence(mark, novices, experts, method))
     if aborted:
         print(
             f"They aborted {aborted} trials after a touch; these have no score, so that people who "
@@ -161,14 +161,12 @@ def run_pass_mark(arguments: argparse.Namespace) -> int:
     if arguments.write is not None:
         # People are shown whole points, so the mark is in whole points.
         protocol = read_study_protocol(arguments.write)
-        if version != SCORE_VERSION:
+        if method is not RegistrationMethod.FIDUCIALS:
             raise InputError(
-                f"The mark is one of score version {version}, and trials get scores of version "
-                f"{SCORE_VERSION} now: it is not written into {arguments.write}."
+                f"The mark is of trials registered by {method.value}, and a protocol's is for "
+                f"fiducials: it is not written into {arguments.write}."
             )
-        protocol = replace(
-            protocol, pass_mark=float(round(mark.score)), score_version=SCORE_VERSION
-        )
+        protocol = replace(protocol, pass_mark=float(round(mark.score)))
         write_text(arguments.write, protocol_text(protocol))
         print(f"{arguments.write}: the pass mark is {protocol.pass_mark:.0f} now.")
     return 0
@@ -183,25 +181,25 @@ def _last_trials(study: Study, pseudonym: str) -> tuple[PastTrial, ...]:
     return trials
 
 
-def _version(groups: Sequence[Sequence[Sequence[PastTrial]]]) -> str:
-    """Return the version that all scores have."""
-    trials = [trial for group in groups for own in group for trial in own]
-    versions = sorted({trial.score_version for trial in trials})
-    if len(versions) > 1:
+def _method(groups: Sequence[Sequence[Sequence[PastTrial]]]) -> RegistrationMethod:
+    """Return the method by which all trials were registered."""
+    methods = {trial.method for group in groups for own in group for trial in own}
+    if len(methods) > 1:
+        names = " and ".join(sorted(method.value for method in methods))
         raise InputError(
-            f"The last {LAST_TRIALS} trials of these people have scores of the versions "
-            f"{' and '.join(versions)}, which cannot be compared: no mark can be computed from "
-            "them."
+            f"The last {LAST_TRIALS} trials of these people were registered by {names}, whose "
+            "scores cannot be compared: no mark can be computed from them."
         )
-    return versions[0]
+    return methods.pop()
 
 
 def _sentence(
-    mark: PassMark, novices: Sequence[float], experts: Sequence[float], version: str
+    mark: PassMark, novices: Sequence[float], experts: Sequence[float], method: RegistrationMethod
 ) -> str:
     return (
-        f"Pass mark {mark.score:.1f} of 100 (score version {version}), from {len(novices)} novices "
-        f"(mean {fmean(novices):.1f}) and {len(experts)} experts (mean {fmean(experts):.1f}).\n"
+        f"Pass mark {mark.score:.1f} of 100 (trials by {method.value}), from {len(novices)} "
+        f"novices (mean {fmean(novices):.1f}) and {len(experts)} experts (mean "
+        f"{fmean(experts):.1f}).\n"
         f"If both groups are normal, {percent(mark.passing_novices)} of novices would pass and "
         f"{percent(mark.failing_experts)} of experts fail; here it is "
         f"{percent(mark.observed_passing_novices)} and {percent(mark.observed_failing_experts)}."

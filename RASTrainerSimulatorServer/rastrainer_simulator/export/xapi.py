@@ -35,7 +35,7 @@ def statements(data: StudyData, home_page: str = HOME_PAGE) -> list[dict[str, An
         home_page: IRL of the lab's system, which makes pseudonyms unique.
     """
     trials = [
-        _trial(trial, pass_mark_of(data.protocol, trial.score_version), home_page)
+        _trial(trial, pass_mark_of(data.protocol, trial.method), home_page)
         for trial in data.trials
         if trial.trial_id
     ]

@@ -20,7 +20,6 @@ from rastrainer.errors import InputError
 from rastrainer.json_checks import text
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.study.platform_links import LinkedAssignment
-from rastrainer.trial.scoring import score_version
 from rastrainer.trial.trial_feedback import PastTrial
 from rastrainer_simulator.lti.platform_client import KeySets
 from rastrainer_simulator.lti.settings import ALGORITHM, LearningPlatform
@@ -63,12 +62,11 @@ class GradeTerms:
         Args:
             trials: Scored ones of one trainee, in order of starting.
         """
-        version = score_version(self.method)
         scores = [
             trial.score
             for trial in trials
             if trial.acceptable
-            and trial.score_version == version
+            and trial.method is self.method
             and self.task in ("", trial.task)
             and self.mode in ("", trial.mode)
         ]

@@ -237,8 +237,7 @@ def _archived_trial(reading: JournalReading) -> ArchivedTrial | None:
     if not registered:
         return None
     scores = reading.of_kind("scored")
-    # In the first version of the protocol the score brought the registration.
-    registrations = reading.of_kind("registration") or scores[:1]
+    registrations = reading.of_kind("registration")
     trial = ArchivedTrial(
         record=TrialRecord.from_json(registered[-1]["record"]),
         truth=Truth.from_json(registered[-1]["truth"]),

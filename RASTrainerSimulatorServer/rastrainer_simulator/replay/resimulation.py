@@ -46,8 +46,6 @@ _NOT_SIMULATED = frozenset(
         "acknowledged",
     }
 )
-_ADDED_LATER = frozenset({"depthMm"})
-"""Keys that older journals lack; where a part of a journal has one it is compared there."""
 _OF_THE_CLOCK = frozenset({"n", "previous", "sha256", "monotonic", "utc", "record", "versions"})
 
 
@@ -227,10 +225,9 @@ def _inputs(
 def _first_difference(
     recorded: Sequence[Mapping[str, Any]], again: Sequence[Mapping[str, Any]]
 ) -> str | None:
-    absent = _ADDED_LATER.difference(*recorded)
     for old, new in zip(recorded, again, strict=False):
         line, old, new = old["n"], _comparable(old), _comparable(json.loads(json.dumps(new)))
-        for key in old.keys() | (new.keys() - absent):
+        for key in old.keys() | new.keys():
             if old.get(key) != new.get(key):
                 return f"line {line}: {key} was {old.get(key)!r}, now it is {new.get(key)!r}"
     if len(recorded) != len(again):

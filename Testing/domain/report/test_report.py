@@ -26,7 +26,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.outcomes import MAIN_OUTCOMES
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer.study.study_data import StudyData, TrialRow, read_study_data
-from rastrainer.trial.scoring import LONG_PAUSE_S, SCORE_VERSION
+from rastrainer.trial.scoring import LONG_PAUSE_S
 from rastrainer.trial.trial_feedback import competence_of
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.virtual.outcome_model import OutcomeModel
@@ -367,7 +367,7 @@ def test_passed_trials_and_competent_trainees_are_counted():
     rows = []
     for trainee, score, acceptable in (("A", 70.0, True), ("B", 69.9, True), ("C", 90.0, False)):
         for number in range(1, 31):
-            rows.append(scored(trainee, number, score, SCORE_VERSION, acceptable))
+            rows.append(scored(trainee, number, score, acceptable=acceptable))
     protocol = replace(read_study_protocol(STUDIES / "published-protocol.json"), pass_mark=70.0)
     words = words_of(report_html(StudyData("One mode", tuple(rows), protocol=protocol)))
     assert "passes with 70 of 100 points (set by the protocol)" in words
@@ -380,70 +380,38 @@ def test_passed_trials_and_competent_trainees_are_counted():
     assert f"90 30 (33 %) 1 of 3 {shown_at} " in words
 
 
-def scored(trainee, number, score, version, acceptable=True):
+def scored(trainee, number, score, method="fiducials", acceptable=True):
     values = {"completion_time_s": 90.0, "rmse_mm": 1.0, "score": score}
-    return TrialRow(
-        trainee, "hmd", "task-1", number, values, score_version=version, acceptable=acceptable
-    )
+    return TrialRow(trainee, "hmd", "task-1", number, values, method=method, acceptable=acceptable)
 
 
-def test_scores_of_different_versions_are_reported_but_never_compared(tmp_path):
-    old = [scored("A", number, 99.5, "1") for number in range(1, 16)]
-    new = [scored("A", number, 55.5, "2") for number in range(16, 20)]
-    data = StudyData("Mixed", (*old, *new), has_order=True)
-    written = write_report(data, tmp_path / "report")
-    words = words_of(written.page.read_text(encoding="utf-8"))
-    assert (
-        "scores of several versions, which measure different things and cannot be compared" in words
-    )
-    assert "4 trials of version 2, 15 trials of version 1" in words
-    assert "99.5" not in words
-    assert "Headset (HMD) 4 0 (0 %) 0 of 1 –" in words
-    with written.numbers.open(encoding="utf-8") as numbers:
-        rows = list(csv.DictReader(numbers))
-    assert [(row["score_version"], row["score"]) for row in rows[14:16]] == [
-        ("1", "99.5"),
-        ("2", "55.5"),
-    ]
+def test_a_report_explains_the_score_of_its_method():
+    def words(method):
+        return words_of(report_html(StudyData("One", (scored("A", 1, 80.0, method),))))
 
-
-def test_a_report_explains_the_score_of_its_version():
-    def words(version):
-        return words_of(report_html(StudyData("One", (scored("A", 1, 80.0, version),))))
-
-    first, second, third = words("1"), words("2"), words("3")
-    assert "several versions" not in first + second + third
-    assert "accuracy is the expected target error at the scenario's target" in first
-    assert "and an expected target error within the limit of its task" in first
-    assert "Accuracy is the true target error of the rigid registration" in second
-    assert "expected target error within the limit" not in second
+    by_fiducials, by_surface = words("fiducials"), words("surface")
     assert (
         "and within the limits of the score: a true target error in the brain within that of its "
         "task, unintended contact of at most 8 s and 160 mm, and a pressing depth of at most "
-        "1.5 mm; one that was aborted after a touch is not passed." in second
+        "1.5 mm; one that was aborted after a touch is not passed." in by_surface
     )
     bias = "a bias common to all touches of at most 1.5 mm, unintended contact of at most 8 s"
-    assert bias in third
-    assert "trueness (ISO 5725-1) of the touches, 1/(1 + (b/1 mm)^4)" in third
-    assert "common bias" not in second
-    for each in (second, third):
+    assert bias in by_fiducials
+    assert "trueness (ISO 5725-1) of the touches, 1/(1 + (b/1 mm)^4)" in by_fiducials
+    assert "common bias" not in by_surface
+    for each in (by_fiducials, by_surface):
+        assert "Accuracy is the true target error of the rigid registration" in each
         assert "localization errors along the skin, of 1.5 mm, to the same region" in each
-    for each in (first, second, third):
         assert "Harrington 1965, The desirability function" in each
 
 
-@pytest.mark.parametrize(
-    ("version", "mismatch"), [("3", "scores of version 3"), ("", "scores of an unknown version")]
-)
-def test_a_pass_mark_for_another_score_version_passes_nobody_and_the_report_says_so(
-    version, mismatch
-):
+def test_a_pass_mark_of_fiducials_passes_no_trial_of_another_method_and_the_report_says_so():
     published = read_study_protocol(STUDIES / "published-protocol.json")
-    protocol = replace(published, pass_mark=65.0, score_version="2")
-    rows = tuple(scored("A", number, 80.0, version) for number in range(1, 31))
+    protocol = replace(published, pass_mark=65.0)
+    rows = tuple(scored("A", number, 80.0, "surface") for number in range(1, 31))
     words = words_of(report_html(StudyData("One", rows, protocol=protocol)))
-    assert "pass mark of 65 points was set for score version 2, and these trials have " in words
-    assert f"{mismatch}. The two do not compare" in words
+    assert "pass mark of 65 points is for trials registered by fiducials" in words
+    assert "these were registered by surface. Their scores do not compare" in words
     assert "30 (100 %)" not in words
     assert "LC-CUSUM of every trainee" not in words
 

@@ -25,13 +25,11 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer.study.trainee_data import export_trainee
-from rastrainer.trial.scoring import SCORE_VERSION
-from Testing.domain.study.old_study import write_old_study
 from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record
 
 SHIPPED = Path(__file__).parents[3] / "assets" / "studies" / "example-curriculum.json"
 LOCKED, OPEN, REACHED = AssignmentState.LOCKED, AssignmentState.OPEN, AssignmentState.REACHED
-PASSED = CountedTrial("task-1", "desktop", score=80.0, acceptable=True, version="3")
+PASSED = CountedTrial("task-1", "desktop", score=80.0, acceptable=True)
 FAILED = replace(PASSED, score=50.0)
 ABORTED = CountedTrial("task-1", "desktop", is_aborted=True)
 ONE = Assignment("one", "task-1", trials=2)
@@ -40,7 +38,7 @@ TWO = Assignment("two", "task-2", trials=1, after=("one",))
 
 def stand(trials, *assignments):
     curriculum = Curriculum("c", "C", assignments or (ONE, TWO))
-    return standing_in(curriculum, trials, lambda _version: 70.0)
+    return standing_in(curriculum, trials, lambda _assignment: 70.0)
 
 
 def states(trials, *assignments):
@@ -140,11 +138,11 @@ def test_only_trials_that_match_the_assignment_count():
     assert states([PASSED], in_headset) == [OPEN]
     assert states([replace(PASSED, mode="hmd")], in_headset) == [REACHED]
     assert states([PASSED], by_surface) == [OPEN]
-    surface = replace(PASSED, method="surface", version="3-surface")
+    surface = replace(PASSED, method="surface")
     assert states([surface], by_surface) == [REACHED]
     assert states([surface], replace(ONE, trials=1)) == [OPEN]
     assert states([PASSED], biopsy) == [OPEN]
-    done = replace(PASSED, procedure="biopsy", version="procedure-1")
+    done = replace(PASSED, procedure="biopsy")
     assert states([done], biopsy) == [REACHED]
     assert states([done], replace(ONE, trials=1)) == [OPEN]
 
@@ -161,26 +159,19 @@ def test_a_bad_trial_cannot_be_undone_by_aborting_it():
     assert states([PASSED, in_procedure, PASSED]) == [REACHED, OPEN]
 
 
-def test_scores_of_two_versions_reach_no_goal_together_but_a_reached_goal_stays():
-    old = replace(PASSED, version="2")
-    assert states([old, PASSED]) == [OPEN, LOCKED]
-    assert states([old, old, FAILED]) == [REACHED, OPEN]
-    assert states([old, replace(ABORTED), old]) == [OPEN, LOCKED]
-
-
 def test_a_goal_without_a_mark_uses_that_of_the_study_and_is_never_reached_without_one():
     curriculum = Curriculum("c", "C", (replace(ONE, trials=1),))
-    found = standing_in(curriculum, [PASSED], lambda _version: None)
+    found = standing_in(curriculum, [PASSED], lambda _assignment: None)
     assert (found.standings[0].state, found.standings[0].mark) == (OPEN, None)
     own = Curriculum("c", "C", (replace(ONE, trials=1, mark=75.0),))
-    assert standing_in(own, [PASSED], lambda _version: None).reached == 1
+    assert standing_in(own, [PASSED], lambda _assignment: None).reached == 1
     both = Curriculum("c", "C", (*curriculum.assignments, replace(ONE, name="own", mark=90.0)))
-    assert standing_in(both, [], lambda _version: None).next_best.assignment.name == "own"
+    assert standing_in(both, [], lambda _assignment: None).next_best.assignment.name == "own"
 
 
 def test_an_assignment_that_the_mark_of_the_study_could_never_reach_is_refused(study):
     published = read_study_protocol(SHIPPED.with_name("published-protocol.json"))
-    marked = replace(published, pass_mark=80.0, score_version=SCORE_VERSION)
+    marked = replace(published, pass_mark=80.0)
     StudyProgress(study).set_protocol(marked)
     store = CurriculumStore(study)
     with pytest.raises(InputError, match="biopsy could never be reached"):
@@ -242,7 +233,7 @@ def test_a_further_trial_never_takes_back_what_was_reached(seed):
     )
     trials, before = [], set()
     for _ in range(60):
-        kind = chance.choice([PASSED, PASSED, FAILED, ABORTED, replace(PASSED, version="2")])
+        kind = chance.choice([PASSED, PASSED, FAILED, ABORTED])
         trials.append(replace(kind, task=f"task-{chance.randint(1, 4)}"))
         found = stand(trials, *assignments)
         now = {each.assignment.name for each in found.standings if each.state is REACHED}
@@ -337,15 +328,6 @@ def test_a_failed_trial_stored_late_breaks_the_streak_in_which_it_was_played(stu
     assert store.standing("A").reached == 1
 
 
-def test_a_study_of_an_earlier_format_gets_the_table(tmp_path):
-    path = tmp_path / "old.db"
-    write_old_study(path, 8, "INSERT INTO trainees VALUES (1, 'A', 1, 0, '2026-01-01T00:00:00Z')")
-    with Study.open(path) as study:
-        CurriculumStore(study).choose(read_curriculum(SHIPPED))
-    with Study.open_for_reading(path) as study:
-        assert CurriculumStore(study).standing("A").curriculum == read_curriculum(SHIPPED)
-
-
 def told_of(trials, *assignments):
     arguments = CurriculumMessage.of("A", stand(trials, *assignments)).arguments()
     return check_arguments(CommandName.CURRICULUM, json.loads(json.dumps(arguments)))
@@ -410,8 +392,6 @@ def test_an_assignment_records_when_it_was_reached_and_never_before_its_gate_ope
     found = stand([second, on(2), replace(FAILED, started_utc=on(3).started_utc), on(4), on(5)])
     assert [each.reached_utc[8:10] for each in found.standings] == ["05", "05"]
     assert [each.reached_utc for each in stand([second, on(2)]).standings] == ["", ""]
-    old = [on(day, version="2") for day in (6, 7)]
-    assert stand([*old, on(8), on(9)]).standings[0].reached_utc == on(7).started_utc
     competent = replace(ONE, goal=GoalKind.COMPETENT, trials=0)
     days = [on(day) for day in range(1, 29)]
     counts = [count for count in range(29) if stand(days[:count], competent).reached]

@@ -76,15 +76,6 @@ def test_the_pass_mark_is_that_of_the_studys_protocol(study):
     assert not reviewed(study, 3).feedback.progress.sentences[1].startswith("Passed")
 
 
-def test_a_pass_mark_for_an_earlier_version_of_the_score_passes_and_fails_nobody(study):
-    published = read_study_protocol(STUDIES / "published-protocol.json")
-    earlier = replace(published, pass_mark=10.0, score_version="2")
-    StudyProgress(study).set_protocol(earlier)
-    progress = reviewed(study, 1).feedback.progress
-    assert (progress.pass_mark, progress.competence) == (None, None)
-    assert progress.sentences[1].startswith("Neither passed nor failed")
-
-
 def test_a_delivered_trial_is_checked_once_and_stored_with_its_unknown_keys(study, monkeypatch):
     checks = []
     read = TrialRecord.from_json

@@ -10,7 +10,7 @@ import pytest
 
 from rastrainer.command_arguments import check_arguments
 from rastrainer.errors import InputError
-from rastrainer.protocol import ALL_DONE, CommandName
+from rastrainer.protocol import ALL_DONE, PLAYED_METHODS, CommandName, RegistrationMethod
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.steps import (
     StepKind,
@@ -27,7 +27,7 @@ from rastrainer.study.protocol.study_protocol import (
     read_study_protocol,
     study_protocol_from_json,
 )
-from rastrainer.trial.scoring import PASS_MARK, SCORE_VERSION
+from rastrainer.trial.scoring import PASS_MARK
 from Testing.domain.trial.trial_records import make_record
 
 SHIPPED = Path(__file__).parents[3] / "assets" / "studies" / "published-protocol.json"
@@ -177,13 +177,16 @@ def test_a_protocol_may_set_the_pass_mark():
     assert "passMark" not in shipped["scoring"]
     silent = protocol()
     assert silent.pass_mark is None
-    assert [pass_mark_of(silent, version) for version in ("1", "2", "3")] == [PASS_MARK] * 3
-    assert pass_mark_of(None, SCORE_VERSION) == PASS_MARK
+    assert [pass_mark_of(silent, method) for method in PLAYED_METHODS] == [PASS_MARK] * len(
+        PLAYED_METHODS
+    )
+    assert pass_mark_of(None, RegistrationMethod.FIDUCIALS) == PASS_MARK
     assert study_protocol_from_json(json.loads(protocol_text(silent))) == silent
     own = protocol(scoring=shipped["scoring"] | {"passMark": 62})
-    assert own.pass_mark == pass_mark_of(own, SCORE_VERSION) == 62.0
-    # A mark is made of scores of one version.
-    assert pass_mark_of(own, "2") is None
+    assert own.pass_mark == pass_mark_of(own, RegistrationMethod.FIDUCIALS) == 62.0
+    # A mark is made of trials registered by fiducials.
+    assert pass_mark_of(own, RegistrationMethod.SURFACE) is None
+    assert pass_mark_of(own, RegistrationMethod.FIDUCIALS, is_procedure=True) is None
     assert study_protocol_from_json(json.loads(protocol_text(own))) == own
     with pytest.raises(InputError, match="passMark must be a number from 1 to 100"):
         protocol(scoring=shipped["scoring"] | {"passMark": 0})
@@ -375,9 +378,9 @@ def test_the_sequence_number_of_a_deleted_trainee_is_reused(study):
             {"questionnaires": [{"name": "sus", "when": "after-all", "modes": ["hmd"]}]},
             "belongs to no mode",
         ),
-        ({"scoring": {"version": "0", "references": {}}}, "scoring.version must be 3"),
+        ({"scoring": {"version": "0", "references": {}}}, "scoring.version must be 1"),
         (
-            {"scoring": {"version": "2", "references": {"task-9": {}}}},
+            {"scoring": {"version": "1", "references": {"task-9": {}}}},
             "references.task-9 must be one of the study's tasks",
         ),
         ({"taskorder": "fixed"}, "taskorder must be left out"),

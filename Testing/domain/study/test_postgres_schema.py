@@ -8,10 +8,8 @@ import sqlite3
 import pytest
 
 from rastrainer.study.database.postgres_database import in_postgres, portable_to_postgres
-from rastrainer.study.database.schema import MIGRATIONS, study_tables
+from rastrainer.study.database.schema import STATEMENTS, study_tables
 from rastrainer.study.database.study import Study
-
-STATEMENTS = [statement for step in MIGRATIONS for statement in step]
 
 
 def test_the_tables_and_columns_match_those_that_sqlite_makes_from_the_schema(tmp_path):

@@ -9,7 +9,6 @@ from rastrainer.errors import InputError
 from rastrainer.study.database.study import Study
 from rastrainer.study.ratings import FORMS, GEARS, OSATS, RatingStore, find_form
 from rastrainer_simulator.rating.rating_pages import RatingWork
-from Testing.domain.study.old_study import write_old_study
 from Testing.domain.trial.trial_records import make_record
 
 TRIALS = [str(uuid.UUID(int=number)) for number in range(1, 9)]
@@ -155,14 +154,6 @@ def test_ratings_are_deleted_with_their_trainee(study, store):
     left = {trial.record.trial_id for name in ("T1", "T2") for trial in study.history(name)}
     assert {rating.trial_id for rating in store.ratings()} == left
     assert rows(study, "rated_replays") == len(left)
-
-
-def test_a_study_of_an_earlier_format_gets_the_tables(tmp_path):
-    path = tmp_path / "old.db"
-    write_old_study(path, 7)
-    with Study.open(path) as study:
-        study.add_trial(make_record(trialId=TRIALS[0]))
-        assert RatingStore(study).assign("R1", TRIALS[:1], 1, random.Random(1)) == (TRIALS[0],)
 
 
 def test_totals_and_left_out_domains_are_stated():

@@ -14,7 +14,6 @@ from rastrainer.study.database.sqlite_database import read_only_uri
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer_simulator.cli.main import main
-from Testing.domain.study.old_study import write_old_study
 from Testing.domain.study.played_study import play, study_with_trials
 from Testing.domain.trial.trial_records import gentle_score, make_record
 
@@ -84,18 +83,6 @@ def test_a_study_opened_for_reading_cannot_be_changed(path):
             study.create_trainee("C")
         with pytest.raises(InputError, match="read-only"):
             study.add_trial(make_record(trialId="00000000-0000-0000-0000-000000000999"))
-    assert seen(path) == before
-
-
-def test_reading_a_study_of_an_earlier_format_does_not_migrate_it(tmp_path):
-    path = tmp_path / "study.db"
-    write_old_study(path, 1, "INSERT INTO trainees VALUES (1, 'A', 1, 0, '2024-05-17T09:30:00Z')")
-    before = seen(path)
-    with Study.open_for_reading(path) as study:
-        assert [trainee.pseudonym for trainee in study.trainees()] == ["A"]
-        assert StudyProgress(study).protocol() is None
-        with pytest.raises(InputError, match="read-only"):
-            study.create_trainee("C")
     assert seen(path) == before
 
 

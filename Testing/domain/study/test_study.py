@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.fits import KINDS
 from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import target_error
@@ -301,7 +302,7 @@ def test_outcomes_are_those_of_one_task_and_mode_with_the_latest_score(study, re
     assert (first.trainee, first.score, first.true_tre_mm) == ("T-001", better.score, 0.5)
     assert (second.trainee, second.completion_time_s) == ("b", 90.0)
     assert (second.score, second.true_tre_mm) == (None, None)
-    assert (first.score_version, second.score_version) == (better.version, None)
+    assert first.method == second.method == "fiducials"
 
 
 def test_past_trials_are_the_scored_ones_in_order_of_starting(study, results):
@@ -316,7 +317,7 @@ def test_past_trials_are_the_scored_ones_in_order_of_starting(study, results):
     first, second = study.past_trials("T-001")
     assert (first.trial_id[-1], second.trial_id[-1]) == ("2", "1")
     assert (first.score, first.acceptable) == (score.score, score.acceptable)
-    assert first.score_version == score.version
+    assert first.method is RegistrationMethod.FIDUCIALS
     stored = study.trial(first.trial_id).record
     assert (first.task, first.mode) == (stored.task, stored.mode)
     assert first.completion_time_s == stored.completion_time_s

@@ -8,17 +8,13 @@ from dataclasses import replace
 
 import pytest
 
-from rastrainer.report.report import report_html
-from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.questionnaires import SSQ
 from rastrainer.study.study_data import read_study_data
 from rastrainer.study.tidy_csv import answers_csv, scores_csv, trials_csv
+from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.export.xapi import HOME_PAGE, statements
 from Testing.domain.study.played_study import study_with_trials
-from Testing.domain.trial.trial_records import first_score, make_record, second_score
-
-OLD = "0 of a pilot"
 
 
 @pytest.fixture
@@ -59,12 +55,11 @@ def test_every_answered_questionnaire_is_a_statement_with_its_scores(data):
 
 def test_a_score_is_exported_with_the_version_that_computed_it(data):
     first, *others = data.trials
-    unscored = replace(others[0], score_version="")
-    mixed = replace(data, trials=(replace(first, score_version=OLD), unscored, *others[1:]))
+    mixed = replace(data, trials=(replace(first, score_version=""), *others))
     name = f"{HOME_PAGE}/xapi/score-version"
     found = [s["context"]["extensions"].get(name) for s in statements(mixed)]
-    assert found[: len(mixed.trials)] == [OLD, None, *(t.score_version for t in others[1:])]
-    assert f"{OLD}, {others[1].score_version}" in report_html(mixed)
+    assert found[: len(mixed.trials)] == [None, *(t.score_version or None for t in others)]
+    assert SCORE_VERSION in found
 
 
 def test_a_score_is_exported_with_its_parts(data):
@@ -82,26 +77,6 @@ def test_a_score_is_exported_with_its_parts(data):
     extensions = statements(data)[data.trials.index(with_score[0])]["result"]["extensions"]
     key = f"{HOME_PAGE}/xapi/values/score_tre_mm"
     assert extensions[key] == with_score[0].values["score_tre_mm"]
-
-
-def test_a_score_of_the_first_version_is_exported_without_later_measures(tmp_path):
-    with Study.open(tmp_path / "old.db") as study:
-        study.add_trial(make_record(trainee="A"), score=first_score(100.0, 0.4))
-        study.set_consent("A", True)
-    (trial,) = read_study_data(tmp_path / "old.db").trials
-    assert trial.score_version == "1"
-    assert {"score", "score_is_accurate", "score_limit_mm"} <= set(trial.values)
-    assert not {"score_tre_mm", "score_is_safe", "score_safety_desirability"} & set(trial.values)
-
-
-def test_a_score_of_the_second_version_is_exported_without_a_common_bias(tmp_path):
-    with Study.open(tmp_path / "old.db") as study:
-        study.add_trial(make_record(trainee="A"), score=second_score(100.0, 0.4))
-        study.set_consent("A", True)
-    (trial,) = read_study_data(tmp_path / "old.db").trials
-    assert (trial.score_version, trial.acceptable) == ("2", True)
-    assert {"score_tre_mm", "score_is_safe"} <= set(trial.values)
-    assert not {"score_common_bias_mm", "score_is_unbiased"} & set(trial.values)
 
 
 def test_a_trials_statement_has_success_and_completion_time(data):
@@ -130,11 +105,11 @@ def test_a_trials_statement_has_success_and_completion_time(data):
     assert context[f"{HOME_PAGE}/xapi/pass-mark"] == 80.0
 
 
-def test_a_statement_has_no_success_without_a_pass_mark_for_its_score_version(data):
-    earlier = replace(data.protocol, pass_mark=80.0, score_version="2")
-    old = tuple(replace(trial, score_version="2") for trial in data.trials[:1])
-    trials = (*old, *data.trials)
-    exported = statements(replace(data, trials=trials, protocol=earlier, answers=(), aborted=()))
+def test_a_statement_has_no_success_without_a_pass_mark_for_its_method(data):
+    marked = replace(data.protocol, pass_mark=80.0)
+    others = tuple(replace(trial, method="surface") for trial in data.trials)
+    trials = (data.trials[0], *others)
+    exported = statements(replace(data, trials=trials, protocol=marked, answers=(), aborted=()))
     assert ["success" in one["result"] for one in exported] == [True] + [False] * len(data.trials)
     assert all("score" in one["result"] for one in exported[1:])
     for one in exported[1:]:

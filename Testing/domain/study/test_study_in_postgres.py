@@ -17,7 +17,7 @@ from rastrainer.errors import InputError
 from rastrainer.study.database import postgres_connecting, postgres_database
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.database import LockWait, StudyBusyError, StudyUnreachableError
-from rastrainer.study.database.schema import MIGRATIONS, study_tables
+from rastrainer.study.database.schema import study_tables
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
@@ -313,9 +313,9 @@ def test_another_programs_database_is_refused_and_left_as_it_is(sql, words, plac
          "CREATE TRIGGER t BEFORE INSERT ON trials FOR EACH ROW EXECUTE FUNCTION f()",
          "contains triggers"),
         ("UPDATE rastrainer_study SET user_version = 99",
-         f"newer RASTrainer .*99, this one knows {len(MIGRATIONS)}"),
+         "has version 99 of the tables"),
     ],
-    ids=["rule", "policy", "trigger", "newer"],
+    ids=["rule", "policy", "trigger", "other version"],
 )  # fmt: skip
 def test_a_study_whose_tables_somebody_has_changed_is_refused(sql, words, place, postgres_server):
     Study.open(place).close()

@@ -54,11 +54,6 @@ def test_a_chart_of_few_trials_is_drawn_with_a_note():
     assert "1 trial can say nothing" in page
 
 
-def test_older_intervals_without_a_common_offset_are_counted():
-    sentences = TreCalibration.of([point(0.3), point(0.4, allows_for_offset=False)]).sentences()
-    assert any("1 of the intervals" in sentence for sentence in sentences)
-
-
 def test_the_report_counts_missing_errors_and_separates_modes():
     page = report(
         *(row(n, **KNOWN, true_tre_mm=0.4, tre_common_bias_sd_mm=0.25) for n in range(1, 8)),

@@ -14,7 +14,6 @@ from rastrainer.study.trainee_data import erase_trainee, export_trainee
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.scoring import passes
 from rastrainer.trial.trial_feedback import competence_of, progress_of
-from Testing.domain.study.old_study import write_old_study
 from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record
 
 
@@ -128,13 +127,6 @@ def test_the_export_of_a_trainee_has_the_aborted_trials(study, tmp_path):
     assert [(each["record"]["reason"], len(each["record"]["points"])) for each in exported] == [
         ("trainee", 3)
     ]
-
-
-def test_a_migrated_study_stores_aborted_trials(tmp_path):
-    path = tmp_path / "study.db"
-    write_old_study(path, 5)
-    with Study.open(path) as study:
-        assert AbortedTrials(study).add(make_aborted())
 
 
 @pytest.mark.parametrize(

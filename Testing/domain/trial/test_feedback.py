@@ -9,11 +9,13 @@ from hypothesis import strategies as st
 
 from rastrainer.errors import InputError
 from rastrainer.motion.trajectory import Touch, Trajectory
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import CommonBias
 from rastrainer.trial.advice import Reason, advise, touch_findings
+from rastrainer.trial.scoring import score_trial
 from rastrainer.trial.trial_feedback import MAX_SHORT, PastTrial, progress_of, trial_feedback
-from Testing.domain.trial.trial_records import first_score, gentle_score, second_score
+from Testing.domain.trial.trial_records import REFERENCE, gentle_score
 from Testing.touched_head import head_points
 
 LABELS = tuple(str(i + 1) for i in range(15))
@@ -164,8 +166,9 @@ def test_the_score_sentences_state_the_common_bias_and_its_limit():
         "; more than 1.5 mm of error and more than 1.5 mm common to all touches is not acceptable."
     )
     assert "0.00 mm common to all" in accuracy(gentle_score(100.0, 0.4))
-    assert "common" not in accuracy(second_score(100.0, 0.4))
-    assert "common" not in accuracy(first_score(100.0, 0.4))
+    without = replace(gentle_score(100.0, 0.4).measures, common_bias_mm=None)
+    traced = score_trial(without, REFERENCE, RegistrationMethod.SURFACE)
+    assert "common" not in accuracy(traced)
 
 
 @given(
@@ -201,19 +204,21 @@ def test_progress_reports_best_score_pass_mark_and_competence():
     )
 
 
-def test_a_trial_is_not_compared_with_scores_of_another_version():
-    first = [replace(past(i, 99.0), score_version="1") for i in range(20)]
-    history = [*first, *(replace(past(20 + i, 50.0 + i), score_version="2") for i in range(2))]
+def test_a_trial_is_compared_with_trials_of_its_method_alone_finished_or_aborted():
+    by_surface = RegistrationMethod.SURFACE
+    first = [replace(past(i, 99.0), method=by_surface) for i in range(20)]
+    first += [replace(past(30 + i, 0.0), method=by_surface, is_aborted=True) for i in range(3)]
+    history = [*first, *(past(20 + i, 50.0 + i) for i in range(2))]
     once = progress_of(history, history[-2].trial_id, pass_mark=60.0)
     assert once.scores == (50.0,)
-    assert once.sentences[0].startswith("Your earlier trials of this task have scores of an")
+    assert once.sentences[0].startswith("Your earlier trials of this task were registered by an")
     assert once.competence.competent_at is None
     assert "trials so far: 1" in once.sentences[2]
     twice = progress_of(history, history[-1].trial_id, pass_mark=60.0)
     assert twice.sentences[0].startswith("Your score is 1 above that of your last trial")
 
 
-def test_without_a_pass_mark_for_its_version_a_trial_neither_passes_nor_fails():
+def test_without_a_pass_mark_for_its_method_a_trial_neither_passes_nor_fails():
     history = [past(1, 50.0), past(2, 99.0)]
     progress = progress_of(history, history[1].trial_id, None)
     assert (progress.pass_mark, progress.competence, len(progress.sentences)) == (None, None, 2)

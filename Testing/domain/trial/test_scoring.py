@@ -90,7 +90,7 @@ def test_better_in_all_measures_is_better_for_any_reference(one, other):
 
 
 def test_the_score_depends_on_one_trial_and_not_on_the_mode():
-    assert list(inspect.signature(score_trial).parameters) == ["measures", "reference", "version"]
+    assert list(inspect.signature(score_trial).parameters) == ["measures", "reference", "method"]
     assert list(inspect.signature(score_reference).parameters) == [
         "scenario",
         "task_name",
@@ -116,8 +116,8 @@ def test_a_gentle_trial_has_the_geometric_mean_of_time_and_accuracy():
     )
 
 
-def test_scores_of_version_3_do_not_change():
-    assert scoring.SCORE_VERSION == "3"
+def test_scores_of_version_1_do_not_change():
+    assert scoring.SCORE_VERSION == "1"
     reference = ScoreReference(100.0, 0.4)
     assert gentle_score(100.0, 0.4, reference).score == pytest.approx(100 * math.sqrt(0.52 * 0.5))
     assert gentle_score(50.0, 0.2, reference).score == pytest.approx(100 * math.sqrt(0.808 * 0.8))
@@ -132,55 +132,6 @@ def test_scores_of_version_3_do_not_change():
     assert gentle_score(100.0, 3.0, reference).score == pytest.approx(
         100 * math.sqrt(worst * 0.52 / (1 + 7.5**2))
     )
-
-
-def test_a_score_of_the_first_version_is_read_unchanged():
-    stored = {
-        "score": 51.0,
-        "time_desirability": 0.52,
-        "accuracy_desirability": 0.5,
-        "acceptable": True,
-        "completion_time_s": 105.0,
-        "expected_tre_mm": 0.4,
-        "reference_time_s": 105.0,
-        "reference_tre_mm": 0.4,
-        "limit_mm": 2.0,
-        "version": "1",
-    }
-    first = TrialScore.from_json(stored)
-    assert (first.score, first.version, first.acceptable) == (51.0, "1", True)
-    assert (first.measures.tre_mm, first.measures.contact_time_s) == (0.4, None)
-    assert TrialScore.from_json(json.loads(json.dumps(first.to_json()))) == first
-
-
-def test_a_score_of_the_second_version_is_read_unchanged():
-    stored = {
-        "score": 51.0,
-        "time_desirability": 0.52,
-        "accuracy_desirability": 0.5,
-        "safety_desirability": 1.0,
-        "acceptable": True,
-        "is_accurate": True,
-        "is_safe": True,
-        "measures": {
-            "completion_time_s": 105.0,
-            "tre_mm": 0.4,
-            "contact_time_s": 0.0,
-            "contact_path_mm": 0.0,
-            "pressing_depth_mm": 0.0,
-        },
-        "reference_time_s": 105.0,
-        "reference_tre_mm": 0.4,
-        "limit_mm": 1.5,
-        "version": "2",
-    }
-    second = TrialScore.from_json(stored)
-    assert (second.score, second.version, second.acceptable) == (51.0, "2", True)
-    assert (second.is_unbiased, second.measures.common_bias_mm) == (None, None)
-    assert second.measures.safety == (0.0, 0.0, 0.0)
-    assert TrialScore.from_json(json.loads(json.dumps(second.to_json()))) == second
-    with pytest.raises(InputError, match="common bias of the touches must be a number of mm"):
-        score_trial(second.measures, second.reference)
 
 
 @pytest.mark.parametrize("time", [0.0, -1.0, math.nan, math.inf])

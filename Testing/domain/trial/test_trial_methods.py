@@ -15,7 +15,7 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.study_data import StudyData, TrialRow
 from rastrainer.study.tidy_csv import trials_csv
 from rastrainer.trial.score_reference import score_reference
-from rastrainer.trial.scoring import SCORE_VERSION, ScoreMeasures, score_trial, score_version
+from rastrainer.trial.scoring import ScoreMeasures, score_trial
 from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer_simulator.assets import asset_path
 from Testing.simulator.landmarked import LANDMARKS, OVER_THE_FACE, on_skin, with_landmarks
@@ -115,9 +115,8 @@ def test_a_trial_without_fiducials_is_scored_without_a_common_bias(scenario):
         ("unintended_contact_time_s", "unintended_contact_path_mm", "pressing_depth_mm"), 0.0
     )
     measures = ScoreMeasures.of(40.0, 0.5, None, motion)
-    score = score_trial(measures, reference, score_version(SURFACE))
+    score = score_trial(measures, reference, SURFACE)
     unbiased = score_trial(replace(measures, common_bias_mm=0.0), reference)
-    assert (score.version, unbiased.version) == ("3-surface", SCORE_VERSION)
     assert score.score == unbiased.score
     assert score.is_unbiased is None
     assert score.acceptable

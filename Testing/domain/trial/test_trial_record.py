@@ -28,12 +28,6 @@ def test_touches_are_arrays_in_their_order():
     np.testing.assert_allclose(record.touch_times_s[[0, 14]], [5.0, 110.0])
 
 
-def test_a_record_without_a_touch_rule_has_the_papers_rule():
-    record = make_record()
-    assert "touchRule" not in record
-    assert TrialRecord.from_json(record).touch_rule == "within radius"
-
-
 def test_the_seed_may_be_kept_secret():
     record = make_record()
     del record["seed"]

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import uuid
-from dataclasses import replace
 
+from rastrainer.protocol import COARSE_LANDMARKS, MIN_TRACE_POINTS
 from rastrainer.trial.scoring import (
-    FIRST_SCORE_VERSION,
     ScoreMeasures,
     ScoreReference,
     TrialScore,
@@ -38,8 +37,16 @@ def make_record(**changes):
         "undoneTouches": 1,
         "versions": {"simulator": "0.1.0"},
         "seed": 3,
+        "touchRule": "within radius",
     }
     return {**record, **changes}
+
+
+def make_traced(**changes):
+    """Return the record of a trial that was registered by a trace over the skin."""
+    trace = [[500.0 + i, -20.0, 300.25, 5.0 + i] for i in range(MIN_TRACE_POINTS)]
+    points = make_record()["points"][:COARSE_LANDMARKS]
+    return make_record(**{"method": "surface", "points": points, "trace": trace, **changes})
 
 
 def make_aborted(number=900, touches=3, **changes):
@@ -72,25 +79,3 @@ def gentle_score(
     """Return the score of a trial without unintended contact or pressing."""
     measures = ScoreMeasures(time_s, tre_mm, 0.0, 0.0, 0.0, common_bias_mm)
     return score_trial(measures, reference)
-
-
-def first_score(time_s: float, tre_mm: float) -> TrialScore:
-    """Return a score of version 1: of time and expected TRE."""
-    return replace(
-        gentle_score(time_s, tre_mm),
-        safety_desirability=None,
-        is_unbiased=None,
-        is_safe=None,
-        measures=ScoreMeasures(time_s, tre_mm, None, None, None, None),
-        version=FIRST_SCORE_VERSION,
-    )
-
-
-def second_score(time_s: float, tre_mm: float) -> TrialScore:
-    """Return a score of version 2, without the common bias, of a gentle trial."""
-    return replace(
-        gentle_score(time_s, tre_mm),
-        is_unbiased=None,
-        measures=ScoreMeasures(time_s, tre_mm, 0.0, 0.0, 0.0, None),
-        version="2",
-    )

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import random
 import uuid
-from dataclasses import replace
 from datetime import datetime, timedelta, timezone
 from pathlib import Path
 from typing import Any
 
-from rastrainer.protocol import RegistrationMethod
+from rastrainer.protocol import TRACED_METHODS
 from rastrainer.study.curriculum.curriculum import Assignment, Curriculum, read_curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore, counted_trials
 from rastrainer.study.curriculum.standing import standing_in
@@ -18,8 +17,8 @@ from rastrainer.study.database.database import Connection, StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import day_of
 from rastrainer.trial.record import TrialRecord
-from rastrainer.trial.scoring import PASS_MARK, score_version
-from Testing.domain.trial.trial_records import gentle_score, make_record
+from rastrainer.trial.scoring import PASS_MARK
+from Testing.domain.trial.trial_records import gentle_score, make_record, make_traced
 
 SHIPPED = Path(__file__).parents[3] / "assets" / "studies" / "example-curriculum.json"
 FIRST_DAY = datetime(2026, 11, 2, 9, 0, tzinfo=timezone.utc)
@@ -62,15 +61,16 @@ def _play(
 ) -> None:
     """Store a scored trial, the trainee's `number`-th; three are played on each second day."""
     started = (FIRST_DAY + timedelta(days=2 * (number // 3), minutes=4 * (number % 3))).isoformat()
-    value = make_record(
+    make = make_traced if assignment.method in TRACED_METHODS else make_record
+    value = make(
         trialId=str(uuid.UUID(int=rng.getrandbits(128))),
         trainee=name,
         task=assignment.task,
         startedUtc=started,
         completedUtc=started,
+        method=assignment.method,
     )
-    version = score_version(RegistrationMethod(assignment.method))
-    score = replace(gentle_score(seconds, 0.25), version=version)
+    score = gentle_score(seconds, 0.25)
     record = TrialRecord.from_json(value)
     study_trials.add(connection, record, value)
     study_trials.add_results(connection, record.trial_id, (), {}, score)

@@ -20,7 +20,6 @@ from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.board.class_table import ClassReader, class_table
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
-from Testing.domain.study.old_study import write_old_study
 from Testing.simulator.board.class_study import SHIPPED, as_in_narrow_columns, play_class
 from Testing.simulator.net.igtl.servers import PATIENCE_S
 from Testing.simulator.net.views.served import request
@@ -137,19 +136,6 @@ def test_a_file_that_replaces_the_study_is_noticed(reader, study, tmp_path):
     play_class(restored, ["Z"], 0)
     restored.replace(study)
     assert list(reader.read().standings) == ["Z"]
-
-
-def test_a_study_of_an_earlier_format_is_followed_and_not_changed_by_reading(tmp_path):
-    path = tmp_path / "old.db"
-    write_old_study(path, 8, "INSERT INTO trainees VALUES (1, 'A', 1, 0, '2026-01-01T00:00:00Z')")
-    before = path.read_bytes()
-    reader = ClassReader(path)
-    assert reader.read().without == ("A",)
-    assert path.read_bytes() == before
-    with Study.open(path) as opened:
-        opened.create_trainee("B")
-    assert reader.read().without == ("A", "B")
-    reader.close()
 
 
 def test_reading_blocks_no_seat_and_no_seat_blocks_reading(reader, study):

@@ -23,7 +23,7 @@ from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer_simulator.cli import register as register_command
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.cli.results import add_score_parser
-from Testing.domain.trial.trial_records import first_score, gentle_score, make_aborted, make_record
+from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record, make_traced
 
 STUDY = Path(__file__).parents[3] / "assets" / "studies" / "published.csv"
 
@@ -215,15 +215,15 @@ SHIPPED = Path(__file__).parents[3] / "assets" / "studies" / "published-protocol
 NOVICES, EXPERTS = [f"N{n}" for n in range(5)], [f"E{n}" for n in range(5)]
 
 
-def add(study, trainee, number, time_s, task="task-1", score=gentle_score):
+def add(study, trainee, number, time_s, task="task-1", make=make_record):
     """Store a trial whose score follows from its time."""
-    record = make_record(
+    record = make(
         trialId=str(uuid.uuid5(uuid.NAMESPACE_OID, f"{trainee} {number} {task}")),
         trainee=trainee,
         task=task,
         startedUtc=f"2024-05-{number + 1:02d}T09:30:00Z",
     )
-    study.add_trial(record, score=score(time_s, 0.4))
+    study.add_trial(record, score=gentle_score(time_s, 0.4))
 
 
 @pytest.fixture
@@ -259,27 +259,27 @@ def test_the_pass_mark_lies_between_the_groups_last_trials_without_trial_runs(st
         assert [trial.task for trial in opened.past_trials("N0")] == ["task-1"] * 4
 
 
-def test_scores_of_two_versions_give_no_pass_mark(study, capsys):
+def test_trials_by_two_methods_give_no_pass_mark(study, capsys):
     with Study.open(study) as opened:
-        add(opened, "N3", 20, 270.0, score=first_score)
+        add(opened, "N3", 20, 270.0, make=make_traced)
     assert main(words(study)) == 2
-    assert "scores of the versions 1 and 3, which cannot be compared" in capsys.readouterr().err
+    assert "registered by fiducials and surface, whose scores cannot" in capsys.readouterr().err
 
 
-def test_a_pass_mark_from_earlier_scores_is_reported_and_not_written_into_a_protocol(
+def test_a_pass_mark_of_another_method_is_reported_and_not_written_into_a_protocol(
     study, tmp_path, capsys
 ):
     with Study.open(study) as opened:
         for number in range(20, 23):
             for names, time_s in ((NOVICES, 260.0), (EXPERTS, 110.0)):
                 for place, name in enumerate(names):
-                    add(opened, name, number, time_s + 5.0 * place, score=first_score)
+                    add(opened, name, number, time_s + 5.0 * place, make=make_traced)
     assert main(words(study)) == 0
-    assert "of 100 (score version 1)" in capsys.readouterr().out
+    assert "of 100 (trials by surface)" in capsys.readouterr().out
     protocol = tmp_path / "next.json"
     shutil.copy(SHIPPED, protocol)
     assert main(words(study, "--write", str(protocol))) == 2
-    assert "score version 1, and trials get scores of version 3 now" in capsys.readouterr().err
+    assert "trials registered by surface, and a protocol's is for" in capsys.readouterr().err
     assert protocol.read_bytes() == SHIPPED.read_bytes()
 
 

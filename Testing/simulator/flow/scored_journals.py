@@ -8,7 +8,6 @@ from pathlib import Path
 from rastrainer.journal.journal_file import NO_LINE, encode_line
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
-from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.session.preferences import Preferences
@@ -20,12 +19,11 @@ TRAINEE = "P07"
 SCORES = (38.0, 52.4, 47.0, 66.6, 71.0, 69.0, 88.0)
 
 
-def write_scored(folder, number, *scores, version=SCORE_VERSION, is_safe=True, **changes) -> Path:
+def write_scored(folder, number, *scores, is_safe=True, make=make_record, **changes) -> Path:
     """Write the journal of a trial that was scored as often as there are scores."""
     trial_id = str(uuid.UUID(int=number))
-    record = TrialRecord.from_json(make_record(trialId=trial_id, trainee=TRAINEE, **changes))
+    record = TrialRecord.from_json(make(trialId=trial_id, trainee=TRAINEE, **changes))
     details = {"isAccurate": True, "isUnbiased": True, "isSafe": is_safe}
-    details |= {"scoreVersion": version} if version else {}
     found = [{"trialId": trial_id, "score": score, "details": details} for score in scores]
     registered = {"kind": "registered", "record": record.to_json()}
     scored = ({"kind": "scored", "arguments": arguments} for arguments in found)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from rastrainer_simulator.flow.session.trainee_history import DoneTasks, ScoreHistory
+from Testing.domain.trial.trial_records import make_traced
 from Testing.simulator.flow.scored_journals import (
     SCORES,
     TRAINEE,
@@ -20,12 +21,10 @@ def history_of(tmp_path):
     return lambda: ScoreHistory(tmp_path, DoneTasks(tmp_path).journals)
 
 
-def test_only_scores_of_the_same_mode_and_the_current_version_are_compared(tmp_path, history_of):
+def test_only_scores_of_the_same_mode_by_fiducials_are_compared(tmp_path, history_of):
     write_scored(tmp_path, 1, 40.0, 45.0)
     write_scored(tmp_path, 2, 99.0, task="trial-run")
-    write_scored(tmp_path, 3, 98.0, version="1")
-    write_scored(tmp_path, 4, 97.0, version="")
-    write_scored(tmp_path, 9, 96.0, version="2")
+    write_scored(tmp_path, 3, 98.0, make=make_traced)
     write_scored(tmp_path, 5, 60.0, mode="hmd")
     write_scored(tmp_path, 6)
     write_scored(tmp_path, 7, 55.0, task="task-2")
@@ -41,7 +40,7 @@ def test_the_best_acceptable_trials_of_a_task_come_first(tmp_path, history_of):
     second = write_scored(tmp_path, 1, 60.0)
     best = write_scored(tmp_path, 2, 50.0, 75.0, mode="hmd")
     write_scored(tmp_path, 3, 90.0, task="task-2")
-    write_scored(tmp_path, 4, 95.0, version="2")
+    write_scored(tmp_path, 4, 95.0, make=make_traced)
     write_scored(tmp_path, 5, 80.0, is_safe=False)
     assert history_of().best(TRAINEE, "task-1") == (best, second)
     assert history_of().best("P08", "task-1") == ()

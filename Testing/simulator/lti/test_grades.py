@@ -14,7 +14,7 @@ from rastrainer.study.database.values import moment, utc_now
 from rastrainer.study.platform_links import PlatformLinks
 from rastrainer.study.trainee_data import erase_trainee, export_trainee
 from rastrainer_simulator.lti.course_study import FIRST_RETRY_S, LAST_RETRY_S, scores_url
-from Testing.domain.trial.trial_records import first_score, gentle_score, make_record
+from Testing.domain.trial.trial_records import gentle_score, make_record
 from Testing.simulator.lti.conftest import Lab
 from Testing.simulator.lti.platform_double import CLAIM, GRADES
 
@@ -77,8 +77,6 @@ def test_only_trials_that_the_link_asks_for_count(lab, browser, platform):
     )
     play(lab, tre_mm=4.0)
     assert lab.tool.send_due() == 0, "not acceptable"
-    play(lab, score=first_score(100.0, 0.5))
-    assert lab.tool.send_due() == 0, "of another version"
     best = play(lab, mode="hmd", time_s=50.0)
     latest = play(lab, time_s=200.0)
     play(lab, task="trial-run")

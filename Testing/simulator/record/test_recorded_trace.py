@@ -145,6 +145,7 @@ def record_of(**changes):
         "startedUtc": "2024-05-17T09:30:00Z",
         "completedUtc": "2024-05-17T09:31:00Z",
         "completionTimeS": 50.0,
+        "touchRule": "on skin",
         "points": [point | {"label": name} for name in ("Nasion", "Right", "Left")],
         "rejectedTouches": 0,
         "undoneTouches": 0,

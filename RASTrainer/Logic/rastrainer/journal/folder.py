@@ -224,7 +224,7 @@ def newest_journal(folder: Path) -> Path | None:
     """Return the journal of the latest trial, or None.
 
     Trials of a folder are numbered, because a clock that is set back gives a later trial an earlier
-    name. Unnumbered journals of older versions are ordered by name before the others.
+    name.
     """
     paths = folder.glob(f"*{SUFFIX}")
     return max(paths, key=lambda path: (number_of(path), path.name), default=None)

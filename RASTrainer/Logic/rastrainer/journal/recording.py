@@ -129,7 +129,7 @@ class Recording:
     def _header(self, entry: Mapping[str, Any]) -> None:
         self._tick_s = entry["tickS"]
         self._start_s = entry["simTime"] - self._tick_s
-        # Absent where the scenario does not give it, and in older journals.
+        # Absent where the scenario does not give it.
         self._shortest_path = entry.get("shortestPathMm")
 
     def _touch(self, entry: Mapping[str, Any]) -> None:
@@ -195,9 +195,9 @@ class Recording:
         self._state = state
 
     def _press(self, entry: Mapping[str, Any]) -> None:
-        """Update the depth of the contact; older journals have none."""
+        """Update the depth of the contact."""
         if self._state is Proximity.CONTACT and self._paused_since is None:
-            self._contact_depth = max(self._contact_depth, entry.get("depthMm", 0.0))
+            self._contact_depth = max(self._contact_depth, entry["depthMm"])
 
     def _contact_until(self, end_s: float) -> Interval:
         return Interval(self._contact_since, end_s, greatest_depth_mm=self._contact_depth)

@@ -83,7 +83,6 @@ def _point(trial: TrialRow) -> CalibrationPoint | None:
         values["expected_tre_mm"],
         (values["tre_low_mm"], values["tre_high_mm"]),
         values["true_tre_mm"],
-        values.get("tre_common_bias_sd_mm", 0.0) > 0.0,
     )
 
 

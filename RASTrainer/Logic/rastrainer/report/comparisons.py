@@ -1,4 +1,4 @@
-"""What a report compares: scores of one version, and modes on the means of trainees who did both.
+"""What a report compares: modes, on the means of trainees who did both.
 
 Effects of the modes are separated from those of their order where the orders allow it.
 """
@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.number_text import counted
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.statistics.paired import PairedComparison, compare_paired, holm
 from rastrainer.study.outcomes import Outcome
 from rastrainer.study.study_data import StudyData, TrialRow
@@ -20,51 +20,11 @@ from rastrainer.study.study_data import StudyData, TrialRow
 SCORE = "score"
 
 
-def with_one_score_version(data: StudyData) -> StudyData:
-    """Return the study with scores of its latest version only.
-
-    All trials are kept, with their times, errors and score versions.
-    """
-    latest = max((trial.score_version for trial in data.trials), key=_order, default="")
-    return replace(data, trials=tuple(_with_score_of(trial, latest) for trial in data.trials))
-
-
-def compared_version(data: StudyData) -> str:
-    """Return the version of the compared scores; "" if there are none."""
-    return next((trial.score_version for trial in data.trials if SCORE in trial.values), "")
-
-
-def versions_note(data: StudyData) -> str:
-    """Return which scores `with_one_score_version` left out; "" if none."""
-    compared = compared_version(data)
-    left_out = Counter(
-        trial.score_version for trial in data.trials if trial.score_version not in ("", compared)
-    )
-    if not left_out:
-        return ""
-    own = sum(SCORE in trial.values for trial in data.trials)
-    others = " and ".join(
-        f"{counted(count, 'trial')} of version {version}"
-        for version, count in sorted(left_out.items())
-    )
-    return (
-        "This study has scores of several versions, which measure different things and cannot be "
-        f"compared: {counted(own, 'trial')} of version {compared}, {others}. Wherever this report "
-        f"reports scores, trials passed or competence, it means version {compared} alone. "
-        "trials.csv has all of them, each with its version."
-    )
-
-
-def _with_score_of(trial: TrialRow, version: str) -> TrialRow:
-    if trial.score_version == version or SCORE not in trial.values:
-        return trial
-    values = {name: value for name, value in trial.values.items() if not name.startswith(SCORE)}
-    return replace(trial, values=values)
-
-
-def _order(version: str) -> tuple[int, str]:
-    """Return a sort key: 10 comes after 9."""
-    return (int(version) if version.isdecimal() else 0, version)
+def compared_method(data: StudyData) -> str:
+    """Return the method whose trials are compared: fiducials, or the one of most trials."""
+    counts = Counter(trial.method for trial in data.trials)
+    fiducials = RegistrationMethod.FIDUCIALS.value
+    return fiducials if fiducials in counts or not counts else counts.most_common(1)[0][0]
 
 
 CONFIRMATORY = ("completion_time_s", "rmse_mm", "score")

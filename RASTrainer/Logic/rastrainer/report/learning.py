@@ -8,7 +8,6 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from rastrainer.number_text import fixed, p_text, percent, significant
-from rastrainer.report.comparisons import versions_note
 from rastrainer.report.elements import (
     FAINT,
     INK,
@@ -84,7 +83,6 @@ def learning(data: StudyData) -> str:
         ),
         *([table([HEADER], rows, "wide"), paragraph(_words(), "small")] if rows else []),
         bullets(sentences) if sentences else "",
-        paragraph(versions_note(data)) if versions_note(data) else "",
         paragraph(_limits(data)),
     )
 

@@ -8,7 +8,8 @@ from datetime import datetime
 import numpy as np
 
 from rastrainer.number_text import counted, percent
-from rastrainer.report.comparisons import SCORE, compared_version, versions_note
+from rastrainer.protocol import RegistrationMethod
+from rastrainer.report.comparisons import SCORE, compared_method
 from rastrainer.report.elements import (
     bullets,
     figure,
@@ -37,8 +38,6 @@ from rastrainer.trial.scoring import (
     CONTACT_LIMIT_S,
     CONTACT_PATH_LIMIT_MM,
     DEPTH_LIMIT_MM,
-    FIRST_SCORE_VERSION,
-    SCORE_VERSION,
     passes,
 )
 from rastrainer.trial.trial_feedback import (
@@ -136,7 +135,7 @@ def passing(data: StudyData) -> str:
     """Return the section; "" where no trial has a score."""
     if not any(SCORE in trial.values for trial in data.trials):
         return ""
-    mark = pass_mark_of(data.protocol, compared_version(data))
+    mark = pass_mark_of(data.protocol, compared_method(data))
     if mark is None:
         return section("Pass mark", paragraph(_no_mark(data), "warning"))
     found = {mode: _failures(data, mode, mark) for mode in data.modes}
@@ -154,7 +153,6 @@ def passing(data: StudyData) -> str:
             [_chart(data, mode, charts) for mode, charts in competence.items()],
             "LC-CUSUM of every trainee; thick: the limit at which competence is shown.",
         ),
-        paragraph(versions_note(data), "warning") if versions_note(data) else "",
         paragraph(_words(data, mark), "small"),
     )
 
@@ -223,7 +221,6 @@ def _chart(data: StudyData, mode: str, charts: dict[str, LcCusum]) -> str:
 
 
 def _words(data: StudyData, mark: float) -> str:
-    version = compared_version(data)
     source = "the default, since the study sets no mark; no data support it"
     if data.protocol is not None and data.protocol.pass_mark is not None:
         source = "set by the protocol"
@@ -234,7 +231,7 @@ def _words(data: StudyData, mark: float) -> str:
     )
     return (
         f"A trial passes with {mark:g} of 100 points ({source}) and "
-        f"{_acceptable(version)}; one that was aborted after a touch is not passed. "
+        f"{_acceptable(compared_method(data))}; one that was aborted after a touch is not passed. "
         "LC-CUSUM (Biau and Porcher 2010) calls a trainee competent "
         "once the trials of a mode, over all tasks, speak clearly enough for a failure rate of "
         f"{percent(ADEQUATE_FAILURES)} against one of {percent(INADEQUATE_FAILURES)}. Fewer than "
@@ -245,13 +242,12 @@ def _words(data: StudyData, mark: float) -> str:
     )
 
 
-def _acceptable(version: str) -> str:
-    if version == FIRST_SCORE_VERSION:
-        return "an expected target error within the limit of its task"
+def _acceptable(method: str) -> str:
+    is_by_fiducials = method == RegistrationMethod.FIDUCIALS
     bias = f"a bias common to all touches of at most {COMMON_BIAS_LIMIT_MM:g} mm, "
     return (
         "within the limits of the score: a true target error in the brain within that of its "
-        f"task, {bias if version == SCORE_VERSION else ''}unintended contact of at most "
+        f"task, {bias if is_by_fiducials else ''}unintended contact of at most "
         f"{CONTACT_LIMIT_S:g} s and {CONTACT_PATH_LIMIT_MM:g} mm, and a pressing depth of at most "
         f"{DEPTH_LIMIT_MM:g} mm"
     )
@@ -259,11 +255,8 @@ def _acceptable(version: str) -> str:
 
 def _no_mark(data: StudyData) -> str:
     assert data.protocol is not None
-    version = compared_version(data)
     return (
-        f"The protocol's pass mark of {data.protocol.pass_mark:g} points was set for score version "
-        f"{data.protocol.score_version}, and these trials have scores of "
-        f"{f'version {version}' if version else 'an unknown version'}. The two do not compare, so "
-        "that this report does not say which trials passed or who is competent. "
-        f"`rastrainer pass-mark` computes a mark of your own. {versions_note(data)}".rstrip()
+        f"The protocol's pass mark of {data.protocol.pass_mark:g} points is for trials registered "
+        f"by fiducials, and these were registered by {compared_method(data)}. Their scores do not "
+        "compare, so that this report does not say which trials passed or who is competent."
     )

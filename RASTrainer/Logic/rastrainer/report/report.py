@@ -13,14 +13,8 @@ from pathlib import Path
 import rastrainer
 from rastrainer.files.writing import make_folder, write_text
 from rastrainer.number_text import counted
-from rastrainer.protocol import RegistrationMethod
 from rastrainer.report.calibration import calibration
-from rastrainer.report.comparisons import (
-    ModeComparison,
-    compare_modes,
-    versions_note,
-    with_one_score_version,
-)
+from rastrainer.report.comparisons import ModeComparison, compare_modes, compared_method
 from rastrainer.report.elements import bullets, paragraph, section
 from rastrainer.report.learning import learning
 from rastrainer.report.method_comparison import method_comparison, shifted_skin
@@ -78,7 +72,7 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
     scipy_module("stats")
     by_method, compared_methods = methods_note(data), method_comparison(data)
     skin = shifted_skin(data)
-    data = with_one_score_version(with_ctps(with_one_method(data)))
+    data = with_ctps(with_one_method(data))
     pairs = list(itertools.combinations(sorted(data.modes), 2))
     main = [compare_modes(data, MAIN_OUTCOMES, *pair) for pair in pairs]
     described = [compare_modes(data, MOTION_OUTCOMES, *pair) for pair in pairs]
@@ -91,7 +85,7 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
         f"{modes} · made {made}"
     )
     sections = [
-        _summary(everything, data.gap, by_method, versions_note(data)),
+        _summary(everything, data.gap, by_method),
         started_trials(data),
         published_tables(data),
         mode_comparison(data),
@@ -140,23 +134,22 @@ def _summary(comparisons: list[ModeComparison], gap: str, *left_out: str) -> str
     return section("In short", *parts)
 
 
-def compared_method(data: StudyData) -> str:
-    """Return the method whose trials are compared: fiducials, or the one of most trials."""
-    counts = Counter(trial.method for trial in data.trials)
-    fiducials = RegistrationMethod.FIDUCIALS.value
-    return fiducials if fiducials in counts or not counts else counts.most_common(1)[0][0]
-
-
 def with_one_method(data: StudyData) -> StudyData:
-    """Return the study with the trials of the compared method only."""
+    """Return the study with the trials of the compared method only, finished and aborted."""
     method = compared_method(data)
-    return replace(data, trials=tuple(t for t in data.trials if t.method == method))
+    return replace(
+        data,
+        trials=tuple(t for t in data.trials if t.method == method),
+        aborted=tuple(stored for stored in data.aborted if stored.record.method == method),
+    )
 
 
 def methods_note(data: StudyData) -> str:
     """Return which trials `with_one_method` leaves out; "" if none."""
     compared = compared_method(data)
-    left_out = Counter(trial.method for trial in data.trials if trial.method != compared)
+    started = [trial.method for trial in data.trials]
+    started += [stored.record.method.value for stored in data.aborted]
+    left_out = Counter(method for method in started if method != compared)
     if not left_out:
         return ""
     others = " and ".join(

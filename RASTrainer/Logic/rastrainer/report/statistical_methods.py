@@ -9,7 +9,8 @@ import numpy as np
 
 import rastrainer
 from rastrainer.number_text import counted, p_text, percent
-from rastrainer.report.comparisons import ModeComparison, compared_version
+from rastrainer.protocol import RegistrationMethod
+from rastrainer.report.comparisons import ModeComparison, compared_method
 from rastrainer.report.elements import bullets, heading, paragraph, section, table
 from rastrainer.statistics.intervals import (
     ALPHA,
@@ -34,7 +35,6 @@ from rastrainer.trial.scoring import (
     CONTACT_LIMIT_S,
     CONTACT_PATH_LIMIT_MM,
     DEPTH_LIMIT_MM,
-    FIRST_SCORE_VERSION,
     HALF_COMMON_BIAS_MM,
     HALF_CONTACT_PATH_MM,
     HALF_CONTACT_S,
@@ -207,10 +207,9 @@ REFERENCES = (
 def methods(data: StudyData) -> str:
     """Return the section."""
     versions = [[name, ", ".join(found)] for name, found in data.versions.items()]
-    scored = sorted({trial.score_version for trial in data.trials if trial.score_version})
     own = [
         ["rastrainer (this report)", rastrainer.__version__],
-        ["score", ", ".join(scored) or "none"],
+        ["score", SCORE_VERSION],
         [
             "python, numpy, scipy (this report)",
             f"{platform.python_version()}, {np.__version__}, {scipy_module('version').version}",
@@ -267,27 +266,15 @@ def _measures(data: StudyData) -> str:
     )
     found = {name for trial in data.trials for name in trial.values}
     if "score" in found:
-        version = compared_version(data)
-        words += _first_score() if version == FIRST_SCORE_VERSION else _score(version)
+        words += _score(compared_method(data))
     if "sparc" in found:
         words += f" Motion metrics are of filtered trajectories ({FILTER})."
     return words
 
 
-def _first_score() -> str:
-    return (
-        " The RASTrainer score (version 1, 0 to 100) is the geometric mean of a time and an "
-        "accuracy desirability with references fixed in advance for each task and equal in both "
-        "modes; accuracy is the expected target error at the scenario's target. The score is "
-        "RASTrainer's own; of others are the formula of the expected target error (Fitzpatrick, "
-        "West and Maurer 1998), the desirability (Harrington 1965) and its geometric mean "
-        "(Derringer and Suich 1980)."
-    )
-
-
-def _score(version: str) -> str:
+def _score(method: str) -> str:
     bias, bias_limit = "", ""
-    if version == SCORE_VERSION:
+    if method == RegistrationMethod.FIDUCIALS:
         bias = (
             "This is multiplied by the trueness (ISO 5725-1) of the touches, "
             f"1/(1 + (b/{HALF_COMMON_BIAS_MM:g} mm)^{COMMON_BIAS_POWER}), with b the length of the "
@@ -296,7 +283,7 @@ def _score(version: str) -> str:
         )
         bias_limit = f"{COMMON_BIAS_LIMIT_MM:g} mm of common bias, "
     return (
-        f" The RASTrainer score (version {version or 'unknown'}, 0 to 100) is made of three "
+        f" The RASTrainer score (version {SCORE_VERSION}, 0 to 100) is made of three "
         "desirabilities (Harrington 1965), each of the form 1/(1 + (value/half)²): the geometric "
         "mean (Derringer and Suich 1980) of time and accuracy, times the square root of safety. "
         "Accuracy is the true target error of the rigid registration, which the simulator reveals "

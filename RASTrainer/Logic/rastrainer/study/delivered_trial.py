@@ -132,7 +132,7 @@ def with_progress(analysis: TrialAnalysis, study: Study) -> TrialAnalysis:
     score = study.trial(record.trial_id).score
     if record.task == TRIAL_RUN or score is None:
         return analysis
-    pass_mark = pass_mark_of(StudyProgress(study).protocol(), score.version)
+    pass_mark = pass_mark_of(StudyProgress(study).protocol(), record.method)
     return with_progress_among(analysis, AbortedTrials(study).attempts(record.trainee), pass_mark)
 
 
@@ -141,7 +141,7 @@ def with_progress_among(
 ) -> TrialAnalysis:
     """Return the analysis of a scored trial, with its place among these attempts, itself included.
 
-    `pass_mark` is that for scores of its version; None without one.
+    `pass_mark` is that for trials of its method; None without one.
 
     Raises:
         InputError: it is none of them.

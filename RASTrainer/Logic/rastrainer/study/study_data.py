@@ -21,7 +21,7 @@ from rastrainer.study.protocol.study_progress import QuestionnaireAnswers, Study
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.ratings import Rating, RatingStore
 from rastrainer.trial.ctps import StudyNotes, Trial, read_notes, read_trials
-from rastrainer.trial.scoring import FIRST_SCORE_VERSION, TrialScore
+from rastrainer.trial.scoring import TrialScore
 
 
 @dataclass(frozen=True)
@@ -310,8 +310,7 @@ def _procedure_values(procedure: StoredProcedure) -> dict[str, float]:
 def _score_parts(score: TrialScore) -> dict[str, float]:
     """Return the parts of a score; the safety metrics are among the motion metrics."""
     parts = {
-        # In the first version it is the expected TRE, which the values include already.
-        "score_tre_mm": None if score.version == FIRST_SCORE_VERSION else score.measures.tre_mm,
+        "score_tre_mm": score.measures.tre_mm,
         "score_common_bias_mm": score.measures.common_bias_mm,
         "unshifted_tre_mm": score.unshifted_tre_mm,
         "score_time_desirability": score.time_desirability,

@@ -30,7 +30,6 @@ class CalibrationPoint:
         expected_mm: Expected TRE, RMS.
         interval_mm: Interval of the expected TRE.
         true_mm: True TRE.
-        allows_for_offset: Whether both include an offset common to all touches; older ones do not.
     """
 
     trainee: str
@@ -39,7 +38,6 @@ class CalibrationPoint:
     expected_mm: float
     interval_mm: tuple[float, float]
     true_mm: float
-    allows_for_offset: bool = True
 
     @property
     def is_inside(self) -> bool:
@@ -126,12 +124,6 @@ class TreCalibration:
             )
         if 0 < count < MIN_SHARE_TRIALS:
             found.append(f"{count} trial{'s' if count > 1 else ''} can say nothing about a share.")
-        old = sum(not point.allows_for_offset for point in self.points)
-        if old:
-            found.append(
-                f"{old} of the intervals were computed before they allowed for an offset that all "
-                "touches share, and are narrower."
-            )
         for missing, what in ((self.without_truth, "true"), (self.without_expectation, "expected")):
             if missing:
                 trials = "1 trial has" if missing == 1 else f"{missing} trials have"
@@ -161,7 +153,6 @@ def calibration_of(trials: Iterable[StoredTrial]) -> TreCalibration:
                     rigid.expected_tre_mm,
                     rigid.tre_interval_mm,
                     trial.true_tre_mm,
-                    rigid.common_bias_sd_mm > 0.0,
                 )
             )
     return TreCalibration.of(points, without_truth, without_expectation)

@@ -13,7 +13,7 @@ from rastrainer.motion.trajectory import Touch, Trajectory
 from rastrainer.motion.trial_motion import DWELL_RADIUS_MM
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import CommonBias
-from rastrainer.trial.scoring import DEPTH_LIMIT_MM, SCORE_VERSION, TrialScore, score_trial
+from rastrainer.trial.scoring import DEPTH_LIMIT_MM, TrialScore, score_trial
 from rastrainer.trial.wording import Sentence, say
 
 OUTLIER_SHARE = 2.0
@@ -214,9 +214,9 @@ def advise(
 
     Unintended contact and pressing come first regardless of points: safety has priority. So does a
     common bias beyond its limit, after them: without it, the target error would be another one,
-    too. Without a score of the current version there is no other advice.
+    too. Without a score of touched fiducials there is no other advice.
     """
-    if score is None or score.version != SCORE_VERSION:
+    if score is None or score.is_unbiased is None:
         return tuple(_contacts(motion, 0.0))
     first = [*_safety(score, motion)]
     candidates = [*_accuracy(score, findings), *_time(score, motion)]
@@ -231,11 +231,10 @@ def advise(
 
 def _safety(score: TrialScore, motion: Mapping[str, float]) -> Iterator[Advice]:
     yield from _contacts(motion, _gain(score, contact_time_s=0.0, contact_path_mm=0.0))
-    safety = score.measures.safety
-    depth = 0.0 if safety is None else safety.pressing_depth_mm
+    depth = score.measures.pressing_depth_mm
     gain = _gain(score, pressing_depth_mm=0.0)
     if depth > DEPTH_LIMIT_MM or gain >= MIN_GAIN:
-        yield Advice("pressing", say("pressing", depth=float(depth)), gain)
+        yield Advice("pressing", say("pressing", depth=depth), gain)
 
 
 def _contacts(motion: Mapping[str, float], gain: float) -> Iterator[Advice]:

@@ -32,7 +32,6 @@ from rastrainer.trial.scoring import (
     ScoreReference,
     TrialScore,
     score_trial,
-    score_version,
 )
 from rastrainer.trial.touch_registration import (
     GivenPoints,
@@ -169,7 +168,7 @@ class TrialAnalysis:
                 record.motion,
             ),
             score_reference(scenario, record.task, references, record.method),
-            score_version(record.method),
+            record.method,
         )
         unshifted = unshifted_tre_mm(record, scenario, truth.matrix, truth.skin)
         score = replace(score, unshifted_tre_mm=unshifted)
@@ -182,7 +181,7 @@ class TrialAnalysis:
     def scored_as(
         self, score: TrialScore | None, scenario: Scenario, truth: RevealedTruth | None
     ) -> TrialAnalysis:
-        """Return the analysis with a stored score, in its version, and the stored truth.
+        """Return the analysis with a stored score and the stored truth.
 
         Raises:
             InputError: the true pose has no inverse.
@@ -288,7 +287,7 @@ def score_arguments(analysis: TrialAnalysis) -> dict[str, Any]:
     # What was analyzed with its truth has a score.
     assert score is not None
     published = analysis.published_score
-    # A trial run has no progress, and no mark; null is a study's without a mark for this version.
+    # A trial run has no progress, and no mark; null is a study's without a mark for this method.
     mark = {} if progress is None else {"passMark": progress.pass_mark}
     return {
         "trialId": analysis.record.trial_id,

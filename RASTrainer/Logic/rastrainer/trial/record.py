@@ -87,8 +87,8 @@ class TrialRecord:
         undone_touches: Number of touches that the trainee undid.
         versions: Name and version of each program and format that made the record.
         seed: Seed of the trial, where the simulator reveals it.
-        touch_rule: Which touches counted, a `TouchRule`; in older records the paper's.
-        motion: Motion metrics by name (`rastrainer.study.outcomes`); empty in older records.
+        touch_rule: Which touches counted, a `TouchRule`.
+        motion: Motion metrics by name (`rastrainer.study.outcomes`).
         display: What the trainee looked at: `kind`, `device`, `refreshHz`, `shownFrames` and
             `droppedFrames`, the `guidance` to the next point, and the `ghost` that was shown (a
             `GhostRule`); empty where no view reported it.
@@ -307,8 +307,6 @@ _CHECKS = {
     "completionTimeS": Argument(json_checks.number(0, TIME_LIMIT_S, "s")),
     "points": Argument(points_up_to_all),
     "seed": Argument(_optional(json_checks.whole_number(0, 2**63 - 1)), None),
-    # Records older than this key are of the paper's rule.
-    "touchRule": Argument(SHARED_CHECKS["touchRule"].check, TouchRule.WITHIN_RADIUS.value),
     "motion": Argument(
         json_checks.mapping(
             MOTION_LIMIT, "names with finite numbers", json_checks.number(-1e9, 1e9)

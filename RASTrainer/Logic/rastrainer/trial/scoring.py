@@ -28,11 +28,8 @@ from rastrainer.protocol import RegistrationMethod
 
 TIME_FLOOR = 0.04
 """Desirability of an infinite time: being slow never costs as much as being wrong."""
-SCORE_VERSION = "3"
+SCORE_VERSION = "1"
 """Changes with any change of a formula or a reference, so that scores stay comparable."""
-FIRST_SCORE_VERSION = "1"
-"""Scored time and the expected TRE at one target: such scores are only read. Version 2
-did not score the common bias of the touches."""
 PASS_MARK = 70.0
 """Score to reach if a study's protocol has no mark from contrasting groups."""
 LONG_PAUSE_S = 30.0
@@ -50,7 +47,7 @@ brush of a second now and then, not the tool's usual travel. Our own convention,
 HALF_CONTACT_PATH_MM, CONTACT_PATH_LIMIT_MM = 80.0, 160.0
 HALF_DEPTH_MM = DEPTH_LIMIT_MM = 1.5
 MAX_MEASURE = 1e6
-"""Of any measure: what is above is a mistake."""
+"""Larger measures are rejected as invalid."""
 
 
 @dataclass(frozen=True)
@@ -82,19 +79,19 @@ class ScoreMeasures:
 
     Attributes:
         completion_time_s: above 0.
-        tre_mm: RMS true TRE over the region; expected TRE at the target in version 1.
-        contact_time_s: of unintended contact; None in version 1, as the next two.
+        tre_mm: RMS true TRE over the region.
+        contact_time_s: of unintended contact.
         contact_path_mm: of the tip during that.
         pressing_depth_mm: RMS over the fiducials of how deep the tool was pressed in.
-        common_bias_mm: length of the bias that all touches share; None in versions 1 and 2, and of
-            a trial without fiducials.
+        common_bias_mm: length of the bias that all touches share; None of a trial without
+            fiducials.
     """
 
     completion_time_s: float
     tre_mm: float
-    contact_time_s: float | None
-    contact_path_mm: float | None
-    pressing_depth_mm: float | None
+    contact_time_s: float
+    contact_path_mm: float
+    pressing_depth_mm: float
     common_bias_mm: float | None
 
     @classmethod
@@ -120,17 +117,12 @@ class ScoreMeasures:
         return cls(completion_time_s, tre_mm, time_s, path_mm, depth_mm, common_bias_mm)
 
     @property
-    def safety(self) -> SafetyMeasures | None:
-        """What safety is scored by; None in version 1."""
-        values = self.contact_time_s, self.contact_path_mm, self.pressing_depth_mm
-        measured = [value for value in values if value is not None]
-        return SafetyMeasures(*measured) if len(measured) == len(values) else None
+    def safety(self) -> SafetyMeasures:
+        """What safety is scored by."""
+        return SafetyMeasures(self.contact_time_s, self.contact_path_mm, self.pressing_depth_mm)
 
-    def check(self, has_bias: bool = True) -> SafetyMeasures:
-        """Return the safety measures; raise `InputError` unless all are numbers of a trial.
-
-        Where `has_bias` is false, a common bias is none of them.
-        """
+    def check(self, has_bias: bool) -> None:
+        """Raise `InputError` unless all are numbers of a trial, with a common bias or without."""
         bias_mm = self.common_bias_mm if has_bias else 0.0
         if not 0 < self.completion_time_s <= MAX_MEASURE:
             raise InputError("The completion time must be a number of seconds above 0.")
@@ -143,8 +135,6 @@ class ScoreMeasures:
         ):
             if value is None or not 0 <= value <= MAX_MEASURE:
                 raise InputError(f"The {what}, 0 or above.")
-        assert self.safety is not None
-        return self.safety
 
 
 SAFETY_METRICS = ("unintended_contact_time_s", "unintended_contact_path_mm", "pressing_depth_mm")
@@ -159,11 +149,10 @@ class TrialScore:
         score: above 0 up to 100; about 51 for a gentle trial at both references.
         time_desirability: from `TIME_FLOOR` (never done) to 1 (at once).
         accuracy_desirability: from 0 (no registration) to 1 (no error, no common bias).
-        safety_desirability: from 0 to 1 (no unintended contact, nothing pressed in); None in
-            version 1.
+        safety_desirability: from 0 to 1 (no unintended contact, nothing pressed in).
         is_accurate: whether the target error is within the limit.
         is_unbiased: whether the common bias is; None where it was not scored.
-        is_safe: whether contact and pressing are; None in version 1.
+        is_safe: whether contact and pressing are.
         measures: what was scored.
         reference: what it was measured against.
         version: of the formula and the references.
@@ -174,10 +163,10 @@ class TrialScore:
     score: float
     time_desirability: float
     accuracy_desirability: float
-    safety_desirability: float | None
+    safety_desirability: float
     is_accurate: bool
     is_unbiased: bool | None
-    is_safe: bool | None
+    is_safe: bool
     measures: ScoreMeasures
     reference: ScoreReference
     version: str = SCORE_VERSION
@@ -186,7 +175,7 @@ class TrialScore:
     @property
     def acceptable(self) -> bool:
         """Whether the trial is within all limits."""
-        return self.is_accurate and self.is_unbiased is not False and self.is_safe is not False
+        return self.is_accurate and self.is_unbiased is not False and self.is_safe
 
     @property
     def parts(self) -> dict[str, float]:
@@ -195,9 +184,7 @@ class TrialScore:
         if self.measures.common_bias_mm is not None:
             trueness = _trueness(self.measures.common_bias_mm)
             parts |= {"accuracy": self.accuracy_desirability / trueness, "common bias": trueness}
-        if self.safety_desirability is not None:
-            parts["safety"] = self.safety_desirability
-        return parts
+        return {**parts, "safety": self.safety_desirability}
 
     def to_json(self) -> dict[str, Any]:
         """Return the score as a JSON object."""
@@ -221,24 +208,16 @@ class TrialScore:
 
     @classmethod
     def from_json(cls, value: Mapping[str, Any]) -> TrialScore:
-        """Return the score that `to_json` described, of this version or an earlier one."""
-        if "measures" not in value:
-            is_accurate, is_safe = value["acceptable"], None
-            measures = ScoreMeasures(
-                value["completion_time_s"], value["expected_tre_mm"], None, None, None, None
-            )
-        else:
-            is_accurate, is_safe = value["is_accurate"], value["is_safe"]
-            measures = ScoreMeasures(**{"common_bias_mm": None, **value["measures"]})
+        """Return the score that `to_json` described."""
         return cls(
             score=value["score"],
             time_desirability=value["time_desirability"],
             accuracy_desirability=value["accuracy_desirability"],
-            safety_desirability=value.get("safety_desirability"),
-            is_accurate=is_accurate,
-            is_unbiased=value.get("is_unbiased"),
-            is_safe=is_safe,
-            measures=measures,
+            safety_desirability=value["safety_desirability"],
+            is_accurate=value["is_accurate"],
+            is_unbiased=value["is_unbiased"],
+            is_safe=value["is_safe"],
+            measures=ScoreMeasures(**value["measures"]),
             reference=ScoreReference(
                 value["reference_time_s"], value["reference_tre_mm"], value["limit_mm"]
             ),
@@ -247,40 +226,31 @@ class TrialScore:
         )
 
 
-def score_version(method: RegistrationMethod) -> str:
-    """Return the version of the score of a trial by a method.
-
-    Methods have references of their own and, but for fiducials, no common bias: their scores are
-    compared with those of the same method alone.
-    """
-    is_by_fiducials = method is RegistrationMethod.FIDUCIALS
-    return SCORE_VERSION if is_by_fiducials else f"{SCORE_VERSION}-{method.value}"
-
-
-def method_of_version(version: str) -> str:
-    """Return by which method a trial with a score of this version was registered."""
-    return version.partition("-")[2] or RegistrationMethod.FIDUCIALS.value
-
-
 def passes(score: float, acceptable: bool, pass_mark: float) -> bool:
     """Return whether a trial reaches the mark and is within all limits."""
     return acceptable and score >= pass_mark
 
 
 def score_trial(
-    measures: ScoreMeasures, reference: ScoreReference, version: str = SCORE_VERSION
+    measures: ScoreMeasures,
+    reference: ScoreReference,
+    method: RegistrationMethod = RegistrationMethod.FIDUCIALS,
 ) -> TrialScore:
     """Return the score of a trial.
+
+    Methods have references of their own and, but for fiducials, no common bias: their scores are
+    compared with those of the same method alone.
 
     Args:
         measures: what is scored of it; those of a trial without fiducials have no common bias.
         reference: of its task in its scenario.
-        version: by `score_version`.
+        method: by which it was registered.
 
     Raises:
         InputError: a measure is no such number.
     """
-    safety_measures = measures.check(has_bias=version == SCORE_VERSION)
+    measures.check(has_bias=method is RegistrationMethod.FIDUCIALS)
+    safety_measures = measures.safety
     bias_mm = measures.common_bias_mm
     time = of_time(measures.completion_time_s, reference.time_s)
     accuracy = _accuracy(measures.tre_mm, bias_mm, reference)
@@ -305,7 +275,6 @@ def score_trial(
         is_safe=is_safe,
         measures=measures,
         reference=reference,
-        version=version,
     )
 
 

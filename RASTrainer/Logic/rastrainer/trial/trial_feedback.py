@@ -10,6 +10,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.number_text import fixed
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import CommonBias
 from rastrainer.statistics.competence import LcCusum, lc_cusum, lc_cusum_limit
@@ -20,9 +21,7 @@ from rastrainer.trial.scoring import (
     CONTACT_LIMIT_S,
     CONTACT_PATH_LIMIT_MM,
     DEPTH_LIMIT_MM,
-    FIRST_SCORE_VERSION,
     LONG_PAUSE_S,
-    SafetyMeasures,
     TrialScore,
     passes,
 )
@@ -46,7 +45,8 @@ class PastTrial:
         score: The latest, above 0 up to 100.
         acceptable: Whether it was within all limits of its score.
         is_aborted: Whether it was aborted after a touch: not passed, without time or score.
-        score_version: Of the score; scores of different versions are not compared.
+        method: By which it was registered, or would have been; trials are compared with those of
+            the same method.
     """
 
     trial_id: str
@@ -56,7 +56,7 @@ class PastTrial:
     score: float
     acceptable: bool
     is_aborted: bool = False
-    score_version: str = ""
+    method: RegistrationMethod = RegistrationMethod.FIDUCIALS
 
     @classmethod
     def failed(cls, record: AbortedTrial) -> PastTrial:
@@ -69,6 +69,7 @@ class PastTrial:
             score=0.0,
             acceptable=False,
             is_aborted=True,
+            method=record.method,
         )
 
 
@@ -77,9 +78,9 @@ class TraineeProgress:
     """A trainee's progress including this trial.
 
     Attributes:
-        scores: Of the trials of this task in this mode, in order; like competence, without scores
-            of other versions.
-        pass_mark: Score that passes; None without one for scores of this version.
+        scores: Of the trials of this task in this mode, in order; like competence, of the trial's
+            method of registration alone.
+        pass_mark: Score that passes; None without one for this method.
         competence: LC-CUSUM over the trainee's trials of all tasks in this mode; aborted ones count
             as not passed. None without a pass mark.
         sentences: The same in words.
@@ -100,7 +101,7 @@ def progress_of(
         past: All scored trials of the trainee without trial runs, and aborted ones that count as
             not passed, in order; later ones are ignored.
         trial_id: Of one of them.
-        pass_mark: Score that passes; None without one for scores of the trial's version.
+        pass_mark: Score that passes; None without one for the trial's method.
 
     Raises:
         InputError: the trial is not among them.
@@ -110,15 +111,16 @@ def progress_of(
         raise InputError("Progress needs a scored trial of the trainee's own history.")
     until = past[: ids.index(trial_id) + 1]
     trial = until[-1]
-    in_mode = [other for other in until if other.mode == trial.mode and _compares(other, trial)]
-    played = [
-        other
-        for other in until
-        if (other.mode, other.task) == (trial.mode, trial.task) and not other.is_aborted
-    ]
-    scores = tuple(other.score for other in played if _compares(other, trial))
+    in_mode = [other for other in until if (other.mode, other.method) == (trial.mode, trial.method)]
+    scores = tuple(
+        other.score for other in in_mode if other.task == trial.task and not other.is_aborted
+    )
     is_best = len(scores) > 1 and scores[-1] > max(scores[:-1])
-    about_scores = _about_scores(scores, is_best, len(scores) < len(played))
+    has_others = any(
+        (other.mode, other.task) == (trial.mode, trial.task) and not other.is_aborted
+        for other in until[:-1]
+    )
+    about_scores = _about_scores(scores, is_best, has_others)
     if pass_mark is None:
         about_mark = say("no mark") if trial.acceptable else say("unacceptable")
         return TraineeProgress(scores, None, None, (about_scores, about_mark))
@@ -138,14 +140,9 @@ def competence_of(failures: Sequence[bool]) -> LcCusum:
     return lc_cusum(failures, ADEQUATE_FAILURES, INADEQUATE_FAILURES, limit)
 
 
-def _compares(other: PastTrial, trial: PastTrial) -> bool:
-    """Return whether two scores are comparable; an aborted trial has none."""
-    return other.is_aborted or other.score_version == trial.score_version
-
-
 def _about_scores(scores: Sequence[float], is_best: bool, has_others: bool) -> Sentence:
     if len(scores) == 1:
-        return say("first of this score" if has_others else "first trial")
+        return say("first by this method" if has_others else "first trial")
     earlier = scores[:-1][-3:]
     change = scores[-1] - float(np.mean(earlier))
     key = "more points" if change >= 0 else "less points"
@@ -218,10 +215,7 @@ class TrialFeedback:
                 f"Time: {seconds} s, worth {fixed(100 * score.time_desirability, 0)} of 100.",
                 _accuracy_sentence(score),
             ]
-            safety = score.measures.safety
-            if safety is not None and score.safety_desirability is not None:
-                is_safe = score.is_safe is not False
-                sentences.append(_safety_sentence(safety, score.safety_desirability, is_safe))
+            sentences.append(_safety_sentence(score))
         if self.paused_s > LONG_PAUSE_S:
             sentences.append(
                 f"Paused for {fixed(self.paused_s, 0)} s in all, which the score leaves out: "
@@ -286,8 +280,6 @@ def trial_feedback(
 
 
 def _accuracy_sentence(score: TrialScore) -> str:
-    is_first = score.version == FIRST_SCORE_VERSION
-    what = "expected at the target" if is_first else "true error in the brain"
     bias_mm, limit_mm = score.measures.common_bias_mm, score.reference.limit_mm
     bias = "" if bias_mm is None else f" and {fixed(bias_mm, 2)} mm common to all touches"
     beyond = []
@@ -297,15 +289,16 @@ def _accuracy_sentence(score: TrialScore) -> str:
         beyond.append(f"more than {COMMON_BIAS_LIMIT_MM:g} mm common to all touches")
     end = f"; {' and '.join(beyond)} is not acceptable." if beyond else "."
     return (
-        f"Accuracy: {fixed(score.measures.tre_mm, 2)} mm {what}{bias}, worth "
+        f"Accuracy: {fixed(score.measures.tre_mm, 2)} mm true error in the brain{bias}, worth "
         f"{fixed(100 * score.accuracy_desirability, 0)} of 100{end}"
     )
 
 
-def _safety_sentence(measures: SafetyMeasures, desirability: float, is_safe: bool) -> str:
+def _safety_sentence(score: TrialScore) -> str:
+    measures = score.measures
     beyond = (
         "."
-        if is_safe
+        if score.is_safe
         else f"; more than {CONTACT_LIMIT_S:g} s, {CONTACT_PATH_LIMIT_MM:g} mm or "
         f"{DEPTH_LIMIT_MM:g} mm deep is not acceptable."
     )
@@ -317,5 +310,5 @@ def _safety_sentence(measures: SafetyMeasures, desirability: float, is_safe: boo
         )
     return (
         f"Safety: {contact}pressed {fixed(measures.pressing_depth_mm, 1)} mm deep, worth "
-        f"{fixed(100 * desirability, 0)} of 100{beyond}"
+        f"{fixed(100 * score.safety_desirability, 0)} of 100{beyond}"
     )

@@ -54,8 +54,8 @@ ENGLISH: Mapping[str, str] = {
     "pace": "You took {time:.0f} s where {usual:.0f} s is usual: travel faster between the points "
     "and slow down only near the skin.",
     "first trial": "This is your first trial of this task in this mode.",
-    "first of this score": "Your earlier trials of this task have scores of an earlier version, "
-    "which cannot be compared with this one.",
+    "first by this method": "Your earlier trials of this task were registered by another method, "
+    "and their scores cannot be compared with this one.",
     "more points": "Your score is {points:.0f} above the mean of your last {trials} trials of this "
     "task.{best}",
     "less points": "Your score is {points:.0f} below the mean of your last {trials} trials of this "
@@ -69,8 +69,8 @@ ENGLISH: Mapping[str, str] = {
     "the contact with the head is beyond what is acceptable.",
     "passed": "Passed: the mark is {mark:.0f}.",
     "not passed": "Not passed yet: {points:.1f} short of the mark of {mark:.0f}.",
-    "no mark": "Neither passed nor failed: the pass mark of this study is for another version of "
-    "the score.",
+    "no mark": "Neither passed nor failed: the pass mark of this study is for trials registered "
+    "by fiducials.",
     "competent": "Your trials have shown competence since number {number}: of those who still fail "
     "in {failing:.0f} % of their trials, {risk:.0f} % get this far by chance within {trials} "
     "trials (LC-CUSUM).",

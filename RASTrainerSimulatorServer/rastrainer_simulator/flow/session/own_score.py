@@ -221,7 +221,7 @@ def _with_progress(analysis: TrialAnalysis, earlier: Sequence[PastTrial]) -> Tri
         record.completion_time_s,
         score.score,
         score.acceptable,
-        score_version=score.version,
+        method=record.method,
     )
     return with_progress_among(analysis, (*earlier, this), PASS_MARK)
 

@@ -24,10 +24,9 @@ from rastrainer.journal.journal_file import (
     file_stamp,
     iso,
 )
-from rastrainer.protocol import TRIAL_RUN, AbortReason, Phase
+from rastrainer.protocol import TRIAL_RUN, AbortReason, Phase, RegistrationMethod
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
-from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer.trial.trial_feedback import PastTrial
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.record.trial_context import TutorialOutcome
@@ -175,7 +174,7 @@ class ScoreHistory:
     def best(self, trainee: str, task: str) -> tuple[Path, ...]:
         """Return the journals of a trainee's acceptable trials of a task, the best score first.
 
-        Scores of other versions are left out.
+        Only fiducials are compared.
         """
         self.of(trainee)
         found = []
@@ -183,16 +182,17 @@ class ScoreHistory:
             trial = self._past[path]
             if trial is None or trial.task != task or not trial.acceptable:
                 continue
-            if trial.score_version == SCORE_VERSION:
+            if trial.method is RegistrationMethod.FIDUCIALS:
                 found.append((trial.score, path))
         return tuple(path for _score, path in sorted(found, key=lambda each: -each[0]))
 
     def trend(self, trainee: str, mode: str) -> tuple[float, ...]:
-        """Return the newest scores of a trainee in a mode, all of the present version."""
+        """Return the newest scores of a trainee in a mode, by fiducials."""
         scores = [
             trial.score
             for trial in self.of(trainee)
-            if trial.mode == mode and trial.score_version == SCORE_VERSION
+            if (trial.mode, trial.method) == (mode, RegistrationMethod.FIDUCIALS)
+            and not trial.is_aborted
         ]
         return tuple(scores[-MAX_SHOWN:])
 
@@ -209,7 +209,7 @@ def _past_trial(journal: Path) -> PastTrial | None:
         record = TrialRecord.from_json(last["registered"]["record"])
         scored = last["scored"]["arguments"]
         details = scored["details"]
-        if record.task == TRIAL_RUN or "scoreVersion" not in details:
+        if record.task == TRIAL_RUN:
             return None
         return PastTrial(
             record.trial_id,
@@ -218,9 +218,9 @@ def _past_trial(journal: Path) -> PastTrial | None:
             record.completion_time_s,
             float(scored["score"]),
             details["isAccurate"] is True
-            and details.get("isUnbiased") is not False
-            and details["isSafe"] is not False,
-            score_version=str(details["scoreVersion"]),
+            and details["isUnbiased"] is not False
+            and details["isSafe"] is True,
+            method=record.method,
         )
     except (OSError, DamagedLineError, InputError, KeyError, TypeError, ValueError):
         return None

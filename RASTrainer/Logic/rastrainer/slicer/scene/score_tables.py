@@ -125,7 +125,7 @@ def _procedureRows(procedure: StoredProcedure) -> list[Row]:
 
 
 def _parts(score: TrialScore) -> list[Row]:
-    """Return a score and the parts that it has in its version."""
+    """Return a score and its parts."""
     version = _("Version {v}") if score.acceptable else _("not acceptable; version {v}")
     rows = [
         Row(_("Score"), score.score, "/ 100", version.format(v=score.version)),
@@ -137,8 +137,6 @@ def _parts(score: TrialScore) -> list[Row]:
             _accuracyNote(score),
         ),
     ]
-    if score.safety_desirability is None:
-        return rows
     measures, limit_mm = score.measures, score.reference.limit_mm
     error = "; ".join([_("RMS over targets and brain"), _limit(limit_mm, "mm")])
     safety = _("within the limits") if score.is_safe else _("beyond a limit")
@@ -164,7 +162,7 @@ def _accuracyNote(score: TrialScore) -> str:
 
 
 def _bias(bias_mm: float | None) -> list[Row]:
-    """Return the row of the common bias, which scores before version 3 lack."""
+    """Return the row of the common bias, which trials without fiducials lack."""
     if bias_mm is None:
         return []
     limit = _limit(COMMON_BIAS_LIMIT_MM, "mm")
@@ -206,7 +204,7 @@ def standings(
 ) -> list[GroupComparison]:
     """Compare a trial with the trainee's own others, with everyone else's, and with a cohort.
 
-    Only trials of the same task and mode are compared, and only scores of the same version.
+    Only trials of the same task and mode are compared, and only scores of the same method.
 
     Args:
         study: of the trial.
@@ -227,7 +225,7 @@ def standings(
             value = getattr(this, name)
             peers = members
             if name == "score":
-                peers = [o for o in members if o.score_version == this.score_version]
+                peers = [o for o in members if o.method == this.method]
             values = [v for v in (getattr(o, name) for o in peers) if v is not None]
             if value is not None and values:
                 found.append(_standing(title, unit, value, group, values, better))

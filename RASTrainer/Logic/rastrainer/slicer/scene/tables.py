@@ -133,11 +133,7 @@ def showHistory(scene: Any, pseudonym: str, trials: Sequence[StoredTrial]) -> An
             Column("expected TRE (mm)", [fit.expected_tre_mm if fit else None for fit in rigid]),
             Column("true TRE (mm)", [trial.true_tre_mm for trial in trials]),
             Column(SCORE_COLUMN, [t.score.score if t.score else None for t in trials]),
-            Column(
-                "score version",
-                [trial.score.version if trial.score else "" for trial in trials],
-                isText=True,
-            ),
+            Column("method", [record.method.value for record in records], isText=True),
         ],
     )
 
@@ -165,11 +161,11 @@ def showLearningCurve(scene: Any, pseudonym: str, trials: Sequence[StoredTrial])
 
 
 def _curveTitle(pseudonym: str, trials: Sequence[StoredTrial]) -> str:
-    versions = sorted({trial.score.version for trial in trials if trial.score})
+    methods = sorted({trial.record.method.value for trial in trials if trial.score})
     title = f"Learning curve of {pseudonym}"
-    if len(versions) < 2:
+    if len(methods) < 2:
         return title
-    return f"{title} (scores of versions {' and '.join(versions)} cannot be compared)"
+    return f"{title} (scores by {' and '.join(methods)} cannot be compared)"
 
 
 def plotSeries(

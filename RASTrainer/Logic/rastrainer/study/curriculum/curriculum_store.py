@@ -11,19 +11,24 @@ from dataclasses import dataclass
 from rastrainer.errors import InputError
 from rastrainer.protocol import PROCEDURE_PHASES, TRIAL_RUN
 from rastrainer.study.curriculum.curriculum import Curriculum, curriculum_from_json
-from rastrainer.study.curriculum.standing import CountedTrial, CurriculumStanding, standing_in
+from rastrainer.study.curriculum.standing import (
+    CountedTrial,
+    CurriculumStanding,
+    PassMarkOf,
+    standing_in,
+)
 from rastrainer.study.database import study_trainees
 from rastrainer.study.database.aborted_trials import stored_of
 from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import TRAINEE_ID
-from rastrainer.study.database.study_trials import decoded, json_text
+from rastrainer.study.database.study_trials import METHOD, decoded, json_text
 from rastrainer.study.database.values import StoredProcedure, moment, utc_now
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol, pass_mark_of
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.procedure_outcome import ProcedureScore
-from rastrainer.trial.scoring import TrialScore, method_of_version
+from rastrainer.trial.scoring import TrialScore
 
 _STAMPS = """
     SELECT pseudonym,
@@ -84,12 +89,12 @@ class CurriculumStore:
 
     def _check_marks(self, curriculum: Curriculum) -> None:
         protocol = StudyProgress(self._study).protocol()
-        untried = standing_in(curriculum, (), lambda version: pass_mark_of(protocol, version))
+        untried = standing_in(curriculum, (), _marks(protocol))
         without = [each.assignment.name for each in untried.standings if each.mark is None]
         if without:
             raise InputError(
                 f"The assignment {without[0]} could never be reached: this study's pass mark "
-                "applies to another version of the score. Give the assignment its own mark."
+                "is for trials registered by fiducials. Give the assignment its own mark."
             )
 
     def choices(self) -> tuple[CurriculumChoice, ...]:
@@ -139,7 +144,11 @@ class CurriculumStore:
             if curriculum is None:
                 return None
             trials = counted_trials(connection, pseudonym)
-        return standing_in(curriculum, trials, lambda version: pass_mark_of(protocol, version))
+        return standing_in(curriculum, trials, _marks(protocol))
+
+
+def _marks(protocol: StudyProtocol | None) -> PassMarkOf:
+    return lambda each: pass_mark_of(protocol, each.method, bool(each.procedure))
 
 
 def _read(text: str | None) -> Curriculum | None:
@@ -154,7 +163,7 @@ def counted_trials(connection: Connection, pseudonym: str) -> tuple[CountedTrial
     """
     study_trainees.find(connection, pseudonym)
     rows = connection.execute(
-        "SELECT started_utc, trials.stored_utc, task, mode, scenario, "
+        f"SELECT started_utc, trials.stored_utc, task, mode, scenario, {METHOD}, "
         "(SELECT score_json FROM scores WHERE scores.trial_id = trials.trial_id "
         "ORDER BY scores.id DESC LIMIT 1), "
         "(SELECT outcome_json FROM procedure_outcomes "
@@ -164,8 +173,8 @@ def counted_trials(connection: Connection, pseudonym: str) -> tuple[CountedTrial
         (pseudonym, TRIAL_RUN),
     )
     timed = [
-        (moment(started), stored, _scored(started, task, mode, scenario, score, outcome))
-        for started, stored, task, mode, scenario, score, outcome in rows
+        (moment(started), stored, _scored(started, task, mode, scenario, method, score, outcome))
+        for started, stored, task, mode, scenario, method, score, outcome in rows
         if score is not None
     ]
     timed += [
@@ -177,10 +186,15 @@ def counted_trials(connection: Connection, pseudonym: str) -> tuple[CountedTrial
 
 
 def _scored(
-    started: str, task: str, mode: str, scenario: str, score_json: str, outcome_json: str | None
+    started: str,
+    task: str,
+    mode: str,
+    scenario: str,
+    method: str,
+    score_json: str,
+    outcome_json: str | None,
 ) -> CountedTrial:
     score = decoded(score_json, TrialScore.from_json)
-    method = method_of_version(score.version)
     found: TrialScore | ProcedureScore = score
     parts: Mapping[str, float] = score.parts
     procedure = ""
@@ -195,7 +209,6 @@ def _scored(
         procedure,
         found.score,
         found.acceptable,
-        found.version,
         parts,
         started_utc=started,
     )

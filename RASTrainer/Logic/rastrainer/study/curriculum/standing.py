@@ -1,8 +1,7 @@
 """A trainee's standing in a curriculum, the assignment that should come next, and both in words.
 
-Everything follows from the curriculum and the trainee's trials, so that nothing more is stored.
-Scores of different versions are not compared: a goal is reached by trials of one version, and stays
-reached when a newer version follows. An aborted trial with a touch fails in each.
+Everything follows from the curriculum and the trainee's trials, so that nothing more is stored. An
+aborted trial with a touch fails.
 """
 
 from __future__ import annotations
@@ -17,12 +16,11 @@ from rastrainer.protocol import AssignmentState, GoalKind, RegistrationMethod
 from rastrainer.study.curriculum.curriculum import Assignment, Curriculum
 from rastrainer.study.database.values import day_of, moment
 from rastrainer.study.protocol.steps import trial_title
-from rastrainer.trial.procedure_outcome import PROCEDURE_SCORE_VERSION
-from rastrainer.trial.scoring import passes, score_version
+from rastrainer.trial.scoring import passes
 from rastrainer.trial.trial_feedback import competence_of
 
-PassMarkOf = Callable[[str], "float | None"]
-"""From a version of the score to the mark that passes; None where there is none."""
+PassMarkOf = Callable[[Assignment], "float | None"]
+"""From an assignment to the study's mark that passes its trials; None where there is none."""
 RECENT = 3
 """How many of its latest trials an assignment is compared by."""
 WHOLE_WAY = 100
@@ -39,7 +37,6 @@ class CountedTrial:
             not say which.
         score: Of the procedure where there is one, else of the touches; 0 of an aborted trial.
         acceptable: Whether it was within all limits of its score.
-        version: Of the score; "" of an aborted trial.
         parts: Desirability of each part of the score, 0 to 1.
         is_aborted: Whether it was aborted after a touch.
         is_in_procedure: Whether it was aborted in a procedure.
@@ -53,7 +50,6 @@ class CountedTrial:
     procedure: str = ""
     score: float = 0.0
     acceptable: bool = False
-    version: str = ""
     parts: Mapping[str, float] = field(default_factory=dict, hash=False)
     is_aborted: bool = False
     is_in_procedure: bool = False
@@ -79,9 +75,9 @@ class AssignmentStanding:
         state: Locked, open or reached.
         done: Trials in a row that pass now, or percent of the way to competence.
         needed: How many there have to be.
-        mark: Score that passes a trial of the present version; None without one.
-        played: Trials of the present version, aborted ones included.
-        mean: Of the latest scores of the present version; None before the first.
+        mark: Score that passes a trial; None without one.
+        played: Trials, aborted ones included.
+        mean: Of the latest scores; None before the first.
         missing: Names of the assignments that it waits for.
         weakest: Part of the score that cost most in the latest trials; "" before the first.
         reached_utc: Start of the trial by which it was reached, ISO 8601; of a gate's where that
@@ -120,7 +116,7 @@ class CurriculumStanding:
     Attributes:
         curriculum: That is meant.
         standings: In its order.
-        played: Trials of the present versions, each once however many assignments it counts for.
+        played: Trials, each once however many assignments it counts for.
     """
 
     curriculum: Curriculum
@@ -171,16 +167,8 @@ def standing_in(
         if standing.state is AssignmentState.REACHED:
             reached[assignment.name] = standing.reached_utc
         standings.append(standing)
-    played = sum(
-        any(_is_comparable(trial, each) for each in curriculum.assignments) for trial in trials
-    )
+    played = sum(any(map(trial.counts_for, curriculum.assignments)) for trial in trials)
     return CurriculumStanding(curriculum, tuple(standings), played)
-
-
-def _is_comparable(trial: CountedTrial, assignment: Assignment) -> bool:
-    """Return whether a trial counts for an assignment with a score of the present version."""
-    is_present = trial.is_aborted or trial.version == _current_version(assignment)
-    return is_present and trial.counts_for(assignment)
 
 
 def _standing(
@@ -190,54 +178,32 @@ def _standing(
     pass_mark_of: PassMarkOf,
 ) -> AssignmentStanding:
     """Return where a trainee stands; `reached` has when those before it were reached, by name."""
-    present = _current_version(assignment)
-
-    def of_version(version: str) -> list[CountedTrial]:
-        return [trial for trial in own if trial.is_aborted or trial.version == version]
-
-    def progress(version: str) -> tuple[CountedTrial | None, int]:
-        mark = mark_of(version)
-        return (None, 0) if mark is None else _progress(assignment, of_version(version), mark)
-
-    def mark_of(version: str) -> float | None:
-        return pass_mark_of(version) if assignment.mark is None else assignment.mark
-
-    earlier = {trial.version for trial in own} - {present, ""}
-    reaching, done = progress(present)
-    reachings = [reaching, *(progress(version)[0] for version in earlier)]
-    times = [trial.started_utc for trial in reachings if trial is not None]
-    is_reached = bool(times)
+    mark = pass_mark_of(assignment) if assignment.mark is None else assignment.mark
+    reaching, done = (None, 0) if mark is None else _progress(assignment, own, mark)
     missing = tuple(name for name in assignment.after if name not in reached)
-    comparable = of_version(present)
-    recent = comparable[-RECENT:]
     needed = assignment.trials if assignment.goal is GoalKind.SCORE else WHOLE_WAY
-    unlocked = AssignmentState.REACHED if is_reached else AssignmentState.OPEN
+    unlocked = AssignmentState.OPEN if reaching is None else AssignmentState.REACHED
+    recent = own[-RECENT:]
     return AssignmentStanding(
         assignment,
         AssignmentState.LOCKED if missing else unlocked,
-        needed if is_reached else done,
+        done if reaching is None else needed,
         needed,
-        mark_of(present),
-        len(comparable),
+        mark,
+        len(own),
         fmean(trial.score for trial in recent) if recent else None,
         missing,
-        _weakest([trial for trial in comparable if not trial.is_aborted][-RECENT:]),
-        _reached_utc(times, [reached[name] for name in assignment.after])
-        if is_reached and not missing
-        else "",
+        _weakest([trial for trial in own if not trial.is_aborted][-RECENT:]),
+        ""
+        if reaching is None or missing
+        else _reached_utc(reaching.started_utc, [reached[name] for name in assignment.after]),
     )
-
-
-def _current_version(assignment: Assignment) -> str:
-    if assignment.procedure:
-        return PROCEDURE_SCORE_VERSION
-    return score_version(RegistrationMethod(assignment.method))
 
 
 def _progress(
     assignment: Assignment, trials: Sequence[CountedTrial], mark: float
 ) -> tuple[CountedTrial | None, int]:
-    """Return which of the trials of one version reaches the goal, and how far they are now."""
+    """Return which of the trials reaches the goal, and how far they are now."""
     passed = [passes(trial.score, trial.acceptable, mark) for trial in trials]
     if assignment.goal is GoalKind.COMPETENT:
         chart = competence_of([not each for each in passed])
@@ -253,10 +219,9 @@ def _progress(
     return reaching, min(row, assignment.trials)
 
 
-def _reached_utc(times: Sequence[str], gates: Sequence[str]) -> str:
-    """Return the first of `times`, or of the gates the last where that was later; "" if unknown."""
-    first = min(filter(None, times), key=moment, default="")
-    return max(filter(None, (first, *gates)), key=moment, default="")
+def _reached_utc(time: str, gates: Sequence[str]) -> str:
+    """Return a time, or of the gates the last where that was later; "" if unknown."""
+    return max(filter(None, (time, *gates)), key=moment, default="")
 
 
 def _weakest(trials: Sequence[CountedTrial]) -> str:

@@ -306,7 +306,7 @@ class StudyDatabase(ABC):
 
     @abstractmethod
     def _prepare(self) -> None:
-        """Make, check or migrate the tables."""
+        """Make or check the tables."""
 
     @abstractmethod
     def _sentences(self) -> AbstractContextManager[None]:

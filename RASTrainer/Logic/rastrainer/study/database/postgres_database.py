@@ -37,7 +37,9 @@ from rastrainer.study.database.postgres_connecting import (
 )
 from rastrainer.study.database.schema import (
     APPLICATION_ID,
-    MIGRATIONS,
+    SCHEMA_VERSION,
+    STATEMENTS,
+    check_schema_version,
     has_numbered_rows,
     study_tables,
 )
@@ -72,10 +74,6 @@ _IN_POSTGRES = (
     # Sorted by their bytes, as in SQLite.
     (r"\bTEXT\b", 'TEXT COLLATE "C"'),
     (r"\)\s*WITHOUT ROWID", ")"),
-    (
-        r"FROM sqlite_sequence",
-        "FROM (SELECT 'trainees' AS name, max(id) AS seq FROM trainees) AS sqlite_sequence",
-    ),
 )
 
 _JSON_EXTRACT = re.compile(r"json_extract\((\w+), '\$\.([\w.]+)'\)")
@@ -92,12 +90,12 @@ def check_server(connection: Any, address: PostgresAddress) -> None:
         )
 
 
-def stored_version(connection: Any, address: PostgresAddress) -> int:
-    """Return how many steps the schema has taken; 0 in an empty database.
+def holds_study(connection: Any, address: PostgresAddress) -> bool:
+    """Return whether a database has a study; an empty one has none.
 
     Raises:
-        InputError: the database is another program's, of a newer RASTrainer, or runs commands of
-            its own.
+        InputError: the database is another program's, of another version of the schema, or runs
+            commands of its own.
     """
     if _first(connection, _COMMANDS):
         raise InputError(
@@ -108,34 +106,27 @@ def stored_version(connection: Any, address: PostgresAddress) -> int:
     if not _first(connection, is_study):
         if _first(connection, _TABLES):
             raise InputError(f"{address} is the database of another program.")
-        return 0
+        return False
     rows = connection.execute(
         "SELECT application_id, user_version FROM rastrainer_study"
     ).fetchall()
     if len(rows) != 1 or rows[0][0] != APPLICATION_ID:
         raise InputError(f"{address} is the database of another program.")
-    version = rows[0][1]
-    if version > len(MIGRATIONS):
-        raise InputError(
-            f"The study {address} was made by a newer RASTrainer (format {version}, this one knows "
-            f"{len(MIGRATIONS)}); update it."
-        )
-    return version
+    check_schema_version(rows[0][1], address)
+    return True
 
 
-def migrate(connection: Connection, address: PostgresAddress) -> None:
-    """Make the tables, or those that are missing, in the caller's transaction."""
-    # Another process may be doing the same.
+def create_tables(connection: Connection, address: PostgresAddress) -> None:
+    """Make the tables in the caller's transaction, unless another process has."""
     connection.execute("SELECT pg_advisory_xact_lock(?)", (APPLICATION_ID,))
-    version = stored_version(connection, address)
-    if version == 0:
-        connection.execute(_HEADER)
-        connection.execute("INSERT INTO rastrainer_study VALUES (?, 0, 0)", (APPLICATION_ID,))
+    if holds_study(connection, address):
+        return
+    connection.execute(_HEADER)
+    header = (APPLICATION_ID, SCHEMA_VERSION)
+    connection.execute("INSERT INTO rastrainer_study VALUES (?, ?, 0)", header)
     connection.execute(LOCKED)
-    for step in MIGRATIONS[version:]:
-        for statement in step:
-            connection.execute(in_postgres(statement))
-    connection.execute("UPDATE rastrainer_study SET user_version = ?", (len(MIGRATIONS),))
+    for statement in STATEMENTS:
+        connection.execute(in_postgres(statement))
 
 
 def _first(connection: Any, query: str) -> Any:
@@ -198,7 +189,7 @@ class PostgresDatabase(StudyDatabase):
         may_change: bool = True,
         may_create: bool = True,
     ) -> None:
-        """Connect, create the tables in an empty database, and migrate older ones.
+        """Connect, and create the tables in an empty database.
 
         Args:
             address: of the database, which exists.
@@ -207,8 +198,8 @@ class PostgresDatabase(StudyDatabase):
             may_create: whether an empty database becomes a study.
 
         Raises:
-            InputError: the server refuses, the database is another program's, of a newer
-                RASTrainer, or holds no study.
+            InputError: the server refuses, the database is another program's, of another version
+                of the schema, or holds no study.
             StudyUnreachableError: the server cannot be reached.
         """
         self._address = address
@@ -301,18 +292,12 @@ class PostgresDatabase(StudyDatabase):
     def _prepare(self) -> None:
         check_server(self._connection, self._address)
         with self.reading():
-            version = stored_version(self._connection, self._address)
-        if version == len(MIGRATIONS):
-            return
-        if version == 0 and not (self._may_change and self._may_create):
+            if holds_study(self._connection, self._address):
+                return
+        if not (self._may_change and self._may_create):
             raise InputError(f"The database {self._address} holds no study.")
-        if not self._may_change:
-            raise InputError(
-                f"The study {self._address} was made by an earlier RASTrainer and is opened "
-                "read-only here; open it once in Slicer, which migrates it."
-            )
         with self._transaction(self._begin_waiting()) as statements:
-            migrate(statements, self._address)
+            create_tables(statements, self._address)
 
     @contextmanager
     def _sentences(self) -> Iterator[None]:

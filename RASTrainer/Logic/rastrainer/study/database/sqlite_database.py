@@ -18,7 +18,12 @@ from urllib.parse import quote
 from rastrainer.errors import InputError
 from rastrainer.files.writing import keep_others_out, open_private
 from rastrainer.study.database.database import LockWait, StudyBusyError, StudyDatabase
-from rastrainer.study.database.schema import APPLICATION_ID, MIGRATIONS
+from rastrainer.study.database.schema import (
+    APPLICATION_ID,
+    SCHEMA_VERSION,
+    STATEMENTS,
+    check_schema_version,
+)
 
 _COMMANDS = "SELECT count(*) FROM sqlite_master WHERE type NOT IN ('table', 'index')"
 
@@ -39,15 +44,15 @@ class SqliteDatabase(StudyDatabase):
     )
 
     def __init__(self, path: str | os.PathLike[str], lock_wait: LockWait | None = None) -> None:
-        """Open or create the file, and migrate its tables.
+        """Open the file, or create it with its tables.
 
         Args:
             path: of the file.
             lock_wait: for locks of others; half a minute by default.
 
         Raises:
-            InputError: no such folder, not a database, another program's, damaged, or of a newer
-                RASTrainer.
+            InputError: no such folder, not a database, another program's, damaged, or of another
+                version of the schema.
             StudyBusyError: another program has locked it.
         """
         self.path = Path(path)
@@ -119,9 +124,9 @@ class SqliteDatabase(StudyDatabase):
         # In one transaction: another process may be creating the tables.
         with self.reading():
             self._check_origin()
-            is_old = self._number("user_version") < len(MIGRATIONS)
-        if is_old:
-            self._migrate()
+            is_new = self._number("user_version") == 0
+        if is_new:
+            self._create_tables()
         self._check_whole()
 
     def _set_pragmas(self) -> None:
@@ -144,20 +149,16 @@ class SqliteDatabase(StudyDatabase):
             )
         if self._number("application_id") != (APPLICATION_ID if tables else 0):
             raise InputError(f"{self.path} is the database of another program.")
-        if self._number("user_version") > len(MIGRATIONS):
-            raise InputError(
-                f"The study {self.path} was made by a newer RASTrainer (format "
-                f"{self._number('user_version')}, this one knows {len(MIGRATIONS)}); update it."
-            )
+        if tables:
+            check_schema_version(self._number("user_version"), self.path)
 
-    def _migrate(self) -> None:
+    def _create_tables(self) -> None:
         with self.writing() as connection:
-            # Another process may have migrated meanwhile.
-            for version in range(self._number("user_version"), len(MIGRATIONS)):
-                for statement in MIGRATIONS[version]:
+            if self._number("user_version") == 0:  # Another process may have been faster.
+                for statement in STATEMENTS:
                     connection.execute(statement)
-                connection.execute(f"PRAGMA user_version = {version + 1}")
-            connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+                connection.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
+                connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
 
     def _number(self, pragma: str) -> int:
         return self._connection.execute(f"PRAGMA {pragma}").fetchone()[0]
@@ -195,8 +196,8 @@ class SqliteDatabase(StudyDatabase):
 class ReadOnlySqliteDatabase(SqliteDatabase):
     """A connection that cannot change the file.
 
-    A study of an earlier format is migrated in memory. An incomplete transaction left by a crash is
-    rolled back first, as by any program that opens the file; stored data remain.
+    An incomplete transaction left by a crash is rolled back first, as by any program that opens the
+    file; stored data remain.
     """
 
     _pragmas = ("foreign_keys = ON", "trusted_schema = OFF")
@@ -217,14 +218,8 @@ class ReadOnlySqliteDatabase(SqliteDatabase):
         super()._prepare()
         self._connection.execute("PRAGMA query_only = ON")
 
-    def _migrate(self) -> None:
-        file, self._connection = self._connection, sqlite3.connect(":memory:", isolation_level=None)
-        try:
-            file.backup(self._connection)
-        finally:
-            file.close()
-        self._set_pragmas()
-        super()._migrate()
+    def _create_tables(self) -> None:
+        raise InputError(f"{self.path} holds no study.")
 
     def _roll_back(self) -> None:
         connection = sqlite3.connect(self.path, timeout=self._lock_wait.timeout_s)

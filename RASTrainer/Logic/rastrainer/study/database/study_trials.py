@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 from rastrainer import json_checks, protocol
 from rastrainer.errors import InputError
 from rastrainer.json_checks import decode_finite_json
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
@@ -37,6 +38,9 @@ MOTION_LIMIT = 1e9
 _LATEST_SCORE = """
     SELECT {} FROM scores WHERE scores.trial_id = trials.trial_id ORDER BY scores.id DESC LIMIT 1
 """
+
+METHOD = "coalesce(json_extract(record_json, '$.method'), 'fiducials')"
+"""By what a trial was registered: its record names only other methods than fiducials."""
 
 _STAMPED_TRIALS = f"""
     SELECT trial_id, rowid, stored_utc,
@@ -229,9 +233,9 @@ def past_trials(connection: Connection, pseudonym: str) -> tuple[PastTrial, ...]
     """Return a trainee's scored trials without trial runs, in order of starting."""
     study_trainees.find(connection, pseudonym)
     rows = connection.execute(
-        "SELECT trial_id, task, mode, completion_time_s, latest FROM ("
+        "SELECT trial_id, task, mode, completion_time_s, method, latest FROM ("
         "SELECT trial_id, task, mode, completion_time_s, started_utc, trials.rowid AS stored, "
-        f"({_LATEST_SCORE.format('score_json')}) AS latest "
+        f"{METHOD} AS method, ({_LATEST_SCORE.format('score_json')}) AS latest "
         f"FROM trials WHERE trainee_id = ({TRAINEE_ID}) AND task != ?"
         ") AS played WHERE latest IS NOT NULL ORDER BY started_utc, stored",
         (pseudonym, protocol.TRIAL_RUN),
@@ -240,10 +244,18 @@ def past_trials(connection: Connection, pseudonym: str) -> tuple[PastTrial, ...]
     return tuple(_past_trial(*row) for row in rows)
 
 
-def _past_trial(trial_id: str, task: str, mode: str, seconds: float, latest: str) -> PastTrial:
+def _past_trial(
+    trial_id: str, task: str, mode: str, seconds: float, method: str, latest: str
+) -> PastTrial:
     score = decoded(latest, TrialScore.from_json)
     return PastTrial(
-        trial_id, task, mode, seconds, score.score, score.acceptable, score_version=score.version
+        trial_id,
+        task,
+        mode,
+        seconds,
+        score.score,
+        score.acceptable,
+        method=RegistrationMethod(method),
     )
 
 
@@ -280,7 +292,7 @@ def outcomes(connection: Connection, task: str, mode: str) -> tuple[TrialOutcome
     rows = connection.execute(
         f"""
         SELECT trials.trial_id, pseudonym, completion_time_s,
-            ({_LATEST_SCORE.format("score")}), ({_LATEST_SCORE.format("version")}), true_tre_mm
+            ({_LATEST_SCORE.format("score")}), {METHOD}, true_tre_mm
         FROM trials
         JOIN trainees ON trainees.id = trainee_id
         LEFT JOIN truths ON truths.trial_id = trials.trial_id

@@ -63,8 +63,7 @@ class StoredRegistration:
         target_mm: Target in RAS; None with the next two if the fit gives no target error.
         expected_tre_mm: Expected error there.
         tre_interval_mm: Its 95 % interval.
-        common_bias_sd_mm: Standard deviation on each axis of the common offset included in both; 0
-            in older records.
+        common_bias_sd_mm: Standard deviation on each axis of the common offset included in both.
     """
 
     kind: str
@@ -116,7 +115,7 @@ class TrialOutcome:
         trainee: Pseudonym.
         completion_time_s: As recorded.
         score: The latest, or None.
-        score_version: Of that score, or None.
+        method: By what it was registered.
         true_tre_mm: None until revealed.
     """
 
@@ -124,7 +123,7 @@ class TrialOutcome:
     trainee: str
     completion_time_s: float
     score: float | None
-    score_version: str | None
+    method: str
     true_tre_mm: float | None
 
 

@@ -13,9 +13,17 @@ from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields, fields_of, read_fields
 from rastrainer.head.trial_head import read_skin
 from rastrainer.json_checks import is_identifier
-from rastrainer.protocol import PLAYED_METHODS, TRIAL_RUN, GhostRule, Guidance, Mode, TutorialRule
+from rastrainer.protocol import (
+    PLAYED_METHODS,
+    TRIAL_RUN,
+    GhostRule,
+    Guidance,
+    Mode,
+    RegistrationMethod,
+    TutorialRule,
+)
 from rastrainer.study.protocol.questionnaires import find_questionnaire
-from rastrainer.trial.scoring import FIRST_SCORE_VERSION, PASS_MARK, SCORE_VERSION, ScoreReference
+from rastrainer.trial.scoring import PASS_MARK, SCORE_VERSION, ScoreReference
 
 FORMAT_VERSION = 1
 FIXED, BALANCED = "fixed", "balanced"
@@ -27,7 +35,6 @@ BEFORE_ALL, BEFORE_MODE, AFTER_TASK, AFTER_MODE, AFTER_ALL = OCCASIONS = (
     "after-all",
 )
 MAX_STEPS = 1000
-READABLE_SCORE_VERSIONS = (FIRST_SCORE_VERSION, "2", SCORE_VERSION)
 """A study started with an earlier one continues with the present; each score holds its own."""
 Value = TypeVar("Value")
 _KEYS = (
@@ -62,7 +69,6 @@ class StudyProtocol:
         break_between_tasks_min: The same between tasks.
         questionnaires: When each one is answered.
         references: Of the score, by task; a task without one has that of the scenario.
-        score_version: Version of the score that the study was planned with.
         pass_mark: Score that passes; None where the protocol sets none and the default holds.
         guidance: A `Guidance` to the next point; "" leaves it to the simulator's setting.
         ghost: A `GhostRule` for the trials; "" for none, whatever the simulator's setting.
@@ -87,7 +93,6 @@ class StudyProtocol:
     break_between_tasks_min: float = 0.0
     questionnaires: tuple[ScheduledQuestionnaire, ...] = ()
     references: Mapping[str, ScoreReference] = field(default_factory=dict)
-    score_version: str = SCORE_VERSION
     pass_mark: float | None = None
     guidance: str = ""
     ghost: str = ""
@@ -126,7 +131,7 @@ class StudyProtocol:
                 for asked in self.questionnaires
             ],
             "scoring": {
-                "version": self.score_version,
+                "version": SCORE_VERSION,
                 **mark,
                 "references": {
                     task: {"timeS": r.time_s, "treMm": r.tre_mm, "limitMm": r.limit_mm}
@@ -136,15 +141,18 @@ class StudyProtocol:
         }
 
 
-def pass_mark_of(protocol: StudyProtocol | None, score_version: str) -> float | None:
-    """Return the pass mark of a study for scores of a version.
+def pass_mark_of(
+    protocol: StudyProtocol | None, method: str, is_procedure: bool = False
+) -> float | None:
+    """Return the pass mark of a study for trials by a method, or for procedures.
 
-    The default holds for every version. A protocol's mark was made of scores of one version: there
+    The default holds for all. A protocol's mark was made of trials registered by fiducials: there
     is none for the others.
     """
     if protocol is None or protocol.pass_mark is None:
         return PASS_MARK
-    return protocol.pass_mark if protocol.score_version == score_version else None
+    is_meant = method == RegistrationMethod.FIDUCIALS and not is_procedure
+    return protocol.pass_mark if is_meant else None
 
 
 def read_study_protocol(path: Path | str) -> StudyProtocol:
@@ -175,8 +183,7 @@ def _protocol(fields: Fields) -> StudyProtocol:
     if not all(is_identifier(task) and task != TRIAL_RUN for task in tasks):
         raise fields.error("tasks", "names of tasks, such as task-1; the trial run is not one")
     breaks, scoring = fields.fields("breaks"), fields.fields("scoring")
-    version = scoring.text("version", 20)
-    if version not in READABLE_SCORE_VERSIONS:
+    if scoring.text("version", 20) != SCORE_VERSION:
         raise scoring.error("version", f"{SCORE_VERSION}, the score that this version computes")
     protocol = StudyProtocol(
         name=name,
@@ -192,11 +199,7 @@ def _protocol(fields: Fields) -> StudyProtocol:
         questionnaires=tuple(
             _questionnaire(entry, modes) for entry in fields.list_of_fields("questionnaires", 0, 20)
         ),
-        # Those of the first version are of the expected TRE, which is scored no more.
-        references=_references(scoring.fields("references"), tasks)
-        if version != FIRST_SCORE_VERSION
-        else {},
-        score_version=version,
+        references=_references(scoring.fields("references"), tasks),
         pass_mark=scoring.number("passMark", 1, 100) if "passMark" in scoring.names() else None,
         guidance=_chosen(fields, "guidance", Guidance),
         ghost=_chosen(fields, "ghost", GhostRule),
