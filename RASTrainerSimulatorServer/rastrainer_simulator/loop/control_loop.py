@@ -348,7 +348,8 @@ class ControlLoop:
             try:
                 data = self._archive.answer(command.name, command.arguments, times)
             except RASTrainerError as error:
-                self._answers.give(Answer(command.ticket, False, str(error)))
+                # Not str(error), which would have no code.
+                self._answers.give(Answer(command.ticket, False, error.args[0]))
             except Exception:
                 _log.exception("%s of an older trial has failed", command.name)
                 self._answers.give(Answer(command.ticket, False, ARCHIVE_FAILED))

@@ -181,9 +181,7 @@ class TrialArchive:
             for path in journals_of(self._folder, trial_id):
                 self._load(path)
         if trial_id not in self._trials:
-            raise InputError(
-                f"There is no registered trial {trial_id} here; TrialCompleted lists the IDs."
-            )
+            raise InputError(Texts().say("no such trial", trial_id=trial_id))
         return self._trials[trial_id]
 
     def _reading_of(self, trial_id: str) -> JournalReading | None:

@@ -125,7 +125,7 @@ class ScenarioLoader:
         if not self._may_be_anywhere:
             names = ", ".join(entry.name for entry in self._listed() if not entry.problem)
             raise InputError(
-                f"LoadScenario takes one of {names}; a simulator that listens beyond its own "
+                f"The scenarios here are {names}; a simulator that listens beyond its own "
                 "computer loads no other folder."
             )
         return Path(folder)

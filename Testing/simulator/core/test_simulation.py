@@ -261,7 +261,7 @@ def test_while_the_trial_is_paused_the_arm_does_not_move_and_motions_are_refused
         trial.step(OperatorInput(translation=(1.0, 0.0, 0.0)))
     assert trial.state.q == q
     assert trial.state.elapsed == elapsed
-    assert "Resume it first" in trial.do(CommandName.JOG, velocityMmS=[1, 0, 0]).message
+    assert "resume it first" in trial.do(CommandName.JOG, velocityMmS=[1, 0, 0]).message
     assert [e.data["outcome"] for e in trial.events if e.kind is EventKind.MOTION] == ["stopped"]
 
 

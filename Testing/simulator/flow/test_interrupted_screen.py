@@ -16,7 +16,7 @@ from Testing.simulator.flow.conftest import put_back
 from Testing.simulator.flow.trainee import RATE_HZ, Keys, Trainee
 
 SENTENCES = {
-    "en": "P07, this trial was interrupted; 0 of 15 points are kept. Continue with point 1 when "
+    "en": "P07, this trial was interrupted; 0 of 15 points are kept. Resume at point 1 when "
     "you are ready, or abort it.",
     "de": "P07, dieser Versuch wurde unterbrochen; 0 von 15 Punkten sind gesichert. Mach mit Punkt "
     "1 weiter, wenn du bereit bist, oder brich ihn ab.",

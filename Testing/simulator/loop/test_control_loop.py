@@ -305,6 +305,11 @@ def test_a_request_about_an_older_trial_is_answered_even_if_it_fails_unexpectedl
     assert running.do(CommandName.GET_TRIAL, trialId=trial_id).ok
 
 
+def test_a_trial_that_is_not_here_is_refused_with_its_code_also_from_the_archive(running):
+    refused = running.do(CommandName.GET_TRIAL, trialId="6f1e1b9e-6c3f-4a53-8a55-0d0f5a3b7c11")
+    assert (refused.ok, refused.message.key) == (False, "no such trial")
+
+
 def test_the_same_seed_in_a_second_session_gives_a_different_trial(anywhere, tmp_path, running):
     first = running.start()
     running.do(CommandName.ABORT)

@@ -115,7 +115,7 @@ def test_an_older_trial_is_not_registered_again_once_its_truth_is_revealed(tmp_p
 
 def test_an_older_trial_without_a_registration_is_not_scored(tmp_path):
     write_trial(tmp_path)
-    with pytest.raises(InputError, match="SubmitRegistration comes before"):
+    with pytest.raises(InputError, match="has no registration yet"):
         TrialArchive(tmp_path).answer(CommandName.TRIAL_SCORED, SCORE, NOW)
 
 
@@ -236,7 +236,7 @@ def test_an_invalid_registration_is_reported(tmp_path):
 
 def test_a_missing_trial_is_answered_with_a_message(tmp_path):
     archive = TrialArchive(tmp_path)
-    with pytest.raises(InputError, match="no registered trial"):
+    with pytest.raises(InputError, match="There is no trial"):
         archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
 
 

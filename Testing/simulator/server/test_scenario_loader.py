@@ -120,7 +120,7 @@ def test_client_on_another_computer_can_load_no_other_folder(make, folder):
     loop = Loop()
     answer = make(loop, may_be_anywhere=False).load(folder).result(60)
     assert not answer.ok
-    assert "LoadScenario takes one of ball, colin27;" in answer.message
+    assert "The scenarios here are ball, colin27;" in answer.message
     assert loop.simulations == []
 
 

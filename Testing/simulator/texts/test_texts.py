@@ -9,14 +9,23 @@ from string import Formatter
 
 import pytest
 
+from rastrainer.protocol import CommandName
 from rastrainer_simulator.flow.session.preferences import OPTIONS
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.gamepads import GAMEPAD_INPUTS
 from rastrainer_simulator.input.inputs import ControlName, InputDevice, SourceKind
-from rastrainer_simulator.texts.texts import ENGLISH, LANGUAGES, Texts, input_label, pair_label
+from rastrainer_simulator.texts.texts import (
+    ENGLISH,
+    LANGUAGES,
+    NO_BREAK_SPACE,
+    Texts,
+    input_label,
+    pair_label,
+)
 
 SERVER = Path(__file__).parents[3] / "RASTrainerSimulatorServer"
 FOLDER = SERVER / "rastrainer_simulator" / "texts"
+WEB = SERVER / "web" / "src" / "texts"
 FEEDBACK = "Feedback on a trial (in English in rastrainer/trial/wording.py)"
 
 
@@ -47,6 +56,30 @@ def test_a_language_has_the_sections_of_english_in_their_order_and_each_key_once
     assert list(found.items()) == list(sections("en").items())
     keys = [key for each in found.values() for key in each]
     assert len(keys) == len(set(keys))
+
+
+@pytest.mark.parametrize("language", sorted(LANGUAGES))
+def test_no_text_has_the_name_of_a_command(language):
+    """A name of one word is also a verb or a noun, but not with a capital within a sentence."""
+    names = {value for name, value in vars(CommandName).items() if name.isupper()}
+    names -= {"Curriculum"} | ({"Pause"} if language == "de" else set())
+    within = "|".join(name for name in names if sum(map(str.isupper, name)) == 1)
+    whole = "|".join(name for name in names if sum(map(str.isupper, name)) > 1)
+    named = re.compile(rf"\b(?:{whole})\b|(?<![.!?:]) (?:{within})\b")
+    page = json.loads((WEB / f"{language}.json").read_text(encoding="utf-8"))
+    texts = (*LANGUAGES[language].values(), *page["page"].values(), *page["board"].values())
+    assert [text for text in texts if named.search(text.replace(NO_BREAK_SPACE, " "))] == []
+
+
+def test_every_refusal_of_the_rules_is_among_the_codes_for_clients():
+    written = (SERVER.parent / "docs" / "openigtlink.md").read_text(encoding="utf-8")
+    rows = written.partition("### Refusals")[2].partition("\n## ")[0].splitlines()
+    codes = {code for row in rows for code in re.findall("`([^`]*)`", row.split(" | ")[0])}
+    of_rules = ("Refused in", "Touches that", "Commands in")
+    keys = [
+        key for title, keys in sections("en").items() if title.startswith(of_rules) for key in keys
+    ]
+    assert [key for key in (*keys, "tutorial is open") if key not in codes] == []
 
 
 @pytest.mark.parametrize("language", sorted(LANGUAGES))

@@ -189,7 +189,7 @@ def test_nothing_is_checked_or_accepted_before_there_is_a_registration(scenario)
     trial.touch(15)
     trial.must(CommandName.REGISTER)
     for command in (CommandName.CAPTURE, CommandName.ACCEPT_REGISTRATION):
-        assert "UseRegistration comes first" in trial.do(command, trial.place(VERTEX)).message
+        assert trial.do(command, trial.place(VERTEX)).message.key == "not in use yet"
     assert trial.do(CommandName.REGISTER_AGAIN).ok
 
 

@@ -70,12 +70,12 @@ def test_landmarks_are_touched_by_name_in_order_with_a_radius_of_their_own(landm
 def test_a_surface_trial_touches_three_landmarks_and_then_waits_for_the_trace(landmarked):
     trial = begun(landmarked)
     early = trial.do(CommandName.TRACE, on=True)
-    assert early.message == "0 of 3 landmarks are touched: Capture point Nasion before Trace."
+    assert early.message == "0 of 3 landmarks are touched: touch point Nasion before tracing."
     trial.touch(3)
     assert (trial.state.phase, trial.state.next_point) == (Phase.RUNNING, None)
     assert "trace the skin with the tip" in trial.state.instruction
-    assert "Trace the skin now" in trial.do(CommandName.CAPTURE, (0, 0, 0)).message
-    assert "0 points are traced: Register needs 30" in trial.do(CommandName.REGISTER).message
+    assert "trace the skin now" in trial.do(CommandName.CAPTURE, (0, 0, 0)).message
+    assert "0 points are traced, and registering needs 30" in trial.do(CommandName.REGISTER).message
 
 
 def test_a_landmark_surface_trial_touches_all_landmarks_first(landmarked):
@@ -117,7 +117,7 @@ def test_a_trial_can_be_registered_from_thirty_points_on(landmarked):
     assert not trial.do(CommandName.REGISTER).ok
     trial.must(CommandName.TRACE, on=True)
     drag(trial, 1, first=500)
-    assert "end it with Trace" in trial.do(CommandName.REGISTER).message
+    assert "end it before registering" in trial.do(CommandName.REGISTER).message
     trial.must(CommandName.TRACE, on=False)
     assert trial.state.phase is Phase.COMPLETE
     assert "30 points are traced. Register them, or keep tracing." in trial.state.instruction

@@ -38,6 +38,7 @@ from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher,
 from rastrainer_simulator.net.igtl.server import IgtlServer
 from rastrainer_simulator.net.limits import LinkLimits
 from rastrainer_simulator.state import Answer, SimulationState
+from rastrainer_simulator.texts.texts import LocalizedText, Texts
 
 Submit = Callable[[ClientConnection, str, Mapping[str, Any]], "Future[Answer]"]
 _OWN_DEVICES = frozenset(
@@ -48,6 +49,7 @@ _OWN_DEVICES = frozenset(
     }
 )
 SubmitCommand = Callable[[str, Mapping[str, Any], str], "Future[Answer]"]
+_ENGLISH = Texts()
 OFFERS_AT_ONCE = 8
 """Trials in one round of offers."""
 _NUMBERS = 2**32
@@ -130,11 +132,17 @@ class CommandHandler:
         sentence: str,
         data: Mapping[str, Any],
     ) -> None:
-        """Send an answer; its body repeats the sentence for clients that read no metadata."""
+        """Send an answer; its body repeats the sentence for clients that read no metadata.
+
+        What the rules of a trial refuse has a code and values beside the sentence.
+        """
         metadata = {STATUS_KEY: SUCCESS if is_success else FAIL}
         if not is_success:
+            sentence = _ENGLISH.again(sentence)
             metadata[ERROR_KEY] = sentence
             data = {**data, "error": sentence}
+            if isinstance(sentence, LocalizedText):
+                data.update(code=sentence.key, values=dict(sentence.values))
         name = command.name if command.name.isascii() and command.name.isprintable() else ""
         body = json.dumps(dict(data), allow_nan=False)
         reply = CommandReply(command.command_id, name, body)

@@ -12,6 +12,7 @@ from rastrainer.igtl.content import Command, CommandReply
 from rastrainer.igtl.message import Message, crc64, pack
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer_simulator.state import Answer
+from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from Testing.simulator.net.igtl.servers import LinkServer, answer_to
 
 TRIAL = "6f1e1b9e-6c3f-4a53-8a55-0d0f5a3b7c11"
@@ -59,9 +60,23 @@ def test_simulation_gets_checked_arguments_and_the_name_of_the_client(client, li
 
 
 def test_refusal_by_the_simulation_is_returned_in_its_words(client, link_server):
-    link_server.simulated.answer = lambda *_: Answer(0, False, "Begin one with StartTask.")
-    reply = client.send_command("Capture")
-    assert (reply.ok, reply.error) == (False, "Begin one with StartTask.")
+    link_server.simulated.answer = lambda *_: Answer(0, False, "This folder is empty.")
+    reply = client.send_command("LoadScenario", ARGUMENTS["LoadScenario"])
+    assert (reply.ok, reply.data) == (False, {"error": "This folder is empty."})
+
+
+def test_refusal_by_the_rules_of_a_trial_has_its_code_its_values_and_an_english_sentence(
+    client, link_server
+):
+    said = Texts(LANGUAGES["de"]).say("tutorial is open", trainee="anna")
+    link_server.simulated.answer = lambda *_: Answer(0, False, said)
+    reply = client.send_command("StartTutorial", ARGUMENTS["StartTutorial"])
+    assert reply.error.startswith("anna is doing the tutorial: let them finish it")
+    assert reply.data == {
+        "error": reply.error,
+        "code": "tutorial is open",
+        "values": {"trainee": "anna"},
+    }
 
 
 @pytest.mark.parametrize(
