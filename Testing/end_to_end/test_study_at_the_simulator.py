@@ -8,6 +8,7 @@ import uuid
 import pytest
 
 from rastrainer.igtl.client import Client
+from rastrainer.number_text import with_units
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.study.curriculum.curriculum import Assignment, Curriculum
 from rastrainer.study.curriculum.curriculum_message import CurriculumMessage
@@ -92,10 +93,10 @@ def test_the_trainees_menu_offers_what_slicer_sends_of_a_study_and_of_a_curricul
         assert slicer.send_command("Curriculum", curriculum(), timeout=60).ok
         view.send({"type": "text", "name": "trainee", "value": "P08"})
         screen_where(view, lambda screen: "0 of 2 reached" in states(screen))
-        assert states(go_to(view, "assignments", "assignments")) == ["0 / 1", "locked"]
+        assert states(go_to(view, "assignments", "assignments")) == [with_units("0 / 1"), "locked"]
         assert slicer.send_command("Curriculum", curriculum(PASSED), timeout=60).ok
         screen = screen_where(view, lambda screen: "reached" in states(screen))
-        assert states(screen) == ["reached", "0 / 1"]
+        assert states(screen) == ["reached", with_units("0 / 1")]
         refused = slicer.send_command(
             "Curriculum", {"trainee": "P08", "assignments": [{}]}, timeout=60
         )
@@ -130,9 +131,9 @@ def test_the_module_sends_the_simulator_a_trainees_progress_including_that_from_
         go_to(view, "next", "experiment")
         view.send({"type": "text", "name": "trainee", "value": "P08"})
         screen_where(view, lambda screen: "0 of 2 reached" in states(screen))
-        assert states(go_to(view, "assignments", "assignments")) == ["0 / 1", "locked"]
+        assert states(go_to(view, "assignments", "assignments")) == [with_units("0 / 1"), "locked"]
         with Study.open(path) as study:
             record = make_record(trialId=str(uuid.uuid4()), trainee="P08")
             study.add_trial(record, score=gentle_score(60.0, 0.2))
         screen = screen_where(view, lambda screen: "reached" in states(screen))
-        assert states(screen) == ["reached", "0 / 1"]
+        assert states(screen) == ["reached", with_units("0 / 1")]

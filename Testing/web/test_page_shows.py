@@ -105,7 +105,7 @@ def test_the_plot_is_beside_the_tasks_and_every_score_is_in_its_text(
     assert place["x"] + place["width"] <= beside["x"]
 
 
-LEGEND = "Within 10 mm of traced points"
+LEGEND = "Within 10\N{NO-BREAK SPACE}mm of traced points"
 
 
 def test_the_legend_is_shown_with_a_sample_of_the_paint(page, served):

@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from rastrainer.number_text import with_units
 from rastrainer.protocol import MIN_TRACE_POINTS
 from rastrainer.trial.scoring import SCORE_VERSION
 from Testing.end_to_end.drawing_trainee import METHOD, DrawingTrainee
@@ -81,7 +82,7 @@ def test_each_ring_leads_to_another_place(drawn):
 
 def test_the_simulator_registers_the_trace_and_scores_it(drawn):
     registered = drawn["registered"]
-    assert drawn["match"]["Residual"] == f"{registered['freMm']:.2f} mm"
+    assert drawn["match"]["Residual"] == with_units(f"{registered['freMm']:.2f} mm")
     assert registered["freMm"] < 1.0
     assert drawn["scored"]["details"]["scoreVersion"] == SCORE_VERSION
     assert drawn["registered"]["expectedTreMm"] < 3.0

@@ -2,6 +2,17 @@
 
 from __future__ import annotations
 
+import re
+
+_BEFORE_UNIT = re.compile(
+    r"(?<=\d) (?=[%/]|(?:mm|cm|s|min|MB|of 100)(?![\w’']))|(?<=\d /) (?=\d)|(?<=,) (?=(?:mm|s)\b)"
+)
+
+
+def with_units(text: str) -> str:
+    """Return a text in which no line ends between a number, or a name, and its unit."""
+    return _BEFORE_UNIT.sub("\N{NO-BREAK SPACE}", text)
+
 
 def fixed(value: float, digits: int) -> str:
     """Return a number with `digits` decimals."""

@@ -7,6 +7,7 @@ import hashlib
 import html
 import re
 
+from rastrainer.number_text import with_units
 from rastrainer.study.outcomes import task_title
 from rastrainer.study.study_data import TrialRow
 from rastrainer_simulator.lti.course_study import CourseMember
@@ -142,7 +143,7 @@ class LaunchPage:
         return self._texts.say(key) if key in self._texts else task_title(task)
 
     def _say(self, key: str, **values: object) -> str:
-        return html.escape(self._texts.say(key, **values))
+        return html.escape(with_units(self._texts.say(key, **values)))
 
     def _page(self, content: str) -> str:
         return (

@@ -4,7 +4,7 @@ import { page as german } from "./texts/de.json";
 import { page as english } from "./texts/en.json";
 import { page as spanish } from "./texts/es.json";
 import { page as frenchTexts } from "./texts/fr.json";
-import { chinese, french, writtenLanguage } from "./texts/typesetting";
+import { chinese, french, withUnits, writtenLanguage } from "./texts/typesetting";
 import { page as chineseTexts } from "./texts/zh-Hans.json";
 
 export type TextName = keyof typeof english;
@@ -27,7 +27,7 @@ export function useLanguage(tag: string): void {
 }
 
 export function say(name: TextName, values: Readonly<Record<string, string>> = {}): string {
-  return table[name].replace(/\{(\w+)\}/g, (whole, key: string) => values[key] ?? whole);
+  return withUnits(table[name].replace(/\{(\w+)\}/g, (whole, key: string) => values[key] ?? whole));
 }
 
 /** Who drives the arm, as people read it. */

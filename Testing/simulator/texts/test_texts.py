@@ -14,6 +14,8 @@ from rastrainer_simulator.flow.session.preferences import OPTIONS
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.gamepads import GAMEPAD_INPUTS
 from rastrainer_simulator.input.inputs import ControlName, InputDevice, SourceKind
+from rastrainer_simulator.net.views import outgoing
+from rastrainer_simulator.presentation.screen import Screen, ScreenMessage
 from rastrainer_simulator.texts.texts import (
     ENGLISH,
     LANGUAGES,
@@ -162,6 +164,18 @@ def test_slicers_feedback_is_shown_in_the_language_with_its_decimal_sign():
 def test_a_negative_number_has_a_true_minus_sign_and_a_text_keeps_its_hyphens():
     assert Texts(LANGUAGES["de"]).say("result.points", points=-3.25) == "−3,2"
     assert Texts().say("start", trainee="P-01", point="1") == "P-01, touch point 1."
+
+
+@pytest.mark.parametrize("language", sorted(LANGUAGES))
+def test_no_line_of_a_view_ends_between_a_number_and_its_unit(language):
+    texts, values = Texts(LANGUAGES[language]), {"f": 12.5, "g": 10.0}
+    for key, text in LANGUAGES[language].items():
+        filled = {name: values.get(spec[-1:], 10) for name, spec in fields(text)}
+        said = texts.say(key, **filled)
+        sent = json.loads(outgoing.screen(Screen(instruction=ScreenMessage(said))))
+        shown = sent["screen"]["instruction"]["text"]
+        assert shown.replace(NO_BREAK_SPACE, " ") == said.replace(NO_BREAK_SPACE, " ")
+        assert re.findall(r"\d (?:mm|cm|s|min|MB|%|/ \d)(?!\w)|\d / (?=\d)", shown) == [], key
 
 
 def test_a_value_with_braces_is_filled_in_verbatim():

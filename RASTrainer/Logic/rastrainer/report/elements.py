@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import html
 import math
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+
+from rastrainer.number_text import with_units
 
 MAX_KEPT_TOGETHER = 10
 """Rows; keeping longer tables on one page could leave half a page empty."""
@@ -89,12 +90,8 @@ def figure(charts: Sequence[str], caption: str) -> str:
     )
 
 
-_BEFORE_UNIT = re.compile(r"(?<=\d) (?=(?:%|(?:mm|s|of 100)\b))|(?<=,) (?=(?:mm|s)\b)")
-
-
 def _flowing(text: str) -> str:
-    """Return escaped text in which no line ends between a number, or a name, and its unit."""
-    return html.escape(_BEFORE_UNIT.sub("\N{NO-BREAK SPACE}", text))
+    return html.escape(with_units(text))
 
 
 def _row(line: Sequence[Cell | str]) -> str:

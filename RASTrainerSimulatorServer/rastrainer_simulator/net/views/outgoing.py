@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from rastrainer.number_text import with_units
 from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
@@ -128,7 +129,7 @@ def mirrored(state_text: str, wearer_text: str) -> str:
 
 def screen(now: Screen) -> str:
     """Return what the trainee reads."""
-    return _text(SCREEN, screen=screen_to_json(now))
+    return with_units(_text(SCREEN, screen=screen_to_json(now)))
 
 
 def event(feedback: Feedback) -> str:
@@ -154,7 +155,7 @@ def trace(known: int, new: Sequence[Sequence[float]], guidance: TraceGuidance) -
 
 def seat(**members: Any) -> str:
     """Return what a teacher's board shows of a seat."""
-    return _text(SEAT, **members)
+    return with_units(_text(SEAT, **members))
 
 
 def control(now: Control, view: int) -> str:

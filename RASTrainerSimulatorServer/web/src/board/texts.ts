@@ -4,7 +4,7 @@ import * as german from "../texts/de.json";
 import * as english from "../texts/en.json";
 import * as spanish from "../texts/es.json";
 import * as frenchTexts from "../texts/fr.json";
-import { chinese, french, writtenLanguage } from "../texts/typesetting";
+import { chinese, french, withUnits, writtenLanguage } from "../texts/typesetting";
 import * as chineseTexts from "../texts/zh-Hans.json";
 
 export type BoardText = keyof typeof english.board;
@@ -31,7 +31,7 @@ export function holderName(holder: string): string {
 }
 
 export function say(name: BoardText, values: Readonly<Record<string, string>> = {}): string {
-  return board[name].replace(/\{(\w+)\}/g, (whole, key: string) => values[key] ?? whole);
+  return withUnits(board[name].replace(/\{(\w+)\}/g, (whole, key: string) => values[key] ?? whole));
 }
 
 /** Return a figure with the language's decimal sign. */

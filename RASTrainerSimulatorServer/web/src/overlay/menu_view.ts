@@ -5,7 +5,6 @@ import { byId, element } from "../elements";
 import { MenuRow } from "./menu_row";
 import type { Fact, Item, Menu } from "../stream/messages";
 import { say } from "../texts";
-import { withUnits } from "../texts/typesetting";
 
 export class MenuView {
   private readonly parent = byId("menu");
@@ -103,7 +102,7 @@ export class MenuView {
 function factsOf(facts: readonly Fact[]): HTMLElement {
   const table = element("dl", "");
   for (const fact of facts) {
-    const value = element("dd", withUnits(fact.value));
+    const value = element("dd", fact.value);
     value.dataset.tone = fact.tone;
     table.append(element("dt", fact.label), value);
   }

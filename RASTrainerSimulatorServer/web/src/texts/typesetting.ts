@@ -15,9 +15,9 @@ export function chinese<Table extends Texts>(texts: Table): Table {
   return eachSet(texts, (text) => text.replace(/ (?=[\d{/])|(?<=[\d}/]) /g, NO_BREAK_SPACE));
 }
 
-/** Return a text in which no unit is on another line than its number, and no slash than what it divides. */
+/** Return a text in which no unit is on another line than its number: the simulator's texts come like this. */
 export function withUnits(text: string): string {
-  return text.replace(/(?<=\d) (?=(?:mm|s|%)(?!\p{L}))| (?=\/)|(?<=\/) /gu, NO_BREAK_SPACE);
+  return text.replace(/(?<=\d) (?=[%/]|(?:mm|cm|s|min|MB)(?![\p{L}’']))|(?<=\d \/) (?=\d)/gu, NO_BREAK_SPACE);
 }
 
 /** Return the tag of what is written: Chinese of every region in simplified characters. */
