@@ -119,7 +119,7 @@ def test_a_page_that_rejoins_forgets_what_it_knew(page):
     assert not page.evaluate("page.trace.ring.visible")
 
 
-RULER = DepthRuler(30.0, 37.0, 44.5, 126.0)
+RULER = DepthRuler(30.0, 37.0, 44.5, 126.0, ("Entry", "Outer table", "Inner table", "Target"))
 SEEN = """(procedure) => {
   const { model } = page.stage;
   page.showProcedure(model, { ...page.state, procedure });
@@ -206,7 +206,7 @@ def test_the_page_shows_each_tool_with_its_panel_and_the_headset_on_a_board(serv
     assert drilled["fedM"] == pytest.approx(0.0415)
     written = page.evaluate(PAINTED, at("electrode", 99.96))
     assert written[0] == "100.0 mm"
-    assert written[-4:] == ["30", "37", "45", "126"]
+    assert written[-4:] == ["30 Entry", "37 Outer table", "45 Inner table", "126 Target"]
     served.presenter.screen = Screen(is_head_clear=True, ruler=RULER)
     enter_headset(page)
     worn = page.evaluate(SEEN, at("drill", 41.5))

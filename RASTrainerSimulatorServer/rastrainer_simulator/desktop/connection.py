@@ -250,16 +250,19 @@ def screen_from_json(value: Json) -> Screen:
 
 def _ruler(value: Json) -> DepthRuler:
     outer, inner = value["outer"], value["inner"]
+    of_entry, of_outer, of_inner, of_target = map(str, value["names"])
     return DepthRuler(
         float(value["entry"]),
         None if outer is None else float(outer),
         None if inner is None else float(inner),
         float(value["target"]),
+        (of_entry, of_outer, of_inner, of_target),
     )
 
 
 def _error(value: Json) -> ErrorArrow:
-    return ErrorArrow(vector(value["begin"]), vector(value["end"]), Tone(value["tone"]))
+    begin, end = vector(value["begin"]), vector(value["end"])
+    return ErrorArrow(begin, end, Tone(value["tone"]), str(value["name"]))
 
 
 def _menu(value: Json) -> Menu:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import zip_longest
 from typing import Any
 
 import numpy as np
@@ -12,8 +13,9 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData, vtkTubeFilter
 from vtkmodules.vtkFiltersSources import vtkSphereSource
-from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
+from vtkmodules.vtkRenderingCore import vtkActor, vtkBillboardTextActor3D, vtkPolyDataMapper
 
+from rastrainer.procedure.plan import MAX_CHECKPOINTS
 from rastrainer.registration.surface_error import nearest_traced_mm
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.desktop.panels import theme
@@ -25,31 +27,57 @@ from rastrainer_simulator.scene.surfaces import surface
 RADIUS_M, BALL_M = 0.001, 0.0022
 """Radius of an arrow's shaft, and of the ball at its end."""
 _SHAFT_SIDES = 12
+NAME_PX, NAME_ABOVE_PX, NAME_BACKGROUND = 24, 16, 0.85
+"""Height of a name's letters, its distance above the ball, and the opacity of what is behind."""
 
 
 class ErrorArrows:
-    """Draws arrows, all of a tone in one actor.
+    """Draws arrows, all of a tone in one actor, and the names of balls.
 
     Attributes:
-        actors: one for each tone, hidden where it has no arrows.
+        actors: one for each tone, hidden where it has no arrows, and one for each name.
     """
 
     def __init__(self) -> None:
         self._mappers = {tone: vtkPolyDataMapper() for tone in Tone}
+        self._names = [_name_actor() for _ in range(MAX_CHECKPOINTS)]
         self._shown: tuple[ErrorArrow, ...] = ()
-        self.actors = [_actor(tone, mapper) for tone, mapper in self._mappers.items()]
+        self._of_tones = [_actor(tone, mapper) for tone, mapper in self._mappers.items()]
+        self.actors = [*self._of_tones, *self._names]
 
     def show(self, arrows: tuple[ErrorArrow, ...]) -> bool:
         """Show these in place of the previous ones; return whether they differ."""
         if arrows == self._shown:
             return False
         self._shown = arrows
-        for (tone, mapper), actor in zip(self._mappers.items(), self.actors, strict=True):
+        for (tone, mapper), actor in zip(self._mappers.items(), self._of_tones, strict=True):
             of_tone = [arrow for arrow in arrows if arrow.tone is tone]
             actor.SetVisibility(bool(of_tone))
             if of_tone:
                 mapper.SetInputData(_surface(of_tone))
+        named = [arrow for arrow in arrows if arrow.name]
+        for written, arrow in zip_longest(self._names, named[: len(self._names)]):
+            written.SetVisibility(arrow is not None)
+            if arrow is not None:
+                written.SetInput(arrow.name)
+                written.SetPosition(*arrow.end)
         return True
+
+
+def _name_actor() -> vtkBillboardTextActor3D:
+    """Return a name above a ball, which faces every view."""
+    actor = vtkBillboardTextActor3D()
+    actor.VisibilityOff()
+    actor.SetDisplayOffset(0, NAME_ABOVE_PX)
+    style = actor.GetTextProperty()
+    style.SetFontFamilyToArial()
+    style.SetBold(True)
+    style.SetColor(theme.TEXT[:3])
+    style.SetFontSize(NAME_PX)
+    style.SetJustificationToCentered()
+    style.SetBackgroundColor(theme.NIGHT[:3])
+    style.SetBackgroundOpacity(NAME_BACKGROUND)
+    return actor
 
 
 def _actor(tone: Tone, mapper: vtkPolyDataMapper) -> vtkActor:

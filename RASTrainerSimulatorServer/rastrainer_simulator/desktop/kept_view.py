@@ -12,7 +12,7 @@ from collections.abc import Iterable
 
 from vtkmodules.vtkCommonCore import VTK_UNSIGNED_CHAR
 from vtkmodules.vtkCommonDataModel import vtkBoundingBox
-from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
+from vtkmodules.vtkRenderingCore import vtkProp3D, vtkRenderer
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLFramebufferObject
 
 from rastrainer_simulator.desktop.gl_window import GlWindow
@@ -185,7 +185,7 @@ class KeptView:
         return 0, right - left, 0, top - bottom
 
 
-def _fill(renderer: vtkRenderer, actors: Iterable[vtkActor]) -> None:
+def _fill(renderer: vtkRenderer, actors: Iterable[vtkProp3D]) -> None:
     renderer.RemoveAllViewProps()
     for actor in actors:
         renderer.AddActor(actor)

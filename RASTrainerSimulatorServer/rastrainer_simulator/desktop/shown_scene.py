@@ -8,7 +8,7 @@ from collections.abc import Collection, Mapping, Sequence
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
-from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkProperty
+from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkProp3D, vtkProperty
 
 from rastrainer_simulator.desktop.head_marks import ShownTrace, SkinPaint
 from rastrainer_simulator.desktop.inbox import Finish, Part
@@ -98,7 +98,7 @@ class ShownScene:
         self._matrices: dict[str, vtkMatrix4x4] = defaultdict(vtkMatrix4x4)
         self._named: dict[str, list[vtkActor]] = defaultdict(list)
         self.still: list[vtkActor] = []
-        self.moving: list[vtkActor] = []
+        self.moving: list[vtkProp3D] = []
         self.still_version = 0
         self.is_clear = False
         self.poses: dict[str, np.ndarray] = {}
@@ -124,7 +124,7 @@ class ShownScene:
         self.finish(is_physical)
 
     @property
-    def actors(self) -> list[vtkActor]:
+    def actors(self) -> list[vtkProp3D]:
         """All of them."""
         return [*self.still, *self.moving]
 

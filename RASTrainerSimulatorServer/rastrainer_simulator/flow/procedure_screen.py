@@ -25,6 +25,8 @@ from rastrainer_simulator.state import Event, EventKind
 from rastrainer_simulator.training.feed import FeedLayer
 from rastrainer_simulator.trial_state import ProcedureState
 
+PAST_TARGET_MM = 0.5
+"""Farther past the planned target, drill or instrument has to be drawn back."""
 FED = (Phase.DRILLING, Phase.INSERTING)
 _FELT: Mapping[str, Tone] = {
     FeedLayer.BONE.value: Tone.PLAIN,
@@ -94,6 +96,10 @@ class ProcedureScreen(ArmScreen):
             return self._why_not_registered()
         if training.phase not in FED:
             return super().warnings()
+        ruler = self.ruler()
+        past = 0.0 if ruler is None else MM_PER_M * session.state.feed - ruler.target
+        if past > PAST_TARGET_MM:
+            return (ScreenMessage(say("warning.past target", past=past), Tone.ERROR),)
         if self._layer not in _FELT:
             return ()
         return (ScreenMessage(say(f"felt.{self._layer}"), _FELT[self._layer]),)
@@ -119,7 +125,7 @@ class ProcedureScreen(ArmScreen):
         phase = session.training.phase
         names = {
             ControlName.TOUCH: "hint.checkpoint" if phase is Phase.VERIFYING else "hint.next step",
-            ControlName.UNDO: "hint.next step",
+            ControlName.UNDO: "hint.judge",
             ControlName.FINE: "hint.fine",
             ControlName.CAMERA: "hint.front",
             ControlName.MENU: "hint.menu",
@@ -150,7 +156,8 @@ class ProcedureScreen(ArmScreen):
             return None
         bone = self._session.planned_bone
         number = procedure.trajectory
-        return depth_ruler(procedure.present, bone[number] if number < len(bone) else None)
+        here = bone[number] if number < len(bone) else None
+        return depth_ruler(procedure.present, here, self._session.texts)
 
     @property
     def _procedure(self) -> ProcedureState:

@@ -125,11 +125,13 @@ class ErrorArrow:
         begin, end: (x, y, z) in World, m, with a ball at the end; equal for the ball alone. Errors
             of touches are drawn longer than they are.
         tone: how large the error is, or which line it is.
+        name: written above the ball, such as that of a checkpoint; "" for nothing.
     """
 
     begin: tuple[float, float, float]
     end: tuple[float, float, float]
     tone: Tone
+    name: str = ""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -140,12 +142,14 @@ class DepthRuler:
         entry: of the planned entry.
         outer, inner: of the tables of the skull; None where the line does not meet them.
         target: of the planned target.
+        names: of these four in this order, written beside the scale.
     """
 
     entry: float
     outer: float | None
     inner: float | None
     target: float
+    names: tuple[str, str, str, str]
 
 
 @dataclasses.dataclass(frozen=True)

@@ -72,6 +72,23 @@ def test_the_errors_of_the_touches_are_drawn_in_the_color_of_their_size(show):
         assert with_arrow > without + 50, tone
 
 
+def test_the_name_of_a_checkpoint_is_written_above_its_ball_and_goes_with_it(show):
+    place = (-0.05, -0.12, 0.06)
+    bare, named = (
+        show(Screen(errors=(ErrorArrow(place, place, Tone.GOOD, name),)))
+        for name in ("", "Left forehead")
+    )
+    changed = np.argwhere((bare != named).any(axis=2))
+    color = np.round(255 * np.array(theme.TONES[Tone.GOOD][:3]))
+    ball = np.argwhere((np.abs(bare[..., :3] - color) <= 6).all(axis=2))
+    (top, left), (bottom, right) = changed.min(axis=0), changed.max(axis=0)
+    assert right - left > 3 * (bottom - top) > 30
+    assert bottom <= ball[:, 0].min() + 2
+    assert left < ball[:, 1].mean() < right
+    empty = show(Screen())
+    assert np.array_equal(show(Screen()), empty)
+
+
 @pytest.mark.parametrize("language", LONGEST_OR_EACH)
 @pytest.mark.parametrize(
     "size",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -126,6 +127,9 @@ def perform(operation: Operation) -> None:
         target_m = trainee.presenter.screen.ruler.target / MM_PER_M
         operation.feed(target_m - 0.001)
         operation.keep(f"inserted {number}")
+        if number == 1:
+            operation.feed(target_m + 0.0012)
+            operation.keep("past the target")
         operation.next_step("release", (Tool.GUIDE, Tool.POINTER)[number])
     score(operation)
 
@@ -274,8 +278,11 @@ def test_the_error_at_a_checkpoint_follows_from_the_registration(operation):
     error_mm = MM_PER_M * checked.error
     assert f"{checked.name}: {error_mm:.1f} mm off" in screen.status
     assert [arrow.tone for arrow in screen.errors].count(Tone.GOOD) == 1
-    assert len(screen.errors) == 3
+    assert len({arrow.name for arrow in screen.errors} - {""}) == len(screen.errors) == 3
+    assert checked.name in {arrow.name for arrow in screen.errors if arrow.tone is Tone.GOOD}
     assert not screen.is_head_clear
+    actions = {hint.item: hint.action for hint in screen.hints}
+    assert actions["press undo"] == "Accept, repeat …"
 
 
 @pytest.mark.parametrize(("name", "number"), [("aligning", 0), ("aligned 1", 1)])
@@ -321,9 +328,18 @@ def test_the_ruler_measures_from_the_guides_tip_according_to_the_plan(operation)
         assert ruler.target == pytest.approx(30.0 + length_mm, abs=0.1)
         assert ruler.entry < ruler.outer < ruler.inner < ruler.target
         assert ruler.inner - ruler.outer == pytest.approx(6.0, abs=1.5)
+        assert ruler.names == ("Entry", "Outer table", "Inner table", "Target")
         inserted = told_of(operation, f"inserted {number}")
         assert inserted["tool"] == "electrode"
         assert inserted["feedMm"] == pytest.approx(ruler.target - 1.0, abs=0.5)
+
+
+def test_the_trainee_is_warned_past_the_target_and_not_before(operation):
+    warned = [message.text for message in screen_of(operation, "past the target").warnings]
+    assert len(warned) == 1
+    assert re.fullmatch(r"1\.[1-9] mm past the target: draw back\.", warned[0])
+    for number in range(2):
+        assert screen_of(operation, f"inserted {number}").warnings == ()
 
 
 def test_what_the_drill_meets_is_shown_heard_and_felt(operation):

@@ -92,6 +92,17 @@ def test_a_single_point_is_not_called_points(language):
     assert [key for key in keys if re.search(r"\} \w* ?(points|Punkt|puntos)", table[key])] == []
 
 
+@pytest.mark.parametrize(
+    ("language", "words"),
+    [("en", "Resum"), ("de", "[Mm]ach.* weiter|Weitermach"), ("fr", "[Rr]epr"), ("es", "[Rr]ean")],
+)
+def test_what_ends_a_pause_has_one_name(language, words):
+    keys = ("trial.resume", "paused", "interrupted", "interrupted procedure", "is paused")
+    table = LANGUAGES[language]
+    assert [key for key in keys if re.search(words, table[key], re.IGNORECASE) is None] == []
+    assert [key for key in table if key.endswith(".resume")] == ["trial.resume", "practice.resume"]
+
+
 def test_every_language_is_offered_by_its_own_name_in_all_of_them():
     for tag in LANGUAGES:
         assert len({table[f"settings.language.{tag}"] for table in LANGUAGES.values()}) == 1

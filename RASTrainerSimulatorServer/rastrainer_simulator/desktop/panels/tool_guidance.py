@@ -260,8 +260,8 @@ def _write(canvas: Canvas, look: BullsEye, brush: Brush) -> None:
         brush.write(canvas, text, theme.HEADING, theme.TEXT, left, top)
 
 
-GAUGE_WIDTH, GAUGE_HEIGHT = 260, 520
-TRACK_LEFT, TRACK_WIDTH, TRACK_TOP, TRACK_BOTTOM = 96, 44, 76, 24
+GAUGE_WIDTH, GAUGE_HEIGHT = 360, 520
+TRACK_LEFT, TRACK_WIDTH, TRACK_TOP, TRACK_BOTTOM = 80, 36, 76, 24
 TICK_MM = 10.0
 BEYOND_MM = 10.0
 """How far the scale goes past the target."""
@@ -323,22 +323,21 @@ def paint_gauge(look: DepthGauge, brush: Brush) -> np.ndarray:
 
 
 def _marks(canvas: Canvas, look: DepthGauge, brush: Brush, y: Callable[[float], int]) -> None:
-    """Mark entry, tables of the skull and target, with their depths beside the track."""
+    """Mark entry, tables of the skull and target, with depths and names beside the track."""
     ruler = look.ruler
-    marks = (
-        (ruler.entry, theme.TONES[Tone.GOOD]),
-        (ruler.outer, theme.TONES[Tone.WARNING]),
-        (ruler.inner, theme.TONES[Tone.WARNING]),
-        (ruler.target, theme.TONES[Tone.GOOD]),
-    )
+    depths = (ruler.entry, ruler.outer, ruler.inner, ruler.target)
+    tones = (Tone.GOOD, Tone.WARNING, Tone.WARNING, Tone.GOOD)
     left = brush.px(TRACK_LEFT) - 4
     wide = brush.px(TRACK_WIDTH) + 4 + brush.px(20)
     lowest, height = -canvas.height, brush.line_height(theme.SMALL)
-    for depth_mm, color in marks:
+    for depth_mm, tone, name in zip(depths, tones, ruler.names, strict=True):
         if depth_mm is None:
             continue
+        color = theme.TONES[tone]
         canvas.box(Box(left, y(depth_mm) - 2, wide, 4), color, 0)
         # Outer and inner table are near each other: their figures must not cover each other.
         lowest = max(y(depth_mm) - height // 2, lowest + height)
-        text = f"{depth_mm:.0f}"
-        brush.write(canvas, text, theme.SMALL, color, left + wide + brush.px(8), lowest)
+        start = left + wide + brush.px(8)
+        room = canvas.width - start - brush.px(8)
+        text = brush.fit(f"{depth_mm:.0f} {name}", theme.SMALL, room)
+        brush.write(canvas, text, theme.SMALL, color, start, lowest)

@@ -70,7 +70,7 @@ class TutorialPage(SessionPage):
             self.say("tutorial.title"),
             (self.say("tutorial.paused", step=step, steps=steps),),
             items=(
-                self.button("resume"),
+                self.button("resume", self.say("trial.resume")),
                 self.button("controls"),
                 self.button("restart"),
                 self.button("leave", leave),

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from rastrainer.procedure.geometry import BoneAhead
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.presentation.screen import DepthRuler, ErrorArrow, Tone
+from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.trial_state import PlannedLine, ProcedureState, TrajectoryState
 from rastrainer_simulator.vectors import Vector, add, dot, scale, subtract
 
@@ -34,7 +35,7 @@ def plan_marks(
 def checkpoint_marks(
     procedure: ProcedureState, places: Mapping[str, Vector]
 ) -> tuple[ErrorArrow, ...]:
-    """Return the checkpoints as marks on the skin; those touched by this registration are green.
+    """Return the checkpoints as named marks; those touched by this registration are green.
 
     Args:
         procedure: its progress.
@@ -42,17 +43,20 @@ def checkpoint_marks(
     """
     touched = {each.name for each in procedure.checkpoints}
     return tuple(
-        ball(place, Tone.GOOD if name in touched else Tone.WARNING)
+        ErrorArrow(place, place, Tone.GOOD if name in touched else Tone.WARNING, name)
         for name, place in places.items()
     )
 
 
-def depth_ruler(trajectory: TrajectoryState, bone: BoneAhead | None) -> DepthRuler | None:
+def depth_ruler(
+    trajectory: TrajectoryState, bone: BoneAhead | None, texts: Texts
+) -> DepthRuler | None:
     """Return the scale along the axis of a locked guide; None before it is locked.
 
     Args:
         trajectory: the current one.
         bone: on its planned line.
+        texts: in which the marks have their names.
     """
     guide, line = trajectory.guide, trajectory.line
     if guide is None:
@@ -67,6 +71,12 @@ def depth_ruler(trajectory: TrajectoryState, bone: BoneAhead | None) -> DepthRul
         None if bone is None else along(_on(line, bone.outer_mm)),
         None if inner is None else along(_on(line, inner)),
         along(line.target),
+        (
+            texts.say("ruler.entry"),
+            texts.say("ruler.outer"),
+            texts.say("ruler.inner"),
+            texts.say("ruler.target"),
+        ),
     )
 
 

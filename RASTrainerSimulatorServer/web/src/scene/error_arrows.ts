@@ -1,14 +1,30 @@
-/** The errors of the touches as arrows on the head. */
+/** The errors of the touches as arrows on the head, and the names of checkpoints. */
 
-import { CylinderGeometry, Group, Mesh, MeshBasicMaterial, SphereGeometry, Vector3, type Object3D } from "three";
+import {
+  CanvasTexture,
+  CylinderGeometry,
+  Group,
+  Mesh,
+  MeshBasicMaterial,
+  SphereGeometry,
+  Sprite,
+  SpriteMaterial,
+  SRGBColorSpace,
+  Vector3,
+  type Object3D,
+} from "three";
 
 import type { ErrorArrow } from "../stream/messages";
-import { TONES } from "../panels/pen";
+import { COLORS, Pen, TONES } from "../panels/pen";
 
 /** Of an arrow's shaft, and of the ball at its end, m. */
 const RADIUS = 0.001;
 const BALL = 0.0022;
 const ALONG = new Vector3(0, 1, 0);
+/** Height of a name, m, and of its canvas, pixels; how far it is above the middle of its ball, in heights. */
+const NAME_HIGH = 0.009;
+const NAME_PIXELS = 64;
+const NAME_ABOVE = 0.5;
 
 export class ErrorArrows {
   readonly group = new Group();
@@ -22,6 +38,7 @@ export class ErrorArrows {
     const content = JSON.stringify(arrows);
     if (content === this.shown) return false;
     this.shown = content;
+    for (const child of this.group.children) if (child instanceof Sprite) dispose(child);
     this.group.clear();
     for (const arrow of arrows) this.draw(arrow);
     return true;
@@ -34,6 +51,7 @@ export class ErrorArrows {
     const ball = new Mesh(this.ball, material);
     ball.position.copy(end);
     this.group.add(ball);
+    if (arrow.name !== "") this.group.add(nameAt(end, arrow));
     const length = begin.distanceTo(end);
     if (length === 0) return;
     const shaft = new Mesh(this.shaft, material);
@@ -42,4 +60,29 @@ export class ErrorArrows {
     shaft.quaternion.setFromUnitVectors(ALONG, end.clone().sub(begin).normalize());
     this.group.add(shaft);
   }
+}
+
+/** Return a name above a ball, which faces every view. */
+function nameAt(place: Vector3, { name, tone }: ErrorArrow): Sprite {
+  const canvas = document.createElement("canvas");
+  const context = canvas.getContext("2d")!;
+  const style = { size: 0.7 * NAME_PIXELS, color: TONES[tone], isBold: true };
+  canvas.width = Math.ceil(new Pen(context).width(name, style)) + NAME_PIXELS / 2;
+  canvas.height = NAME_PIXELS;
+  // A canvas that gets another size forgets how it was to be written on.
+  const pen = new Pen(context);
+  pen.box(0, 0, canvas.width, canvas.height, COLORS.night, NAME_PIXELS / 4);
+  pen.line(name, NAME_PIXELS / 4, NAME_PIXELS / 2, style);
+  const map = new CanvasTexture(canvas);
+  map.colorSpace = SRGBColorSpace;
+  const sprite = new Sprite(new SpriteMaterial({ map, toneMapped: false }));
+  sprite.position.copy(place);
+  sprite.center.set(0.5, -NAME_ABOVE);
+  sprite.scale.set((NAME_HIGH * canvas.width) / NAME_PIXELS, NAME_HIGH, 1);
+  return sprite;
+}
+
+function dispose({ material }: Sprite): void {
+  material.map?.dispose();
+  material.dispose();
 }

@@ -56,6 +56,8 @@ export interface ErrorArrow {
   readonly begin: readonly [number, number, number];
   readonly end: readonly [number, number, number];
   readonly tone: Tone;
+  /** Written above the ball; "" for nothing. */
+  readonly name: string;
 }
 
 /** Distances from the tip of the locked guide along its axis, mm, as planned. */
@@ -64,6 +66,8 @@ export interface DepthRuler {
   readonly outer: number | null;
   readonly inner: number | null;
   readonly target: number;
+  /** Of these four in this order, written beside the scale. */
+  readonly names: readonly [string, string, string, string];
 }
 
 export interface Screen {
