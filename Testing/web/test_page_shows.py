@@ -65,6 +65,19 @@ def test_arrows_appear_and_disappear_with_the_screen(page, served):
     wait_for(page, "page.errors.group.children.length === 0")
 
 
+def test_a_checkpoint_has_its_name_above_it_and_others_have_none(page, served):
+    place = (0.5, 0.0, 0.4)
+    named = ErrorArrow(place, place, Tone.WARNING, "Left forehead")
+    served.tell(Screen(errors=(arrow(Tone.GOOD, 0.42), named)))
+    wait_for(page, "page.errors.group.children.length === 4")
+    sprites = "page.errors.group.children.filter((child) => child.isSprite)"
+    assert page.evaluate(f"{sprites}.map((sprite) => sprite.position.toArray())") == [list(place)]
+    wide, high = page.evaluate(f"{sprites}[0].scale.toArray().slice(0, 2)")
+    assert wide > 4 * high > 0.02
+    served.tell(Screen())
+    wait_for(page, "page.errors.group.children.length === 0")
+
+
 def test_a_finger_leads_back_from_what_is_only_watched(browser, served):
     page = open_page(browser, served.url, served.code, has_touch=True, draws=False)
     hints = (Hint("Arrows", "Turn"), Hint("Esc", "Result", "back"), Hint("Space", "Space", "play"))
