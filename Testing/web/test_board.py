@@ -123,6 +123,8 @@ def test_a_teacher_adds_a_seat_by_keyboard_sees_it_change_gives_orders_and_remov
     page.wait_for_selector("#count:text-is('1 of 1 seats connected, 0 training')")
     presenter.reported_seat = Seat("<img src=x onerror=alert(1)>")
     page.wait_for_selector("#seats .who:has-text('<img src=x')")
+    presenter.reported_seat = Seat("P07", screen="Experiment")
+    page.wait_for_selector("#seats .says:text-is('Menu: Experiment')")
 
     press(page, "Send a sentence")
     page.fill("[name=text]", "Look from the side.")
@@ -133,7 +135,7 @@ def test_a_teacher_adds_a_seat_by_keyboard_sees_it_change_gives_orders_and_remov
     page.fill("[name=pin]", PIN)
     page.evaluate(KEEP_NOTICES)
     press(page, "Send")
-    page.wait_for_selector("#notice[data-tone=good]:has-text('Window 3: done.')")
+    page.wait_for_selector("#notice[data-tone=good]:has-text('The sentence is shown at Window 3.')")
     assert presenter.calls == [("instruct", "say", "Look from the side.")]
 
     press(page, "Remove")

@@ -78,6 +78,11 @@ OVERLAPS = """() => {
     const isCut = isBox && !isInline && part.scrollWidth > part.clientWidth + 1;
     if (isCut) found.push(`${part.textContent} is cut off`);
   }
+  for (const part of document.querySelectorAll("#overlay :is(p, ul, li)")) {
+    const isPainted = getComputedStyle(part).backgroundColor !== "rgba(0, 0, 0, 0)";
+    const isEmpty = part.clientHeight > 0 && part.innerText.trim() === "";
+    if (isPainted && isEmpty) found.push(`${part.id || part.className} is an empty box`);
+  }
   return found;
 }"""
 
@@ -219,11 +224,11 @@ NAMES_OF_PICTURE = {
     "zh-Hans": "机器人、头部和手术室",
 }
 NOBODY_DRIVES = {
-    "en": "Nobody drives the robot yet",
-    "de": "Noch steuert niemand den Roboter",
-    "fr": "Personne ne pilote encore le robot",
-    "es": "Nadie maneja aún el robot",
-    "zh-Hans": "尚无人操纵机器人",
+    "en": "Nobody is driving the robot",
+    "de": "Niemand steuert den Roboter",
+    "fr": "Personne ne pilote le robot",
+    "es": "Nadie maneja el robot",
+    "zh-Hans": "无人操纵机器人",
 }
 
 

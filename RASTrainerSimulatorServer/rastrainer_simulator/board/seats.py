@@ -100,18 +100,24 @@ class SeatList:
 def checked_address(address: str) -> str:
     """Return the address of a simulator without what follows the port.
 
+    One that begins with its host is http on this computer, and https elsewhere.
+
     Raises:
         InputError: it is none, or would send the key over the network in the clear.
     """
     try:
         parts = urlsplit(address.strip())
+        if "://" not in address:
+            parts = urlsplit(f"//{address.strip()}")
+            parts = parts._replace(scheme="http" if is_loopback(parts.hostname or "") else "https")
         host, port = parts.hostname or "", parts.port
     except ValueError:
         parts, host, port = urlsplit(""), "", None
     if parts.scheme not in ("https", "http") or not host or port is None or parts.username:
         raise InputError(
-            f"{printable_name(address)} is not the address of a simulator; a simulator that is "
-            "started with --lan shows its own, such as https://192.0.2.7:18946."
+            f"{printable_name(address)} is not the address of a simulator, which has a host and a "
+            "port, as the simulator shows it: such as https://192.0.2.7:18946 with --lan, or "
+            "http://127.0.0.1:18945 on this computer."
         )
     if parts.scheme == "http" and not is_loopback(host):
         raise InputError(

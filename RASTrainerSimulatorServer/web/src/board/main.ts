@@ -121,8 +121,8 @@ class Board {
     if (first.problem === "" && first.answer.needsPin === true) {
       const fields = [{ name: "pin", label: "pin", help: "pinHelp", type: "password", maxLength: 12 }] as const;
       const values = await ask({ title: name, fields, accept: "send" }, async ({ pin }) => (await send(path, "POST", { order, text, pin })).problem);
-      if (values !== null) this.notify(say("done", { name }), "good");
-    } else if (first.problem === "") this.notify(say("done", { name }), "good");
+      if (values !== null) this.notify(say(`done.${order}`, { name }), "good");
+    } else if (first.problem === "") this.notify(say(`done.${order}`, { name }), "good");
     else this.notify(say("failed", { name, reason: first.problem }));
   }
 

@@ -109,7 +109,7 @@ export class Tile {
     this.progress.hidden = !isOpen;
     this.progress.max = seat?.count || 1;
     this.progress.value = seat?.touched ?? 0;
-    this.says.textContent = seat === null ? "" : [...seat.warnings, seat.screen || seat.instruction].filter((text) => text !== "").join(" · ");
+    this.says.textContent = seat === null ? "" : saidAt(seat);
     this.facts.replaceChildren(...(seat === null ? [] : factsOf(seat).flatMap(([label, value]) => [element("dt", label), element("dd", withUnits(value))])));
     const isThere = seat !== null;
     this.watch.hidden = !isThere;
@@ -125,6 +125,12 @@ function stateOf({ link, seat }: TileNews): string {
   const phase = say(`phase.${seat.phase}`);
   const doing = seat.task === "" ? phase : say("doing", { task: seat.task, phase });
   return WORKING.includes(seat.phase) ? say("doing.where", { doing, touch: say(`touch.${seat.touch}`) }) : doing;
+}
+
+/** What the trainee reads: warnings, and the instruction or which menu is open. */
+function saidAt({ warnings, screen, instruction }: SeatNews): string {
+  const last = screen === "" ? instruction : say("menu", { title: screen });
+  return [...warnings, last].filter((text) => text !== "").join(" · ");
 }
 
 function toneOf(news: TileNews): string {

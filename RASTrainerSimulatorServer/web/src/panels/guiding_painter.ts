@@ -22,7 +22,7 @@ const NEAR_MM = 0.6;
 const GOOD_MM = 0.5;
 const GOOD_DEG = 0.5;
 
-const TRACK = { left: 88, width: 36, top: 84, bottom: 416 };
+const TRACK = { left: 74, width: 36, top: 84, bottom: 416 };
 const TICK_MM = 10;
 const BEYOND_MM = 10;
 
@@ -96,12 +96,12 @@ function paintRuler(pen: Pen, ruler: DepthRuler, depth: number): void {
     [ruler.inner, OFF],
     [ruler.target, GOOD],
   ] as const;
-  const begin = left + width + 28;
+  const begin = left + width + 26;
   for (const [index, [mm, color]] of marks.entries()) {
     if (mm === null) continue;
     pen.stroke(left - 4, y(mm), left + width + 20, y(mm), color, 4);
     // Outer and inner table are near each other: their figures must not cover each other.
     lowest = Math.max(y(mm), lowest + 30);
-    pen.line(`${mm.toFixed(0)} ${ruler.names[index]}`, begin, lowest, { ...SMALL, color }, GUIDING_WIDTH - begin - 8);
+    pen.line(`${mm.toFixed(0)} ${ruler.names[index]}`, begin, lowest, { size: 22, color }, GUIDING_WIDTH - begin - 8);
   }
 }
