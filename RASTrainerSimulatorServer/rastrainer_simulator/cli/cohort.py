@@ -39,9 +39,11 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
             "of times and errors instead, and print how often the tests find the effect."
         ),
     )
-    parser.add_argument("--trainees", type=int, default=20, metavar="N")
-    parser.add_argument("--protocol", type=Path, metavar="FILE", help="default: the published one")
-    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--trainees", type=int, default=20, metavar="N", help="how many")
+    parser.add_argument(
+        "--protocol", type=Path, metavar="FILE", help="of the study (default: the published one)"
+    )
+    parser.add_argument("--seed", type=int, default=0, help="of everything that is drawn")
     parser.add_argument(
         "-o", "--output", type=Path, metavar="DIR", help="an empty folder, or one to resume"
     )
@@ -54,10 +56,16 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 def _add_skills(parser: argparse.ArgumentParser) -> None:
     skills = parser.add_argument_group("the trainees")
-    skills.add_argument("--speed", type=float, default=120.0, metavar="MM/S")
+    skills.add_argument(
+        "--speed", type=float, default=120.0, metavar="MM/S", help="of the tip between points"
+    )
     skills.add_argument("--aim", type=float, default=0.8, metavar="MM", help="SD along each axis")
-    skills.add_argument("--hmd-speed", type=float, default=1.0, metavar="FACTOR")
-    skills.add_argument("--hmd-aim", type=float, default=1.0, metavar="FACTOR")
+    skills.add_argument(
+        "--hmd-speed", type=float, default=1.0, metavar="FACTOR", help="of the speed in the headset"
+    )
+    skills.add_argument(
+        "--hmd-aim", type=float, default=1.0, metavar="FACTOR", help="of the SD in the headset"
+    )
     skills.add_argument(
         "--hmd-bias",
         type=float,
@@ -71,7 +79,13 @@ def _add_skills(parser: argparse.ArgumentParser) -> None:
         "--interaction", type=float, default=0.05, help="between trainees and modes"
     )
     skills.add_argument("--tempo-spread", type=float, default=0.0, help="between trials")
-    skills.add_argument("--learning", type=float, default=0.15, metavar="EXPONENT")
+    skills.add_argument(
+        "--learning",
+        type=float,
+        default=0.15,
+        metavar="EXPONENT",
+        help="of the time over the trials",
+    )
     skills.add_argument(
         "--accuracy-learning", type=float, default=0.0, metavar="EXPONENT", help="of the scatter"
     )
@@ -86,17 +100,26 @@ def _add_skills(parser: argparse.ArgumentParser) -> None:
         "--lapses",
         type=float,
         metavar="SHARE",
-        help="of trials in which a touch slips and is undone; default: all played trials",
+        help="of trials in which a touch slips and is undone (default: all played trials)",
     )
 
 
 def _add_engine(parser: argparse.ArgumentParser) -> None:
     engine = parser.add_argument_group("the engine")
-    engine.add_argument("--engine", choices=("processes", "dask"), default="processes")
-    engine.add_argument("--workers", type=int, metavar="N", help="default: one per core")
+    engine.add_argument(
+        "--engine", choices=("processes", "dask"), default="processes", help="what plays the trials"
+    )
+    engine.add_argument(
+        "--workers", type=int, metavar="N", help="that play at once (default: one per core)"
+    )
     engine.add_argument("--address", metavar="URL", help="of a Dask scheduler")
     engine.add_argument("--step", type=float, default=0.05, metavar="S", help="of the simulation")
-    engine.add_argument("--scenario", type=Path, metavar="DIR")
+    engine.add_argument(
+        "--scenario",
+        type=Path,
+        metavar="DIR",
+        help="whose head and tasks are used (default: Colin27)",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -59,8 +59,8 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     add_study(parser, nargs="?")
     parser.add_argument("--scenario", type=Path, metavar="DIR", help="default: Colin27")
     parser.add_argument("--task", help="of simulated trials; default: the scenario's last one")
-    parser.add_argument("--trials", type=int, default=20, help="simulated; default: %(default)s")
-    parser.add_argument("--seed", type=int, default=0, help="of the first; default: %(default)s")
+    parser.add_argument("--trials", type=int, default=20, help="number of simulated trials")
+    parser.add_argument("--seed", type=int, default=0, help="of the first")
     parser.add_argument(
         "--skin-shift",
         type=float,

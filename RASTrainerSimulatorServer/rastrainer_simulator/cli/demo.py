@@ -22,12 +22,14 @@ from typing import Any, TextIO
 import numpy as np
 
 from rastrainer.errors import InputError, RASTrainerError
+from rastrainer.files.writing import write_text
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import DEFAULT_HOST, FIDUCIAL_COUNT, TRIAL_RUN, Proximity
 from rastrainer.python_environment import python_command
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.scenario.scenario import Scenario, load_scenario
+from rastrainer.study.database.study import STUDY_FILE, Study
 from rastrainer.trial.ctps import CTPS_WARNING
 from rastrainer.trial.procedure_outcome import procedure_outcome
 from rastrainer.trial.record import TrialRecord
@@ -37,7 +39,8 @@ from rastrainer_simulator.core.setup import DEFAULT_SCENARIO
 TASKS = (TRIAL_RUN, "task-1")
 PROCEDURES = {"task-1": "dbs"}
 """What follows the touches of a task."""
-TRAINEE = "trainee-01"
+TRAINEE = "virtual-01"
+TOUCHES, FIDUCIALS = "touches.csv", "fiducials.csv"
 BAR_WIDTH = 30
 SLICER_TIMEOUT_S = 60.0
 
@@ -47,11 +50,15 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "demo", help="play two trials with a virtual trainee and show the results"
     )
-    parser.add_argument("--output", type=Path, default=Path("rastrainer-demo"), metavar="DIR")
-    parser.add_argument("--seed", type=int, default=2026, help="of the trainee and the head's pose")
     parser.add_argument(
-        "--speed", type=float, default=10.0, help="simulated seconds a second (default: 10)"
+        "--output",
+        type=Path,
+        default=Path("rastrainer-demo"),
+        metavar="DIR",
+        help="folder to write into",
     )
+    parser.add_argument("--seed", type=int, default=2026, help="of the trainee and the head's pose")
+    parser.add_argument("--speed", type=float, default=10.0, help="simulated seconds a second")
     parser.set_defaults(run=run)
 
 
@@ -64,7 +71,8 @@ def run(arguments: argparse.Namespace) -> int:
 def play_demo(output: Path, seed: int, speed: float) -> None:
     """Play the trial run and Task 1, write the results into `output`, and print a summary.
 
-    An `output` that is not empty is renamed, never overwritten.
+    An `output` that is not empty is renamed, never overwritten. The virtual trainee consents to
+    research, so that the study can be reported and exported.
 
     Raises:
         InputError: the package that plays Slicer's part is not installed; nothing was done then.
@@ -75,6 +83,8 @@ def play_demo(output: Path, seed: int, speed: float) -> None:
     output = output.absolute()
     move_aside(output)
     output.mkdir(parents=True)
+    with Study.open(output / STUDY_FILE) as study:
+        study.create_trainee(TRAINEE, consent=True)
     scenario = load_scenario(asset_path(*DEFAULT_SCENARIO))
     with _simulator(output, seed, speed) as port, _slicer(output, port) as slicer:
         states, record = _play(port, scenario, seed, speed)
@@ -83,6 +93,7 @@ def play_demo(output: Path, seed: int, speed: float) -> None:
     lines = (output / "results.jsonl").read_text(encoding="utf-8").splitlines()
     trials = [json.loads(line) for line in lines]
     _draw_robot(output / "robot.png", scenario, states[-1], trials[-1])
+    _write_points(output, scenario, record)
     head_to_world = np.array(trials[-1]["truth"]["head_to_world"])
     _draw_procedure(output / "procedure.png", scenario, record, head_to_world)
     for trial in trials:
@@ -252,6 +263,16 @@ def _draw_procedure(
     procedure = scenario.procedure(record.procedure.procedure)
     lines = procedure_lines(record.procedure, procedure, head_to_world)
     draw_procedure(path, read_head_mesh(scenario.head_mesh), procedure, lines)
+
+
+def _write_points(output: Path, scenario: Scenario, record: TrialRecord) -> None:
+    """Write touches (World) and fiducials (RAS), mm, as `rastrainer register` reads them."""
+    task = scenario.task(record.task)
+    fiducials = zip(task.labels, task.fiducials.tolist(), strict=True)
+    touches = ((point.label, point.position_mm) for point in record.points)
+    for name, points in ((TOUCHES, touches), (FIDUCIALS, fiducials)):
+        rows = (",".join(map(str, (label, *place))) for label, place in points)
+        write_text(output / name, "\n".join(["label,x,y,z", *rows, ""]))
 
 
 def _listing(folder: Path) -> str:

@@ -44,7 +44,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         ),
     )
     add_study(parser)
-    parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR")
+    parser.add_argument(
+        "-o", "--output", type=Path, required=True, metavar="DIR", help="an empty folder"
+    )
     parser.add_argument(
         "--format", action="append", choices=FORMATS, help="may be repeated; default: all"
     )

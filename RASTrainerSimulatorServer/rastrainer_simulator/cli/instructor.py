@@ -46,7 +46,7 @@ def add_board_parser(subparsers: argparse._SubParsersAction) -> None:
         "--port",
         type=int,
         default=DEFAULT_BOARD_PORT,
-        help="for browsers on this computer, 0 for any free one (default: %(default)s)",
+        help="for browsers on this computer, 0 for any free one",
     )
     add_config(parser)
     parser.set_defaults(run=run_board)

@@ -41,7 +41,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--port",
         type=int,
         default=DEFAULT_LTI_PORT,
-        help="to listen on, 0 for any free one (default: %(default)s)",
+        help="to listen on, 0 for any free one",
     )
     parser.add_argument(
         "--lan",

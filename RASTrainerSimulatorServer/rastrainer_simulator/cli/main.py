@@ -6,6 +6,7 @@ import argparse
 import pkgutil
 import sys
 from collections.abc import Sequence
+from typing import Any
 
 import rastrainer
 from rastrainer.errors import RASTrainerError
@@ -38,6 +39,27 @@ SUBCOMMANDS = {
 }
 
 
+class _HelpWithDefaults(argparse.HelpFormatter):
+    """Adds its default to the help of each option that has one, unless the help names it."""
+
+    def _get_help_string(self, action: argparse.Action) -> str:
+        text, default = action.help or "", action.default
+        has_words = default in (None, argparse.SUPPRESS) or isinstance(default, (bool, list))
+        if has_words or not action.option_strings or "default" in text:
+            return text
+        values = default if isinstance(default, tuple) else (default,)
+        numbers = (f"{value:g}" if isinstance(value, float) else str(value) for value in values)
+        shown = " ".join(numbers).replace("%", "%%")
+        return f"{text} (default: {shown})"
+
+
+class _CommandParser(argparse.ArgumentParser):
+    """The parser of `rastrainer`, and of each command and its subcommands."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(formatter_class=_HelpWithDefaults, **settings)
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one subcommand and return its exit status: 2 where the input cannot be used."""
     words = sys.argv[1:] if argv is None else list(argv)
@@ -54,7 +76,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = _CommandParser(
         prog="rastrainer",
         description="Trainer for robot-assisted, image-guided neurosurgery. Not for clinical use.",
     )

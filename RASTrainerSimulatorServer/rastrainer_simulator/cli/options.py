@@ -32,7 +32,7 @@ def add_records(parser: argparse.ArgumentParser) -> None:
         type=Path,
         metavar="DIR",
         default=DEFAULT_RECORDS,
-        help="folder of the trials' journals (default: %(default)s)",
+        help="folder of the trials' journals",
     )
 
 

@@ -76,7 +76,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("moving", metavar="MOVING", help="the points to be mapped")
     parser.add_argument("fixed", metavar="FIXED", help="the points to map them to")
-    parser.add_argument("--type", choices=KINDS, default=RIGID, help="default: %(default)s")
+    parser.add_argument("--type", choices=KINDS, default=RIGID, help="of the transform")
     parser.add_argument(
         "--target",
         nargs=3,

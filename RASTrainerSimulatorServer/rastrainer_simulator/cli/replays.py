@@ -81,8 +81,8 @@ def _summary(sentence: str, report) -> str:
     ]
     for name, (recorded, present) in report.changed_versions.items():
         lines.append(f"  version    {name}: recorded with {recorded}, replayed with {present}")
-    for name, value in report.motion.items():
-        lines.append(f"  {name:<24}{value:.6g}")
+    width = max(map(len, report.motion), default=0)
+    lines += [f"  {name:<{width}}  {value:.6g}" for name, value in report.motion.items()]
     return "\n".join(lines)
 
 
@@ -109,7 +109,7 @@ def add_rate_parser(subparsers: argparse._SubParsersAction) -> None:
         type=int,
         default=REPLAYS,
         metavar="N",
-        help="how many trials are drawn for all raters (default: %(default)s)",
+        help="how many trials are drawn for all raters",
     )
     parser.add_argument(
         "--form",

@@ -10,6 +10,7 @@ from rastrainer.errors import InputError
 from rastrainer.trial.ctps import (
     CTPS_WARNING,
     CohortScores,
+    read_notes,
     read_trials,
     score_cohort,
     trials_by_mode,
@@ -35,14 +36,15 @@ def add_score_parser(subparsers: argparse._SubParsersAction) -> None:
             "with CTPS, separately for each mode."
         ),
     )
-    parser.add_argument("trials", metavar="TRIALS.csv", help="one trial a row")
+    parser.add_argument("trials", type=Path, metavar="TRIALS.csv", help="one trial a row")
     parser.add_argument(
         "--mean-ct",
         action="append",
         default=[],
         metavar="[MODE=]SECONDS",
         help=(
-            "use this mean completion time instead of the trials' own, such as a printed one; "
+            "use this mean completion time instead of the trials' own, or of the one that notes "
+            "beside the file (TRIALS.json) give; "
             "without MODE for all modes; may be given once for each mode"
         ),
     )
@@ -57,7 +59,11 @@ def run_score(arguments: argparse.Namespace) -> int:
         InputError: the file or a mean completion time cannot be used.
     """
     modes = trials_by_mode(read_trials(arguments.trials))
-    means = _mean_times(arguments.mean_ct, list(modes))
+    notes = read_notes(arguments.trials.with_suffix(".json"))
+    means = {
+        **(notes.mean_ct_s if notes else {}),
+        **_mean_times(arguments.mean_ct, list(modes)),
+    }
     scores = {mode: score_cohort(trials, means.get(mode)) for mode, trials in modes.items()}
     if arguments.json:
         objects = {mode: _scores_json(score) for mode, score in scores.items()}
@@ -124,7 +130,9 @@ def add_report_parser(subparsers: argparse._SubParsersAction) -> None:
         ),
     )
     add_study(parser, help_text=f"{STUDY_HELP}; or a CSV file with the header {CSV_HEADER}")
-    parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR")
+    parser.add_argument(
+        "-o", "--output", type=Path, required=True, metavar="DIR", help="folder to write into"
+    )
     parser.add_argument(
         "--mean-ct",
         action="append",

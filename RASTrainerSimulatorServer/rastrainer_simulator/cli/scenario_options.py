@@ -36,7 +36,11 @@ def add_head_options(parser: argparse.ArgumentParser) -> None:
 def add_library(parser: argparse.ArgumentParser) -> None:
     """Add the folder of the user's own scenarios to an action's parser."""
     parser.add_argument(
-        "--library", type=Path, default=user_library(), metavar="DIR", help="default: %(default)s"
+        "--library",
+        type=Path,
+        default=user_library(),
+        metavar="DIR",
+        help="folder of your scenarios",
     )
 
 
@@ -63,7 +67,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--source", help="where the images come from (default: the volume's name)")
     parser.add_argument("--license", default=UNKNOWN_LICENSE, help="under which it may be used")
     parser.add_argument("--setup", type=Path, metavar="JSON", help="head, table and robot base")
-    parser.add_argument("--seed", type=int, default=1, help="of the proposed tasks (default: 1)")
+    parser.add_argument("--seed", type=int, default=1, help="of the proposed tasks")
     parser.add_argument(
         "--tasks",
         nargs="+",

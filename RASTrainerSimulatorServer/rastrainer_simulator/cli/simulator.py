@@ -32,14 +32,12 @@ def add_simulator_parser(subparsers: argparse._SubParsersAction) -> None:
         help="run the simulator, which Slicer and the views connect to",
         description="Serves OpenIGTLink and the views until Ctrl-C. Not for clinical use.",
     )
-    parser.add_argument(
-        "--host", default=DEFAULT_HOST, help=f"address to listen on (default: {DEFAULT_HOST})"
-    )
+    parser.add_argument("--host", default=DEFAULT_HOST, help="address to listen on")
     parser.add_argument(
         "--port",
         type=int,
         default=DEFAULT_PORT,
-        help=f"port to listen on, 0 for any free one (default: {DEFAULT_PORT})",
+        help="port to listen on, 0 for any free one",
     )
     parser.add_argument(
         "--connect", metavar="HOST:PORT", help="connect to a listening Slicer instead"
@@ -59,9 +57,7 @@ def add_simulator_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--no-views", action="store_true", help="serve OpenIGTLink only, no window and no browser"
     )
-    parser.add_argument(
-        "--speed", type=float, default=1.0, help="simulated seconds a second (default: 1)"
-    )
+    parser.add_argument("--speed", type=float, default=1.0, help="simulated seconds a second")
     parser.add_argument(
         "--seed", type=int, help="of the heads' poses (default: an unpredictable one)"
     )
@@ -184,7 +180,7 @@ def add_window_parser(subparsers: argparse._SubParsersAction) -> None:
         "--connect",
         metavar="URL",
         default=DEFAULT_URL,
-        help="where the simulator serves views (default: %(default)s)",
+        help="where the simulator serves views",
     )
     parser.add_argument("--code", help="the pairing code that the simulator shows")
     parser.add_argument("--size", metavar="WxH", help="of the window, in pixels")
@@ -200,13 +196,13 @@ def add_window_parser(subparsers: argparse._SubParsersAction) -> None:
         type=Path,
         metavar="DIR",
         default=Path.home() / "RASTrainer" / "pictures",
-        help="folder of the pictures that F12 keeps (default: %(default)s)",
+        help="folder of the pictures that F12 keeps",
     )
     parser.add_argument(
         "--picture-quality",
         choices=("high", "medium", "low"),
         default="high",
-        help="light and shadows of these pictures (default: %(default)s)",
+        help="light and shadows of these pictures",
     )
     parser.add_argument(
         "--log-folder", type=Path, metavar="DIR", help="folder of the logs (default: the usual)"

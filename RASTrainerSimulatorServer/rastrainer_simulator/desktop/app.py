@@ -8,7 +8,7 @@ import json
 import logging
 import os
 import time
-from collections.abc import Callable, Coroutine, Iterable
+from collections.abc import Callable, Coroutine, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
@@ -53,6 +53,7 @@ OWN_KEYS = (pygame.K_F11, pygame.K_F12)
 """Full screen, and screenshot: these are not sent to the simulator."""
 
 _log = logging.getLogger(__name__)
+STANDARD_ERROR = 2
 CHANNELS = 8
 BUFFER_SAMPLES = 512
 
@@ -301,13 +302,31 @@ class FrameCount:
             self._since, self._shown, self._due = now, 0, 0
 
 
+@contextlib.contextmanager
+def _silent_libraries() -> Iterator[None]:
+    """Discard what libraries in C print: without a sound card, ALSA repeats in eight lines why."""
+    try:
+        kept = os.dup(STANDARD_ERROR)
+    except OSError:  # A program without a terminal may have none.
+        yield
+        return
+    with open(os.devnull, "wb") as nothing:
+        os.dup2(nothing.fileno(), STANDARD_ERROR)
+    try:
+        yield
+    finally:
+        os.dup2(kept, STANDARD_ERROR)
+        os.close(kept)
+
+
 class Sounds:
     """The loudspeaker; silent where there is none."""
 
     def __init__(self) -> None:
         self._sounds: dict[str, pygame.mixer.Sound] = {}
         try:
-            pygame.mixer.init(buffer=BUFFER_SAMPLES)
+            with _silent_libraries():
+                pygame.mixer.init(buffer=BUFFER_SAMPLES)
         except pygame.error as error:
             _log.warning("There will be no sound: %s", error)
             return

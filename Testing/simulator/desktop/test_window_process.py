@@ -119,6 +119,21 @@ def test_the_window_joins_as_a_desktop_and_rejoins_after_its_server_was_down(ses
         assert hello.kind == "desktop"
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="ALSA is Linux's")
+def test_a_computer_without_a_sound_card_is_told_so_in_one_line():
+    words = "from rastrainer_simulator.desktop.app import Sounds; Sounds().close()"
+    without = {"SDL_AUDIODRIVER": "alsa", "ALSA_CONFIG_PATH": os.devnull}
+    done = subprocess.run(
+        [sys.executable, "-c", words],
+        env={**os.environ, **without},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("There will be no sound: ")
+
+
 def test_the_window_prints_no_warnings_or_errors(session):
     lines = session["said"].splitlines()
     assert [line for line in lines if "warning" in line.lower() or "error" in line.lower()] == []

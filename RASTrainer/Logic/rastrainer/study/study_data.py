@@ -156,7 +156,7 @@ def read_study_data(place: StudyPlace, allow_incomplete: bool = False) -> StudyD
     if not data.trials:
         raise InputError(
             f"The study {place} contains no trials of trainees who consented to research "
-            f"({data.without_consent} did not)."
+            f"({data.without_consent} did not): note there who consents in 3D Slicer, Trainees."
         )
     return data
 
