@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from rastrainer.number_text import with_units
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
@@ -321,7 +322,8 @@ def test_a_scrolled_list_shows_the_item_in_focus_and_its_help(told_page, served,
     resize(told_page, *SIZES["laptop"])
     for item in screen.menu.items:
         show(told_page, served, replace(screen, menu=replace(screen.menu, focus=item.name)))
-        assert told_page.evaluate("document.querySelector('#menu .help').textContent") == item.help
+        said = told_page.evaluate("document.querySelector('#menu .help').textContent")
+        assert said == with_units(item.help)
         assert told_page.evaluate(IN_FOCUS) == [True, True], item.name
 
 

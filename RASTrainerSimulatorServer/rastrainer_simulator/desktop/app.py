@@ -310,7 +310,7 @@ def _silent_libraries() -> Iterator[None]:
     except OSError:  # A program without a terminal may have none.
         yield
         return
-    with open(os.devnull, "wb") as nothing:
+    with Path(os.devnull).open("wb") as nothing:
         os.dup2(nothing.fileno(), STANDARD_ERROR)
     try:
         yield

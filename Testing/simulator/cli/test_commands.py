@@ -9,6 +9,7 @@ import subprocess
 import sys
 import uuid
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -21,7 +22,8 @@ from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer_simulator.cli import register as register_command
-from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.cli.main import _parser, main
+from rastrainer_simulator.cli.replays import _summary
 from rastrainer_simulator.cli.results import add_score_parser
 from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record, make_traced
 
@@ -124,7 +126,7 @@ def test_register_prints_a_table_with_units(files, capsys):
 
 
 def test_score_reproduces_the_published_tables(run_json):
-    result = run_json("score", STUDY, "--mean-ct", "desktop=129.42")
+    result = run_json("score", STUDY)
     assert list(result) == ["hmd", "desktop"]
     assert round(result["hmd"]["overall"], 2) == 64.82
     assert round(result["desktop"]["overall"], 2) == 67.29
@@ -136,11 +138,58 @@ def test_score_reproduces_the_published_tables(run_json):
     assert round(result["desktop"]["equation_3_overall"], 1) == 33.6
 
 
-def test_a_mean_time_without_a_mode_counts_for_all(run_json):
+def test_score_and_report_print_the_same_score_of_every_task(tmp_path, capsys):
+    assert run("score", STUDY) == 0
+    scores = re.findall(r"^Task \d +(\d+\.\d\d)$", capsys.readouterr().out, re.MULTILINE)
+    assert main(["report", str(STUDY), "-o", str(tmp_path)]) == 0
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert len(scores) == 10
+    assert [score for score in scores if f">{score}</td>" not in page] == []
+
+
+def test_a_mean_time_without_a_mode_counts_for_all(tmp_path, run_json):
     result = run_json("score", STUDY, "--mean-ct", "120")
     assert (result["hmd"]["mean_ct"], result["desktop"]["mean_ct"]) == (120, 120)
-    own = run_json("score", STUDY)
+    noted = run_json("score", STUDY)
+    assert noted["desktop"]["mean_ct"] == 129.42
+    own = run_json("score", shutil.copy(STUDY, tmp_path))
     assert own["desktop"]["mean_ct"] == pytest.approx(129.435)
+
+
+def options_of(parser, name="rastrainer"):
+    """Yield each command with its help and its options."""
+    yield name, parser.format_help(), [each for each in parser._actions if each.option_strings]
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for command, subparser in action.choices.items():
+                yield from options_of(subparser, f"{name} {command}")
+
+
+def test_the_help_of_every_command_has_the_default_of_every_option_once():
+    checked = 0
+    for command, text, options in options_of(_parser([])):
+        whole = " ".join(text.split())
+        for option in options:
+            assert option.help, (command, option.option_strings)
+            if option.default not in (None, argparse.SUPPRESS, []) and option.nargs != 0:
+                checked += 1
+                said = whole.partition(f"{option.option_strings[-1]} ")[2]
+                assert option.help in whole
+                assert "%(default)" not in option.help or isinstance(
+                    option, argparse.BooleanOptionalAction
+                )
+                assert "default: " in said
+    assert checked > 40
+
+
+def test_what_is_measured_of_a_replayed_trial_stands_apart_from_its_name():
+    measured = {"unintended_contact_time_s": 0.0, "path_mm": 1234.5}
+    report = SimpleNamespace(
+        trial_id="", ticks=1, compared={}, difference="", changed_versions={}, motion=measured
+    )
+    lines = _summary("intact", report).splitlines()
+    assert lines[-2].split() == ["unintended_contact_time_s", "0"]
+    assert lines[-1].split() == ["path_mm", "1234.5"]
 
 
 def test_statistics_undefined_for_a_single_trial_are_null(tmp_path, run_json):
