@@ -154,9 +154,10 @@ def read_study_data(place: StudyPlace, allow_incomplete: bool = False) -> StudyD
             "missing trials are played."
         )
     if not data.trials:
+        count = data.without_consent
+        remedy = f" ({count} did not): note in 3D Slicer, Trainees, who consents." if count else "."
         raise InputError(
-            f"The study {place} contains no trials of trainees who consented to research "
-            f"({data.without_consent} did not): note there who consents in 3D Slicer, Trainees."
+            f"The study {place} contains no trials of trainees who consented to research{remedy}"
         )
     return data
 
