@@ -466,7 +466,7 @@ def test_trainees_without_consent_are_left_out_and_counted(tmp_path):
 def test_a_study_without_any_consent_is_refused(tmp_path):
     with Study.open(tmp_path / "study.db") as study:
         study.add_trial(make_record())
-    with pytest.raises(InputError, match="1 did not.: note in 3D Slicer, Trainees"):
+    with pytest.raises(InputError, match=r"1 did not\): note in 3D Slicer, Trainees"):
         write_report(read_study_data(tmp_path / "study.db"), tmp_path)
 
 
