@@ -14,7 +14,7 @@ from rastrainer.panels.widgets import (
     chosenScenario,
     fillComboBox,
     fillTable,
-    setSentence,
+    setText,
     setUsable,
 )
 from rastrainer.scenario.points import FACE_LANDMARKS, Landmark
@@ -158,7 +158,7 @@ class LandmarksPanel:
             self._showMessage(step)
 
     def _showMessage(self, sentence: str) -> None:
-        setSentence(self._ui.landmarksText, sentence)
+        setText(self._ui.landmarksText, sentence)
 
 
 def _row(landmark: Landmark) -> tuple[str, ...]:

@@ -14,7 +14,6 @@ from rastrainer.panels.widgets import (
     LINK_COLORS,
     connectAsPressed,
     setLight,
-    setSentence,
     setText,
     setUsable,
 )
@@ -174,7 +173,7 @@ class NextStepPanel:
         isPossible = step.action is not NextAction.WAIT
         tip = _("The next thing to do ({shortcut})").format(shortcut=SHORTCUT)
         setUsable(ui.nextStepButton, isPossible, tip, step.sentence)
-        setSentence(ui.nextStepText, step.sentence)
+        setText(ui.nextStepText, step.sentence)
         self._folding.follow(step.section)
 
     def _titleOf(self, task: str) -> str:

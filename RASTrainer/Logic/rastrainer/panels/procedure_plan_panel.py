@@ -14,7 +14,6 @@ from rastrainer.panels.widgets import (
     chosenScenario,
     fillComboBox,
     fillTable,
-    setSentence,
     setText,
     setUsable,
 )
@@ -202,7 +201,7 @@ class ProcedurePlanPanel:
             _("Choose a model or a segmentation first."),
         )
         names = ", ".join(each.GetName() for each in noGoNodes(slicer.mrmlScene))
-        setSentence(ui.noGoText, _("To keep away from: {names}").format(names=names or "–"))
+        setText(ui.noGoText, _("To keep away from: {names}").format(names=names or "–"))
         ui.checkLinesButton.text = _("Cancel") if isAtWork else _("Check")
         first = _("Place a line first.")
         setUsable(
@@ -218,7 +217,7 @@ class ProcedurePlanPanel:
             _("Wait until the current work is done.") if isAtWork else first,
         )
         if not isAtWork:
-            setSentence(ui.procedurePlanText, self._problem or self._verdict())
+            setText(ui.procedurePlanText, self._problem or self._verdict())
 
     def _verdict(self) -> str:
         """Return the errors found by the last check of the plan, or that there are none."""

@@ -15,7 +15,7 @@ from rastrainer.panels.widgets import (
     keepChecked,
     keepChosen,
     setChecked,
-    setSentence,
+    setText,
     setUsable,
     textLabel,
 )
@@ -113,10 +113,10 @@ class RegistrationPanel:
 
     def _show(self) -> None:
         ui, comparison = self._ui, self._logic.comparison
-        setSentence(
+        setText(
             ui.registrationText, _summary(comparison) if comparison else self._logic.problem
         )
-        setSentence(ui.treText, _treText(comparison) if comparison else "")
+        setText(ui.treText, _treText(comparison) if comparison else "")
         ui.treText.toolTip = toolTip(INTERVAL_NOTE)
         fits = [] if comparison is None else _fitRows(comparison)
         fillTable(ui.fitsTable, fits, [INTERVAL_NOTE] * len(fits))

@@ -18,7 +18,6 @@ from rastrainer.panels.widgets import (
     fillComboBox,
     fillTable,
     setChecked,
-    setSentence,
     setText,
     setUsable,
 )
@@ -306,7 +305,7 @@ class MethodsPanel:
             self._showMessage(step)
 
     def _showMessage(self, sentence: str) -> None:
-        setSentence(self._ui.methodsText, sentence)
+        setText(self._ui.methodsText, sentence)
 
 
 def _row(method: ComparedMethod) -> tuple[str, ...]:

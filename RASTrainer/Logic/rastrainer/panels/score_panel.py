@@ -17,7 +17,6 @@ from rastrainer.panels.widgets import (
     fillComboBox,
     fillTable,
     setChecked,
-    setSentence,
     setText,
     setUsable,
 )
@@ -139,7 +138,7 @@ class ScorePanel:
         """Show the time of the replay, and whether tables are shown."""
         setChecked(self._ui.showTablesButton, self._session.layout.purpose == TABLES)
         if not self._work.isUnderWay:
-            setSentence(self._ui.replayText, self._session.replay.sentence)
+            setText(self._ui.replayText, self._session.replay.sentence)
 
     def _fold(self, isFolded: bool) -> None:
         if isFolded:
@@ -189,7 +188,7 @@ class ScorePanel:
             [row.tip for row in scores],
         )
         fillTable(ui.ctpsTable, ((row.title, row.text) for row in ctps), [row.note for row in ctps])
-        setSentence(ui.ctpsText, CTPS_WARNING if ctps else "")
+        setText(ui.ctpsText, CTPS_WARNING if ctps else "")
         fillTable(ui.standingsTable, (_standingRow(s) for s in beside))
         fillTable(
             ui.motionTable, ((row.title, row.text) for row in motion), [row.note for row in motion]
@@ -231,7 +230,7 @@ class ScorePanel:
                 self._worst = feedback.worst.label
             elif trial is not None:
                 sentences = [_("Feedback on the trial is being prepared.")]
-        setSentence(self._ui.feedbackText, "\n".join(sentences))
+        setText(self._ui.feedbackText, "\n".join(sentences))
         self._showUsable()
 
     def _showUsable(self) -> None:
@@ -266,7 +265,7 @@ class ScorePanel:
 
     def _showProgress(self, step: str, share: float) -> None:
         if step:
-            setSentence(self._ui.replayText, f"{step}: {100 * share:.0f} %")
+            setText(self._ui.replayText, f"{step}: {100 * share:.0f} %")
 
     def _showMessage(self, sentence: str) -> None:
         setText(self._ui.scoreMessageText, sentence)

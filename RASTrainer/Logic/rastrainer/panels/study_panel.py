@@ -16,7 +16,6 @@ from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.widgets import (
     chosenData,
     fillTable,
-    setSentence,
     setText,
     setUsable,
     textLabel,
@@ -127,9 +126,9 @@ class StudyPanel:
         step = None if progress is None else progress.next_step
         self._warn()
         if progress is None or step is None or step.kind not in TIMED:
-            setSentence(self._ui.stepTimeText, "")
+            setText(self._ui.stepTimeText, "")
         else:
-            setSentence(
+            setText(
                 self._ui.stepTimeText,
                 _("{over} of {minutes:g} min have passed.").format(
                     over=_clock(self._logic.minutesElapsed(progress)), minutes=step.minutes
@@ -144,7 +143,7 @@ class StudyPanel:
         if key != self._judged:
             self._judged = key
             with contextlib.suppress(InputError):
-                setSentence(self._ui.offProtocolText, self._logic.offProtocolSentence())
+                setText(self._ui.offProtocolText, self._logic.offProtocolSentence())
 
     def _show(self) -> None:
         ui = self._ui
@@ -153,9 +152,9 @@ class StudyPanel:
             protocol, progress = self._logic.protocol(), self._logic.progress()
         except InputError as error:
             protocol = progress = None
-            setSentence(ui.protocolText, str(error))
+            setText(ui.protocolText, str(error))
         else:
-            setSentence(
+            setText(
                 ui.protocolText,
                 _("No protocol: trainees practice freely.") if protocol is None else protocol.title,
             )

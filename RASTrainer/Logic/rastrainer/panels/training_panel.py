@@ -19,7 +19,6 @@ from rastrainer.panels.widgets import (
     keepChecked,
     keepChosen,
     setLight,
-    setSentence,
     setText,
     setUsable,
 )
@@ -180,7 +179,7 @@ class TrainingPanel:
             setLight(ui.clearanceLight, GRAY)
             for label in (ui.trialText, ui.nextPointText, ui.elapsedText, ui.clearanceText):
                 setText(label, "–")
-            setSentence(ui.instructionText, "")
+            setText(ui.instructionText, "")
             return
         trial = f"{shortName(progress.trainee)}, {shortName(task_title(progress.task))}"
         setText(ui.trialText, trial if progress.trainee else "–")
@@ -191,7 +190,7 @@ class TrainingPanel:
         setText(ui.elapsedText, _clock(progress.elapsedS))
         self._showClearance(progress)
         text = _("Shown to the trainee: {sentence}").format(sentence=progress.instruction)
-        setSentence(ui.instructionText, text if progress.instruction else "")
+        setText(ui.instructionText, text if progress.instruction else "")
 
     def _start(self, task: str, procedure: str = "", method: str = "") -> None:
         with slicer.util.tryWithErrorDisplay(_("The trial was not started.")):
@@ -231,7 +230,7 @@ class TrainingPanel:
         setText(self._ui.clearanceText, shown)
 
     def _showMessage(self, sentence: str) -> None:
-        setSentence(self._ui.trainingMessageText, sentence)
+        setText(self._ui.trainingMessageText, sentence)
 
 
 def _clock(seconds: float) -> str:
