@@ -74,14 +74,6 @@ class PanelStack:
         line = NextStepPanel(self.ui, session, _actions(sections))
         self._panels = [*sections.values(), line]
 
-    def showState(self) -> None:
-        """Show what no signal reports: the scene, and time; nothing while a scene is loaded."""
-        if slicer.mrmlScene.IsBatchProcessing():
-            return
-        for panel in self._panels:
-            if hasattr(panel, "showState"):
-                panel.showState()
-
     def close(self) -> None:
         """Stop listening."""
         for panel in self._panels:

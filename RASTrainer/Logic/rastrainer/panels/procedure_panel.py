@@ -113,7 +113,6 @@ class ProcedurePanel:
             (session.link.statusChanged, self.showState),
         )
         self._laySlices()
-        self._showMessage("")
         self._showOutcome()
         self.showState()
 
@@ -122,7 +121,7 @@ class ProcedurePanel:
         self._listening.close()
 
     def showState(self, *_arguments: Any) -> None:
-        """Show the progress of the procedure; called about ten times a second."""
+        """Show the progress of the procedure."""
         ui, status = self._ui, self._logic.status
         isConnected = self._session.link.status.state is LinkState.CONNECTED
         setText(ui.procedureStateText, stateText(status, isConnected))
@@ -156,6 +155,7 @@ class ProcedurePanel:
 
     def _laySlices(self, *_checked: bool) -> None:
         self._session.slices.liesAlong = self._ui.slicesAlongCheckBox.checked
+        self._session.woken.emit()
 
     def _showOutcome(self) -> None:
         ui, outcome = self._ui, self._logic.outcome

@@ -65,6 +65,7 @@ class ScorePanel:
             (self._trainees.changed, self._show),
             (session.trials.trialScored, self._noteNewTrial),
             (session.replay.feedbackFound, self._showFeedback),
+            (session.sceneChanged, self._showReplay),
         )
         self._show()
 
@@ -134,7 +135,7 @@ class ScorePanel:
             trial = self._chosenTrial()
             self._work.run(lambda report: self._session.replay.showWorstTouch(trial, report))
 
-    def showState(self) -> None:
+    def _showReplay(self) -> None:
         """Show the time of the replay, and whether tables are shown."""
         setChecked(self._ui.showTablesButton, self._session.layout.purpose == TABLES)
         if not self._work.isUnderWay:
@@ -262,6 +263,7 @@ class ScorePanel:
         report = _("Write the report of the whole study as a printable page, and open it.")
         setUsable(ui.exportScoresButton, not isAtWork, allTrials, busy)
         setUsable(ui.reportButton, not isAtWork, report, busy)
+        self._showReplay()
 
     def _showProgress(self, step: str, share: float) -> None:
         if step:

@@ -19,6 +19,7 @@ from rastrainer.panels.widgets import (
     keepChecked,
     keepChosen,
     setLight,
+    setProperty,
     setText,
     setUsable,
 )
@@ -95,8 +96,9 @@ class TrainingPanel:
             (session.trainees.changed, self.showState),
             (session.taskChosen, self._showChoices),
             (session.link.statusChanged, self.showState),
+            (session.trials.trialKept, self.showState),
+            (session.secondPassed, self._showTime),
         )
-        self._showMessage("")
         self._showChoices()
         self._moveSlices()
         self.showState()
@@ -161,14 +163,15 @@ class TrainingPanel:
         slices = self._session.slices
         slices.showsNextPoint = self._ui.slicesNextPointCheckBox.checked
         slices.followsTool = self._ui.slicesToolCheckBox.checked
+        self._session.woken.emit()
 
     def showState(self, *_arguments: Any) -> None:
-        """Show the state of the trial; called about ten times a second."""
+        """Show the state of the trial."""
         ui, progress, session = self._ui, self._logic.progress, self._session
         nobody = _("None: choose one in the section Trainees.")
         setText(ui.trainingTraineeText, session.trainees.chosen or nobody)
         title = _("Start {task}").format(task=buttonTitle(session.taskTitle))
-        ui.startTaskButton.text = title
+        setProperty(ui.startTaskButton, "text", title)
         isConnected = session.link.status.state is LinkState.CONNECTED
         self._showButtons(progress, isConnected)
         received = len(session.trials.received)
@@ -184,13 +187,17 @@ class TrainingPanel:
         trial = f"{shortName(progress.trainee)}, {shortName(task_title(progress.task))}"
         setText(ui.trialText, trial if progress.trainee else "–")
         setText(ui.phaseText, PHASES.get(progress.phase, progress.phase))
-        ui.pointsProgressBar.maximum = progress.total
-        ui.pointsProgressBar.value = min(progress.touched, progress.total)
+        setProperty(ui.pointsProgressBar, "maximum", progress.total)
+        setProperty(ui.pointsProgressBar, "value", min(progress.touched, progress.total))
         setText(ui.nextPointText, progress.nextPoint or "–")
-        setText(ui.elapsedText, _clock(progress.elapsedS))
+        self._showTime()
         self._showClearance(progress)
         text = _("Shown to the trainee: {sentence}").format(sentence=progress.instruction)
         setText(ui.instructionText, text if progress.instruction else "")
+
+    def _showTime(self) -> None:
+        if self._session.link.status.state is LinkState.CONNECTED:
+            setText(self._ui.elapsedText, _clock(self._logic.progress.elapsedS))
 
     def _start(self, task: str, procedure: str = "", method: str = "") -> None:
         with slicer.util.tryWithErrorDisplay(_("The trial was not started.")):
@@ -211,7 +218,7 @@ class TrainingPanel:
         ):
             setUsable(button, not reason, tip, reason)
         isPaused = progress.phase == Phase.PAUSED.value
-        ui.pauseButton.text = _("Resume") if isPaused else _("Pause")
+        setProperty(ui.pauseButton, "text", _("Resume") if isPaused else _("Pause"))
         mayPause = isConnected and (isPaused or progress.phase in _PAUSABLE)
         noTrial = _("No trial is running.")
         setUsable(ui.pauseButton, mayPause, _("Pause the trial and its time."), noTrial)
