@@ -105,6 +105,8 @@ class RASTrainerParameterNode:
 class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
     """Wires the panels to the logic; they are in `rastrainer.panels`."""
 
+    SOON_MS = 100
+
     def __init__(self, parent=None) -> None:
         ScriptedLoadableModuleWidget.__init__(self, parent)
         VTKObservationMixin.__init__(self)
@@ -115,6 +117,7 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
         self._panels: Optional[PanelStack] = None
         self._timer: Any = None
         self._workTimer: Any = None
+        self._isWoken = False
 
     def setup(self) -> None:
         from rastrainer.panels.panel_stack import PanelStack
@@ -136,9 +139,10 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
         self.initializeParameterNode()
         # Trials arrive whether or not this module is shown.
         self._timer = qt.QTimer()
-        self._timer.setInterval(100)
+        self._timer.setSingleShot(True)
         self._timer.connect("timeout()", self.onTimeout)
-        self._timer.start()
+        session.woken.connect(self.wake)
+        self.wake()
         self._workTimer = qt.QTimer()
         self._workTimer.setInterval(PERIOD_MS)
         self._workTimer.connect("timeout()", self.onWorkTimeout)
@@ -155,6 +159,7 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
         if self._panels is not None:
             self._panels.close()
         if self.logic is not None:
+            self.logic.session.woken.disconnect(self.wake)
             self.logic.close()
         self.setParameterNode(None)
         self.removeObservers()
@@ -166,16 +171,30 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
 
     def enter(self) -> None:
         self.initializeParameterNode()
+        self.wake()
 
     def exit(self) -> None:
         if self.logic is not None:
             self.logic.session.layout.giveBack()
         self.setParameterNode(None)
+        self.wake()
+
+    def wake(self) -> None:
+        """Have `onTimeout` called soon; this may be inside VTK."""
+        if self._timer is not None and not self._isWoken:
+            self._isWoken = True
+            self._timer.start(self.SOON_MS)
 
     def onTimeout(self) -> None:
-        if self.logic is not None and self._panels is not None:
+        if self.logic is None:
+            return
+        self._isWoken = False
+        try:
             self.logic.process()
-            self._panels.showState()
+        finally:
+            restS = self.logic.session.restS(self.parent.isEntered)
+            if restS is not None and not self._isWoken:
+                self._timer.start(round(1000 * restS))
 
     def onWorkTimeout(self) -> None:
         if self.logic is None or not self.logic.session.yieldTimeToWork():
@@ -230,7 +249,7 @@ class RASTrainerLogic(ScriptedLoadableModuleLogic):
         return wrapped(super().getParameterNode())
 
     def process(self) -> None:
-        """Do what is due; called about ten times a second."""
+        """Do what is due."""
         self.session.process()
 
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""What a connection costs Slicer: renderings and processor time, and the delay of a command.
+"""What module and connection cost Slicer: renderings, processor time, and a command's delay.
 
 In the host of the tests, which counts what Slicer would render and draws nothing, beside a real
 simulator's process.
@@ -17,6 +17,7 @@ from rastrainer.protocol import PROTOCOL_VERSION, CommandName
 from rastrainer.slicer.link.link_status import LinkState
 from Testing.benchmarks.row import row
 from Testing.end_to_end.simulator_process import SimulatorProcess
+from Testing.slicer.host.activity import ActivityWatch
 from Testing.slicer.host.host import Host
 
 STROKE_S = 2.0
@@ -27,22 +28,34 @@ BURST = 1000
 
 
 class Cost:
-    """Renderings a second and the share of a core, %, piece by piece of a second."""
+    """What a second costs, again and again.
+
+    Attributes:
+        renders: renderings a second.
+        cpu: share of a core, %; the host has a share in it, which looks for messages every 5 ms.
+        module: processor time of the module's Python, s a minute.
+        writes: assignments to widgets a second.
+    """
 
     def __init__(self, host: Host, seconds: int, before: Callable[[], None] = lambda: None) -> None:
         self.renders: list[float] = []
         self.cpu: list[float] = []
+        self.module: list[float] = []
+        self.writes: list[float] = []
         for _ in range(seconds):
             before()
             renders, used, begin = host.renders, time.process_time(), time.perf_counter()
-            _idle_for(PIECE_S)
+            with ActivityWatch() as watch:
+                _idle_for(PIECE_S)
             passed = time.perf_counter() - begin
             self.renders.append((host.renders - renders) / passed)
             self.cpu.append(100.0 * (time.process_time() - used) / passed)
+            self.module.append(60.0 * watch.busy_s / passed)
+            self.writes.append(len(watch.writes) / passed)
 
 
 def rows(quick: bool) -> list[dict]:
-    """Return the rows `slicer.renders`, `slicer.cpu`, `slicer.command` and `slicer.burst`."""
+    """Return the rows `slicer.*`."""
     seconds = 4 if quick else 20
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
@@ -53,6 +66,10 @@ def rows(quick: bool) -> list[dict]:
         session = host.open().logic.session
         _idle_for(SETTLE_S)
         apart = Cost(host, seconds)
+        host.leave()
+        _idle_for(SETTLE_S)
+        away = Cost(host, seconds)
+        host.enter()
         session.link.connectTo("127.0.0.1", simulator.port)
         host.wait_until(lambda: session.link.status.state is LinkState.CONNECTED, "it connects")
         _idle_for(SETTLE_S)
@@ -66,7 +83,10 @@ def rows(quick: bool) -> list[dict]:
     return [
         row("slicer.renders idle", idle.renders, "1/s", "disconnected", apart.renders),
         row("slicer.renders moving", moving.renders, "1/s"),
+        row("slicer.cpu open", apart.cpu, "%", "another module", away.cpu),
         row("slicer.cpu idle", idle.cpu, "%", "disconnected", apart.cpu),
+        row("slicer.module idle", idle.module, "s/min", "disconnected", apart.module),
+        row("slicer.writes idle", idle.writes, "1/s", "disconnected", apart.writes),
         row("slicer.cpu moving", moving.cpu, "%", "disconnected", apart.cpu),
         row("slicer.command", delays, "ms"),
         row("slicer.send 1,000", bursts, "ms"),

@@ -1,10 +1,11 @@
 """The sections fit into the dock that Slicer has on a laptop."""
 
 import xml.etree.ElementTree as ElementTree
+from itertools import pairwise
 from pathlib import Path
 
 UI = Path(__file__).parents[2] / "RASTrainer" / "Resources" / "UI"
-DOCK_WIDTH = 472
+DOCK_WIDTH, WIDEST = 472, 480
 """Pixels; a module that asks for more widens the dock and takes the room of the views."""
 
 LIMIT = 0.9 * DOCK_WIDTH
@@ -21,7 +22,73 @@ def named(class_name):
 
 
 SECTIONS, GROUPS = named("ctkCollapsibleButton"), named("ctkCollapsibleGroupBox")
-PATHS = named("ctkPathLineEdit")
+PATHS, TABLES = named("ctkPathLineEdit"), named("QTableWidget")
+TEXTS = [name for name in named("QLabel") if name.endswith("Text")]
+LOOK = ["sizePolicy", "sizeAdjustPolicy", "maximumSize", "wordWrap", "textFormat"]
+"""Properties that tables and labels have from one function."""
+
+
+def open_only(host, opened):
+    """Open a section, within the one around it, and close the others."""
+    around = {"curriculumCollapsibleButton": "studyCollapsibleButton"}.get(opened)
+    for section in SECTIONS:
+        host.find(section).collapsed = section not in (opened, around)
+
+
+def fill(host, amount):
+    """Fill all tables and texts, as much as a long study would."""
+    from rastrainer.panels.widgets import fillTable, setText
+
+    for name in TABLES:
+        table = host.find(name)
+        fillTable(table, [[f"trial {amount} of somebody"] * table.columnCount] * 4 * amount)
+    for name in TEXTS:
+        setText(host.find(name), "A sentence that says what happened. " * 4 * amount)
+
+
+def test_sections_that_are_opened_filled_and_closed_do_not_widen_the_dock(host):
+    host.open()
+    for group in GROUPS:
+        host.find(group).collapsed = False
+    for opened in SECTIONS:
+        open_only(host, opened)
+        for amount in (1, 2, 3, 2, 1):
+            fill(host, amount)
+            assert host.width() <= WIDEST, (opened, amount)
+
+
+def test_nothing_is_cut_in_the_narrowest_dock(host):
+    host.open()
+    for group in GROUPS:
+        host.find(group).collapsed = False
+    for opened in SECTIONS:
+        open_only(host, opened)
+        for width in (host.minimum_width(), DOCK_WIDTH):
+            assert host.cut_off(width) == [], (opened, width)
+
+
+def test_closed_sections_leave_no_gaps(host):
+    host.open()
+    open_only(host, None)
+    assert host.cut_off(DOCK_WIDTH) == []
+    sections = [host.find(name)._qt for name in SECTIONS]
+    places = [each.mapToGlobal(each.rect().topLeft()) for each in sections if each.isVisible()]
+    rows = sorted(place.y() for place in places)
+    heights = {each.height() for each in sections if each.isVisible()}
+    assert len(heights) == 1
+    gaps = [lower - upper - max(heights) for upper, lower in pairwise(rows)]
+    assert max(gaps) <= 4, gaps
+
+
+def test_no_file_gives_a_table_or_a_label_a_look_of_its_own():
+    for path in sorted(UI.glob("*.ui")):
+        for widget in ElementTree.parse(path).iter("widget"):
+            if widget.get("class") in ("QTableWidget", "QLabel"):
+                own = {each.get("name") for each in widget.findall("property")}
+                assert not own & set(LOOK), widget.get("name")
+    panels = UI.parents[1] / "Logic" / "rastrainer" / "panels"
+    made = [path.name for path in panels.glob("*.py") if "qt.QTableWidget()" in path.read_text()]
+    assert made == []
 
 
 def test_a_section_opened_with_all_its_groups_does_not_widen_the_dock(host):

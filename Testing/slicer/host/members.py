@@ -111,9 +111,10 @@ UNMEASURED: dict[str, tuple[str, str]] = {
     "QAbstractItemView": ("QTableView", ""),
     "QHeaderView": (
         "QFrame",
-        ".stretchLastSection .defaultSectionSize ResizeToContents Stretch Interactive Fixed"
+        ".stretchLastSection .defaultSectionSize .minimumSectionSize"
+        " ResizeToContents Stretch Interactive Fixed"
         " setSectionResizeMode setStretchLastSection resizeSection sectionSize hideSection"
-        " setSectionHidden setSectionsClickable resizeSections count",
+        " setSectionHidden setSectionsClickable resizeSections sectionSizeHint count",
     ),
     "QScrollBar": ("QSlider", ""),
     "QByteArray": ("", "data isEmpty size length toBase64"),

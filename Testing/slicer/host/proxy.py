@@ -16,6 +16,7 @@ import shiboken6
 from PySide6 import QtCore, QtGui, QtUiTools, QtWidgets
 
 from Testing.slicer.host import stand_ins
+from Testing.slicer.host.activity import note_write
 from Testing.slicer.host.members import Members, members_of, module_of
 from Testing.slicer.host.values import (
     PROXY,
@@ -78,10 +79,13 @@ class Proxy(metaclass=ProxyType):
             return lambda *arguments: function(self, *arguments)
         if name == "className":
             return lambda: type(self._qt).__name__
+        if name.startswith("set"):
+            note_write(self._qt, name)
         return _shown(type(self._qt), name, _qt_attribute(self._qt, name))
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name in self.members.properties:
+            note_write(self._qt, name)
             if value is None or not self._qt.setProperty(name, to_qt(value)):
                 raise ValueError(f"The property {name} does not take {value!r}.")
         elif type(self) is _class_of.get(self._qtClass):

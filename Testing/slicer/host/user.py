@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import faulthandler
+import re
 import sys
 import time
 from collections.abc import Callable
@@ -222,6 +223,17 @@ class User:
         self._settle()
         return self._frame._qt.minimumSizeHint().width()
 
+    def width(self) -> int:
+        """Return the width of the dock, pixels: it grows with its contents, and never shrinks."""
+        self._settle()
+        return self._frame._qt.width()
+
+    def cut_off(self, width: int) -> list[str]:
+        """Return the names of the visible widgets whose text is cut in a dock of a width."""
+        self._fit(width)
+        widgets = self._frame._qt.findChildren(QtWidgets.QWidget)
+        return [each.objectName() for each in widgets if each.isVisible() and _is_cut(each)]
+
     def _settle(self) -> None:
         """Let layouts within layouts settle one by one."""
         for _round in range(5):
@@ -272,6 +284,31 @@ def _save(picture: QtGui.QPixmap, path: Path) -> None:
 
 def _has_area(widget: QtWidgets.QWidget) -> bool:
     return widget.isVisible() and not widget.rect().isEmpty()
+
+
+BREAKS = re.compile(r"[\s/\-\u200b]")
+"""Where Qt wraps a text."""
+LEAST_INPUT = 40
+"""Pixels of an input in which its text can be read."""
+
+
+def _is_cut(widget: QtWidgets.QWidget) -> bool:
+    if isinstance(widget, QtWidgets.QLabel) and widget.wordWrap():
+        parts = BREAKS.split(widget.text())
+        words = [widget.fontMetrics().horizontalAdvance(part) for part in parts]
+        isTooHigh = widget.heightForWidth(widget.width()) > widget.height()
+        return isTooHigh or max(words, default=0) > widget.width()
+    if isinstance(widget, (QtWidgets.QLabel, QtWidgets.QPushButton, QtWidgets.QCheckBox)):
+        return widget.sizeHint().width() > widget.width()
+    if isinstance(widget, QtWidgets.QHeaderView):
+        sections = range(widget.count())
+        isAcross = widget.orientation() == QtCore.Qt.Orientation.Horizontal
+        return isAcross and any(
+            widget.sectionSizeFromContents(each).width() > widget.sectionSize(each)
+            for each in sections
+        )
+    inputs = (QtWidgets.QLineEdit, QtWidgets.QComboBox)
+    return isinstance(widget, inputs) and widget.width() < LEAST_INPUT
 
 
 def _where_to_press(button: QtWidgets.QWidget) -> QtCore.QPoint:

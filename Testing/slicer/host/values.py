@@ -17,6 +17,7 @@ import shiboken6
 from PySide6 import QtCore
 from shibokensupport.signature import get_signature
 
+from Testing.slicer.host.activity import run_slot
 from Testing.slicer.host.failures import FAILURES
 
 PROXY = "_proxyOfHost"
@@ -109,16 +110,22 @@ CONNECTIONS = "_connectionsOfHost"
 
 
 class Slot:
-    """Calls a function with as many arguments as it takes; what it raises is caught."""
+    """Calls a function with as many arguments as it takes; what it raises is caught.
+
+    Attributes:
+        is_tick: whether it is called by a timer.
+    """
 
     def __init__(self, function: Callable[..., Any], argument_count: int | None = None) -> None:
         self.function = function
         taken = _positional_count(function)
         self._count = taken if argument_count is None else min(taken, argument_count)
+        self.is_tick = False
 
     def __call__(self, *arguments: Any) -> None:
+        given = [from_qt(item) for item in arguments[: self._count]]
         try:
-            self.function(*(from_qt(item) for item in arguments[: self._count]))
+            run_slot(self.function, given, self.is_tick)
         except Exception as exception:  # PythonQt prints it, and continues.
             FAILURES.catch(exception)
 
@@ -149,8 +156,9 @@ def connect(proxy: Any, signature: str, function: Callable[..., Any]) -> bool:
     if not callable(function):
         raise TypeError("A slot must be callable.")
     arguments = signature.partition("(")[2].rstrip(")")
-    slot = Slot(function, len(arguments.split(",")) if arguments else 0)
     source = proxy._qt
+    slot = Slot(function, len(arguments.split(",")) if arguments else 0)
+    slot.is_tick = isinstance(source, QtCore.QTimer)
     if source.metaObject().indexOfSignal(signature) >= 0:
         QtCore.QObject.connect(source, QtCore.SIGNAL(signature), slot)
         undo = (QtCore.SIGNAL(signature), slot)

@@ -16,7 +16,7 @@ from rastrainer.errors import InputError
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.scenario.library import user_library
 from rastrainer.slicer.background_work import inBackground
-from rastrainer.slicer.logic.module_session import ModulePaths
+from rastrainer.slicer.logic.module_paths import ModulePaths
 from rastrainer.slicer.logic.views import WITH_PLOT, WITH_TABLE, BorrowedLayout
 from rastrainer.slicer.program.simulator_package import SimulatorPackage, pythonSlicer
 from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS, Settings

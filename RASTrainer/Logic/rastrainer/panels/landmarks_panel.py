@@ -14,7 +14,8 @@ from rastrainer.panels.widgets import (
     chosenScenario,
     fillComboBox,
     fillTable,
-    setSentence,
+    setProperty,
+    setText,
     setUsable,
 )
 from rastrainer.scenario.points import FACE_LANDMARKS, Landmark
@@ -40,7 +41,6 @@ class LandmarksPanel:
         self._ui = ui
         self._session = session
         self._logic = session.landmarks
-        self._seen: tuple = ()
         self._work = CancelableWork(self._showMessage, self._showProgress, self.showState)
         entries = [(NAMES[name], name) for name in FACE_LANDMARKS]
         fillComboBox(ui.landmarkNameComboBox, entries, FACE_LANDMARKS[0])
@@ -51,12 +51,13 @@ class LandmarksPanel:
         ui.undoLandmarkButton.connect("clicked()", self.undo)
         ui.checkLandmarksButton.connect("clicked()", self.check)
         ui.saveLandmarksButton.connect("clicked()", self.save)
-        self._showMessage("")
+        self._session.sceneChanged.connect(self.showState)
         self.showState()
 
     def close(self) -> None:
-        """Cancel the running work."""
+        """Cancel the running work, and stop listening to the session."""
         self._work.cancel()
+        self._session.sceneChanged.disconnect(self.showState)
 
     def propose(self) -> None:
         """Replace the landmarks by proposed ones on the chosen head."""
@@ -110,17 +111,15 @@ class LandmarksPanel:
                 self._showMessage(text.format(title=saved.title))
                 self._session.scenarioMade.emit(saved.name)
 
-    def showState(self, *_arguments: Any) -> None:
-        """Show the landmarks of the scene; called about ten times a second."""
+    def showState(self) -> None:
+        """Show the landmarks of the scene."""
         ui, points, isAtWork = self._ui, self._logic.points, self._work.isUnderWay
         rows = [_row(landmark) for landmark in points.landmarks]
-        if tuple(rows) != self._seen:
-            self._seen = tuple(rows)
-            fillTable(ui.landmarksTable, rows)
+        if fillTable(ui.landmarksTable, rows):
             self._chooseNext()
         busy = _("Wait until the current work is done.")
         first = busy if isAtWork else _("Place landmarks first, or have them proposed.")
-        ui.proposeLandmarksButton.text = _("Cancel") if isAtWork else _("Propose")
+        setProperty(ui.proposeLandmarksButton, "text", _("Cancel") if isAtWork else _("Propose"))
         setUsable(
             ui.removeLandmarkButton,
             bool(rows),
@@ -158,7 +157,7 @@ class LandmarksPanel:
             self._showMessage(step)
 
     def _showMessage(self, sentence: str) -> None:
-        setSentence(self._ui.landmarksText, sentence)
+        setText(self._ui.landmarksText, sentence)
 
 
 def _row(landmark: Landmark) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ import slicer
 
 from rastrainer.head.trial_head import MAX_PERTURBATION, Perturbation
 from rastrainer.panels.application import downloadSample, fitThreeDViews
-from rastrainer.panels.widgets import CancelableWork, setSentence, setUsable
+from rastrainer.panels.widgets import CancelableWork, setText, setUsable
 from rastrainer.protocol import WORLD_LIMIT_MM
 from rastrainer.scenario.scenario import STAND_DIAMETERS_MM, Scenario
 from rastrainer.scenario.setup import SetUp
@@ -102,7 +102,7 @@ class NewScenarioPanel:
         ui.checkScenarioButton.connect("clicked()", self.check)
         ui.scanComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._showUsable)
         ui.newScenarioCollapsibleButton.connect("contentsCollapsed(bool)", self._takeShownVolume)
-        setSentence(ui.newScenarioText, "")
+        setText(ui.newScenarioText, "")
         self._showUsable()
 
     def close(self) -> None:
@@ -214,7 +214,7 @@ class NewScenarioPanel:
         ui.sampleDataButton.enabled = ui.scanComboBox.enabled = not isAtWork
 
     def _showMessage(self, sentence: str) -> None:
-        setSentence(self._ui.newScenarioText, sentence)
+        setText(self._ui.newScenarioText, sentence)
 
 
 def _chosen(box: Any) -> float | None:

@@ -14,7 +14,6 @@ from rastrainer.panels.widgets import (
     LINK_COLORS,
     connectAsPressed,
     setLight,
-    setSentence,
     setText,
     setUsable,
 )
@@ -77,7 +76,6 @@ class NextStepPanel:
         self._session = session
         self._actions = actions
         self._folding = SectionFolding(ui)
-        self._seen: WorkflowState | None = None
         self._step: NextStep | None = None
         self._trainee = ""
         self._hasTrainees = self._hasPracticed = False
@@ -86,11 +84,14 @@ class NextStepPanel:
         self._repeatSentence = ""
         self._isSetUp = session.simulator.setup.isCurrent
         connectAsPressed(ui.nextStepButton, self._action)
+        ui.hostLineEdit.connect("textChanged(QString)", self.showState)
+        ui.programPathLineEdit.connect("currentPathChanged(QString)", self.showState)
         ui.scoreCollapsibleButton.connect("contentsCollapsed(bool)", self._noteScoreSeen)
         self._listening = Listening(
             (session.link.statusChanged, self.showState),
             (session.link.stateChanged, self._followTrial),
             (session.training.changed, self.showState),
+            (session.taskChosen, self.showState),
             (session.simulator.program.changed, self.showState),
             (session.simulator.setup.changed, self._lookAtSetup),
             (session.simulator.setup.finished, self._lookAtSetup),
@@ -123,11 +124,10 @@ class NextStepPanel:
         self.showState()
 
     def showState(self, *_arguments: Any) -> None:
-        """Show the state of the session; called about ten times a second."""
+        """Show the state of the session."""
         now = self._situation()
-        if now != self._seen:
-            self._seen, self._step = now, nextStep(now)
-            self._show(now, self._step)
+        self._step = nextStep(now)
+        self._show(now, self._step)
 
     def _situation(self) -> WorkflowState:
         session, ui = self._session, self._ui
@@ -168,13 +168,14 @@ class NextStepPanel:
             trainee, task = trial.trainee, self._titleOf(trial.task)
         setText(ui.nowTraineeText, shortName(trainee) or _("No trainee"))
         setText(ui.nowTaskText, shortName(task))
-        ui.nextStepButton.text = buttonTitle(step.title)
-        # A new text removes the shortcut.
-        ui.nextStepButton.setShortcut(qt.QKeySequence(SHORTCUT))
+        if ui.nextStepButton.text != buttonTitle(step.title):
+            ui.nextStepButton.text = buttonTitle(step.title)
+            # A new text removes the shortcut.
+            ui.nextStepButton.setShortcut(qt.QKeySequence(SHORTCUT))
         isPossible = step.action is not NextAction.WAIT
         tip = _("The next thing to do ({shortcut})").format(shortcut=SHORTCUT)
         setUsable(ui.nextStepButton, isPossible, tip, step.sentence)
-        setSentence(ui.nextStepText, step.sentence)
+        setText(ui.nextStepText, step.sentence)
         self._folding.follow(step.section)
 
     def _titleOf(self, task: str) -> str:
@@ -200,7 +201,7 @@ class NextStepPanel:
         self.showState()
 
     def _lookAtSetup(self, _error: str = "") -> None:
-        # It is in a file, which should not be read ten times a second.
+        # It is in a file, which should not be read at each state of a trial.
         self._isSetUp = self._session.simulator.setup.isCurrent
         self.showState()
 

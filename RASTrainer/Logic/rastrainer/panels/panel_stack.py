@@ -16,6 +16,7 @@ from rastrainer.panels.procedure_plan_panel import ProcedurePlanPanel
 from rastrainer.panels.registration_panel import RegistrationPanel
 from rastrainer.panels.scenario_panel import MethodsPanel, ScenarioPanel
 from rastrainer.panels.score_panel import ScorePanel
+from rastrainer.panels.section_layout import configureWidgets
 from rastrainer.panels.setup_panel import SetupPanel
 from rastrainer.panels.simulator_panel import RunningSimulatorPanel, SimulatorPanel
 from rastrainer.panels.study_panel import StudyPanel
@@ -68,17 +69,10 @@ class PanelStack:
             # Nodes can be chosen only from a scene.
             widget.setMRMLScene(slicer.mrmlScene)
         self.ui = slicer.util.childWidgetVariables(container)
+        configureWidgets(vars(self.ui).values())
         sections: dict[type, Any] = {kind: kind(self.ui, session) for kind in (*SECTIONS, *NESTED)}
         line = NextStepPanel(self.ui, session, _actions(sections))
         self._panels = [*sections.values(), line]
-
-    def showState(self) -> None:
-        """Show what no signal reports: the scene, and time; nothing while a scene is loaded."""
-        if slicer.mrmlScene.IsBatchProcessing():
-            return
-        for panel in self._panels:
-            if hasattr(panel, "showState"):
-                panel.showState()
 
     def close(self) -> None:
         """Stop listening."""

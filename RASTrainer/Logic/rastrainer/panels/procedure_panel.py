@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import slicer
 
 from rastrainer.number_text import fixed
-from rastrainer.panels.widgets import fillTable, keepChecked, setSentence, setText, setUsable
+from rastrainer.panels.widgets import fillTable, keepChecked, setText, setUsable
 from rastrainer.procedure.errors import TrajectoryErrors
 from rastrainer.protocol import CommandName, Phase
 from rastrainer.slicer.link.link_status import LinkState
@@ -113,7 +113,6 @@ class ProcedurePanel:
             (session.link.statusChanged, self.showState),
         )
         self._laySlices()
-        self._showMessage("")
         self._showOutcome()
         self.showState()
 
@@ -122,11 +121,11 @@ class ProcedurePanel:
         self._listening.close()
 
     def showState(self, *_arguments: Any) -> None:
-        """Show the progress of the procedure; called about ten times a second."""
+        """Show the progress of the procedure."""
         ui, status = self._ui, self._logic.status
         isConnected = self._session.link.status.state is LinkState.CONNECTED
         setText(ui.procedureStateText, stateText(status, isConnected))
-        setSentence(ui.procedureInstructionText, self._instruction() if isConnected else "")
+        setText(ui.procedureInstructionText, self._instruction() if isConnected else "")
         for step in STEPS:
             isReady = status.isRegistered or Phase.VERIFYING not in step.phases
             # If registration fails, the only remedy is to touch again.
@@ -156,6 +155,7 @@ class ProcedurePanel:
 
     def _laySlices(self, *_checked: bool) -> None:
         self._session.slices.liesAlong = self._ui.slicesAlongCheckBox.checked
+        self._session.woken.emit()
 
     def _showOutcome(self) -> None:
         ui, outcome = self._ui, self._logic.outcome
@@ -163,7 +163,7 @@ class ProcedurePanel:
         each = () if outcome is None else outcome.analysis.trajectories
         fillTable(ui.procedureErrorsTable, map(_row, each), [_tip(errors) for errors in each])
         ui.procedureErrorsTable.visible = outcome is not None
-        setSentence(ui.procedureScoreText, "" if outcome is None else scoreText(outcome))
+        setText(ui.procedureScoreText, "" if outcome is None else scoreText(outcome))
 
     def _jumpToTarget(self) -> None:
         """Show the planned target of the chosen line in the slice views."""
@@ -172,7 +172,7 @@ class ProcedurePanel:
             self._session.slices.show(self._shown.analysis.trajectories[row].trajectory.target)
 
     def _showMessage(self, sentence: str) -> None:
-        setSentence(self._ui.procedureMessageText, sentence)
+        setText(self._ui.procedureMessageText, sentence)
 
 
 def stateText(status: ProcedureStatus, isConnected: bool) -> str:

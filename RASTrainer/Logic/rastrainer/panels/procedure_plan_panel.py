@@ -14,7 +14,7 @@ from rastrainer.panels.widgets import (
     chosenScenario,
     fillComboBox,
     fillTable,
-    setSentence,
+    setProperty,
     setText,
     setUsable,
 )
@@ -38,6 +38,7 @@ from rastrainer.slicer.scene.procedure_lines import (
     setInstrument,
     setNoGo,
 )
+from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 
 KINDS = (
@@ -56,7 +57,6 @@ class ProcedurePlanPanel:
         self._session = session
         self._logic = session.procedurePlan
         self._name = ""
-        self._seen: tuple = ()
         self._checked: tuple[tuple, CheckedPlan] | None = None
         self._problem = ""
         self._removed: list[RemovedLine] = []
@@ -76,14 +76,15 @@ class ProcedurePlanPanel:
         ui.noGoComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self.showState)
         self._work.connectButton(ui.checkLinesButton, self.check)
         ui.saveProcedureButton.connect("clicked()", self.save)
-        session.taskChosen.connect(self._showProcedures)
+        self._listening = Listening(
+            (session.taskChosen, self._showProcedures), (session.sceneChanged, self.showState)
+        )
         self._showProcedures()
-        self.showState()
 
     def close(self) -> None:
         """Cancel the running work, and stop listening to the session."""
         self._work.cancel()
-        self._session.taskChosen.disconnect(self._showProcedures)
+        self._listening.close()
 
     def edit(self) -> None:
         """Load the chosen procedure into the scene, in place of the plan there."""
@@ -153,7 +154,6 @@ class ProcedurePlanPanel:
             found = self._work.run(lambda report: self._logic.check(scenario, plan, report))
             if found is not None:
                 self._checked = snapshot, found
-                self._seen = ()
                 self.showState()
 
     def save(self) -> None:
@@ -166,12 +166,10 @@ class ProcedurePlanPanel:
                 self._session.scenarioMade.emit(saved.name)
 
     def showState(self, *_arguments: Any) -> None:
-        """Show the plan of the scene; called about ten times a second."""
+        """Show the plan of the scene."""
         ui, isAtWork = self._ui, self._work.isUnderWay
-        snapshot = self._snapshot()
-        if snapshot != self._seen:
-            self._seen = snapshot
-            self._showLines()
+        isFresh = self._checked is not None and self._checked[0] == self._snapshot()
+        self._showLines(self._checked[1].lines if isFresh and self._checked else ())
         hasLines, line = bool(planLines(slicer.mrmlScene)), self._line()
         for box in (ui.lineNameLineEdit, ui.lineDiameterSpinBox, ui.lineSafetySpinBox):
             box.enabled = line is not None
@@ -194,7 +192,8 @@ class ProcedurePlanPanel:
             _("Choose a line below the first one in the table."),
         )
         node = ui.noGoComboBox.currentNode()
-        ui.noGoButton.text = _("Ignore") if node is not None and isNoGo(node) else _("Keep away")
+        isKept = node is not None and isNoGo(node)
+        setProperty(ui.noGoButton, "text", _("Ignore") if isKept else _("Keep away"))
         setUsable(
             ui.noGoButton,
             node is not None,
@@ -202,8 +201,8 @@ class ProcedurePlanPanel:
             _("Choose a model or a segmentation first."),
         )
         names = ", ".join(each.GetName() for each in noGoNodes(slicer.mrmlScene))
-        setSentence(ui.noGoText, _("To keep away from: {names}").format(names=names or "–"))
-        ui.checkLinesButton.text = _("Cancel") if isAtWork else _("Check")
+        setText(ui.noGoText, _("To keep away from: {names}").format(names=names or "–"))
+        setProperty(ui.checkLinesButton, "text", _("Cancel") if isAtWork else _("Check"))
         first = _("Place a line first.")
         setUsable(
             ui.checkLinesButton,
@@ -218,13 +217,13 @@ class ProcedurePlanPanel:
             _("Wait until the current work is done.") if isAtWork else first,
         )
         if not isAtWork:
-            setSentence(ui.procedurePlanText, self._problem or self._verdict())
+            setText(ui.procedurePlanText, self._problem or self._verdict(isFresh))
 
-    def _verdict(self) -> str:
+    def _verdict(self, isFresh: bool) -> str:
         """Return the errors found by the last check of the plan, or that there are none."""
         if self._checked is None:
             return ""
-        if self._checked[0] != self._seen:
+        if not isFresh:
             return _("The plan has changed since it was checked: check it again.")
         wrong = self._checked[1].wrong
         return "\n".join(wrong) or _("The procedure can be carried out.")
@@ -241,18 +240,16 @@ class ProcedurePlanPanel:
             chosenData(self._ui.scenarioComboBox),
         )
 
-    def _showLines(self) -> None:
+    def _showLines(self, found: Sequence[CheckedLine]) -> None:
         lines, table = planLines(slicer.mrmlScene), self._ui.linesTable
-        isFresh = self._checked is not None and self._checked[0] == self._seen
-        found = self._checked[1].lines if isFresh and self._checked is not None else ()
         measured = {each.name: each for each in found}
         chosen = table.currentRow()
         wasBlocked = table.blockSignals(True)
-        fillTable(table, [_row(line, measured.get(line.GetName())) for line in lines])
-        if lines:
-            table.selectRow(min(max(chosen, 0), len(lines) - 1))
+        if fillTable(table, [_row(line, measured.get(line.GetName())) for line in lines]):
+            if lines:
+                table.selectRow(min(max(chosen, 0), len(lines) - 1))
+            self._showLine()
         table.blockSignals(wasBlocked)
-        self._showLine()
 
     def _showLine(self) -> None:
         """Show name and instrument of the chosen line."""
@@ -305,6 +302,7 @@ class ProcedurePlanPanel:
         combo = self._ui.procedurePlanComboBox
         chosen, known = chosenData(combo), [name for _title, name in entries]
         fillComboBox(combo, entries, chosen if chosen in known and combo.count else known[0])
+        self.showState()
 
     def _showProgress(self, step: str, share: float) -> None:
         if step:

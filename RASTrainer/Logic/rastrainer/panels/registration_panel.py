@@ -8,14 +8,14 @@ from typing import Any
 import qt
 import slicer
 
-from rastrainer.panels.plain_text import buttonTitle, toolTip
+from rastrainer.panels.plain_text import buttonTitle
 from rastrainer.panels.widgets import (
     chosenData,
     fillTable,
     keepChecked,
     keepChosen,
     setChecked,
-    setSentence,
+    setText,
     setUsable,
     textLabel,
 )
@@ -28,6 +28,7 @@ from rastrainer.slicer.logic.views import jumpTo
 from rastrainer.slicer.scene.registration_input import Remedy
 from rastrainer.slicer.scene.trial_scene import isApplied, setApplied
 from rastrainer.slicer.settings import FIT, IS_HEAD_COLORED
+from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 
 TITLES = {RIGID: _("Rigid"), SIMILARITY: _("Similarity"), AFFINE: _("Affine")}
@@ -56,12 +57,15 @@ class RegistrationPanel:
         ui.appliedCheckBox.connect("toggled(bool)", self._apply)
         ui.headColoredCheckBox.connect("toggled(bool)", self._logic.setHeadColored)
         keepChecked(ui.headColoredCheckBox, session.settings, IS_HEAD_COLORED)
-        self._logic.changed.connect(self._show)
+        self._woken = session.woken
+        self._listening = Listening(
+            (self._logic.changed, self._show), (session.sceneChanged, self._showApplied)
+        )
         self._show()
 
     def close(self) -> None:
         """Stop listening to the session."""
-        self._logic.changed.disconnect(self._show)
+        self._listening.close()
 
     def excludeChosen(self) -> None:
         """Register again without the chosen fiducial."""
@@ -82,8 +86,7 @@ class RegistrationPanel:
         with slicer.util.tryWithErrorDisplay(_("Nothing was undone.")):
             self._logic.undo()
 
-    def showState(self) -> None:
-        """Show what may have changed in the scene meanwhile."""
+    def _showApplied(self) -> None:
         transform = self._logic.transform()
         setChecked(self._ui.appliedCheckBox, transform is not None and isApplied(transform))
         self._ui.appliedCheckBox.enabled = transform is not None
@@ -91,9 +94,11 @@ class RegistrationPanel:
     def _chooseLists(self, _node: Any = None) -> None:
         ui = self._ui
         self._logic.chooseLists(ui.movingComboBox.currentNode(), ui.fixedComboBox.currentNode())
+        self._woken.emit()
 
     def _chooseTarget(self, node: Any = None) -> None:
         self._logic.chooseTarget(node)
+        self._woken.emit()
 
     def _chooseKind(self, _index: int = 0) -> None:
         with slicer.util.tryWithErrorDisplay(_("The fit cannot be shown.")):
@@ -113,18 +118,15 @@ class RegistrationPanel:
 
     def _show(self) -> None:
         ui, comparison = self._ui, self._logic.comparison
-        setSentence(
-            ui.registrationText, _summary(comparison) if comparison else self._logic.problem
-        )
-        setSentence(ui.treText, _treText(comparison) if comparison else "")
-        ui.treText.toolTip = toolTip(INTERVAL_NOTE)
+        setText(ui.registrationText, _summary(comparison) if comparison else self._logic.problem)
+        setText(ui.treText, _treText(comparison) if comparison else "", INTERVAL_NOTE)
         fits = [] if comparison is None else _fitRows(comparison)
         fillTable(ui.fitsTable, fits, [INTERVAL_NOTE] * len(fits))
         shown = self._logic.shown
         self._showResiduals(shown)
         self._showRemedies(() if comparison is None else comparison.remedies)
         self._showButtons()
-        self.showState()
+        self._showApplied()
 
     def _showButtons(self) -> None:
         ui = self._ui

@@ -18,7 +18,6 @@ from rastrainer.panels.widgets import (
     fillComboBox,
     fillTable,
     setChecked,
-    setSentence,
     setText,
     setUsable,
 )
@@ -61,6 +60,7 @@ class ScenarioPanel:
             (session.training.answered, self._showMessage),
             (session.scenarioMade, self.continueWith),
             (session.images.shown, self._frameImages),
+            (session.sceneChanged, self._showRobotBox),
             (session.images.problemFound, self._showMessage),
         )
         self._fill(session.settings.get(SCENARIO))
@@ -166,8 +166,7 @@ class ScenarioPanel:
     def _showHeadMessage(self, sentence: str) -> None:
         setText(self._ui.otherHeadText, sentence)
 
-    def showState(self) -> None:
-        """Show what may have changed in the scene meanwhile."""
+    def _showRobotBox(self) -> None:
         setChecked(self._ui.robotCheckBox, self._logic.isRobotShown)
 
     def _fill(self, wanted: str = "") -> None:
@@ -306,7 +305,7 @@ class MethodsPanel:
             self._showMessage(step)
 
     def _showMessage(self, sentence: str) -> None:
-        setSentence(self._ui.methodsText, sentence)
+        setText(self._ui.methodsText, sentence)
 
 
 def _row(method: ComparedMethod) -> tuple[str, ...]:

@@ -17,7 +17,6 @@ from rastrainer.panels.widgets import (
     fillComboBox,
     fillTable,
     setChecked,
-    setSentence,
     setText,
     setUsable,
 )
@@ -66,6 +65,7 @@ class ScorePanel:
             (self._trainees.changed, self._show),
             (session.trials.trialScored, self._noteNewTrial),
             (session.replay.feedbackFound, self._showFeedback),
+            (session.sceneChanged, self._showReplay),
         )
         self._show()
 
@@ -135,11 +135,11 @@ class ScorePanel:
             trial = self._chosenTrial()
             self._work.run(lambda report: self._session.replay.showWorstTouch(trial, report))
 
-    def showState(self) -> None:
+    def _showReplay(self) -> None:
         """Show the time of the replay, and whether tables are shown."""
         setChecked(self._ui.showTablesButton, self._session.layout.purpose == TABLES)
         if not self._work.isUnderWay:
-            setSentence(self._ui.replayText, self._session.replay.sentence)
+            setText(self._ui.replayText, self._session.replay.sentence)
 
     def _fold(self, isFolded: bool) -> None:
         if isFolded:
@@ -189,7 +189,7 @@ class ScorePanel:
             [row.tip for row in scores],
         )
         fillTable(ui.ctpsTable, ((row.title, row.text) for row in ctps), [row.note for row in ctps])
-        setSentence(ui.ctpsText, CTPS_WARNING if ctps else "")
+        setText(ui.ctpsText, CTPS_WARNING if ctps else "")
         fillTable(ui.standingsTable, (_standingRow(s) for s in beside))
         fillTable(
             ui.motionTable, ((row.title, row.text) for row in motion), [row.note for row in motion]
@@ -231,7 +231,7 @@ class ScorePanel:
                 self._worst = feedback.worst.label
             elif trial is not None:
                 sentences = [_("Feedback on the trial is being prepared.")]
-        setSentence(self._ui.feedbackText, "\n".join(sentences))
+        setText(self._ui.feedbackText, "\n".join(sentences))
         self._showUsable()
 
     def _showUsable(self) -> None:
@@ -263,10 +263,11 @@ class ScorePanel:
         report = _("Write the report of the whole study as a printable page, and open it.")
         setUsable(ui.exportScoresButton, not isAtWork, allTrials, busy)
         setUsable(ui.reportButton, not isAtWork, report, busy)
+        self._showReplay()
 
     def _showProgress(self, step: str, share: float) -> None:
         if step:
-            setSentence(self._ui.replayText, f"{step}: {100 * share:.0f} %")
+            setText(self._ui.replayText, f"{step}: {100 * share:.0f} %")
 
     def _showMessage(self, sentence: str) -> None:
         setText(self._ui.scoreMessageText, sentence)

@@ -67,7 +67,7 @@ class SelfTestFixture:
         self.session.process()
         while self.session.yieldTimeToWork():
             pass
-        self._panels.showState()
+        self.session.process()
 
     def clearScene(self) -> None:
         """Close the scene, and notify the session as the module's widget does."""

@@ -16,7 +16,6 @@ from rastrainer.panels.widgets import (
     keepNumber,
     keepText,
     setLight,
-    setSentence,
     setText,
     setUsable,
 )
@@ -144,7 +143,7 @@ class SimulatorPanel:
             self._showPort(program.port)
 
     def _showPairing(self) -> None:
-        setSentence(self._ui.pairingText, self._simulator.program.pairingSentence)
+        setText(self._ui.pairingText, self._simulator.program.pairingSentence)
 
     def _showPort(self, port: int) -> None:
         """Show where the simulator listens, which is not chosen by the user and not saved."""
@@ -170,7 +169,7 @@ class SimulatorPanel:
             _("Disconnect first: the state of the connection is shown below."),
         )
         if status.state is not LinkState.CONNECTED:
-            setSentence(ui.trainingText, "")
+            setText(ui.trainingText, "")
 
     def _showTest(self, status: LinkStatus) -> None:
         if self._link.status.state is LinkState.OFF:
@@ -179,10 +178,10 @@ class SimulatorPanel:
     def _showWords(self, status: LinkStatus) -> None:
         setLight(self._ui.stateLight, LINK_COLORS[status.state])
         setText(self._ui.stateText, status.sentence)
-        setSentence(self._ui.remedyText, status.remedy)
+        setText(self._ui.remedyText, status.remedy)
 
     def _showTraining(self, state: Mapping[str, Any]) -> None:
-        setSentence(self._ui.trainingText, str(state.get("instruction", "")))
+        setText(self._ui.trainingText, str(state.get("instruction", "")))
 
 
 class RunningSimulatorPanel:

@@ -16,13 +16,13 @@ from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.widgets import (
     chosenData,
     fillTable,
-    setSentence,
     setText,
     setUsable,
     textLabel,
 )
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.study_logic import TRIALS
+from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 from rastrainer.study.protocol.questionnaires import (
     Questionnaire,
@@ -52,12 +52,18 @@ class StudyPanel:
         ui.repeatStepButton.connect("clicked()", self.explainRepeat)
         ui.saveAnswersButton.connect("clicked()", self.saveAnswers)
         ui.protocolPathLineEdit.connect("currentPathChanged(QString)", self._showButtons)
-        self._logic.changed.connect(self._show)
+        self._listening = Listening(
+            (self._logic.changed, self._show),
+            (session.training.changed, self._followTrial),
+            (session.link.statusChanged, self._showButtons),
+            (session.trainees.changed, self._showButtons),
+            (session.secondPassed, self._showTime),
+        )
         self._show()
 
     def close(self) -> None:
         """Stop listening to the session."""
-        self._logic.changed.disconnect(self._show)
+        self._listening.close()
 
     def begin(self) -> None:
         """Make the chosen file the protocol of the study, after asking."""
@@ -121,30 +127,29 @@ class StudyPanel:
             reason,
         )
 
-    def showState(self) -> None:
-        """Show what changes without a signal: connection, and time of a trial run or a break."""
+    def _showTime(self) -> None:
+        """Show the time of a trial run or a break."""
         progress = self._progress
         step = None if progress is None else progress.next_step
-        self._warn()
         if progress is None or step is None or step.kind not in TIMED:
-            setSentence(self._ui.stepTimeText, "")
+            setText(self._ui.stepTimeText, "")
         else:
-            setSentence(
+            setText(
                 self._ui.stepTimeText,
                 _("{over} of {minutes:g} min have passed.").format(
                     over=_clock(self._logic.minutesElapsed(progress)), minutes=step.minutes
                 ),
             )
-        self._showButtons()
 
-    def _warn(self) -> None:
+    def _followTrial(self) -> None:
         """Warn, once for each trial, of one that will not count."""
+        self._showButtons()
         trial = self._session.training.progress
         key = (trial.trainee, trial.task, trial.mode, trial.method, trial.procedure, trial.isOpen)
         if key != self._judged:
             self._judged = key
             with contextlib.suppress(InputError):
-                setSentence(self._ui.offProtocolText, self._logic.offProtocolSentence())
+                setText(self._ui.offProtocolText, self._logic.offProtocolSentence())
 
     def _show(self) -> None:
         ui = self._ui
@@ -153,9 +158,9 @@ class StudyPanel:
             protocol, progress = self._logic.protocol(), self._logic.progress()
         except InputError as error:
             protocol = progress = None
-            setSentence(ui.protocolText, str(error))
+            setText(ui.protocolText, str(error))
         else:
-            setSentence(
+            setText(
                 ui.protocolText,
                 _("No protocol: trainees practice freely.") if protocol is None else protocol.title,
             )
@@ -180,7 +185,8 @@ class StudyPanel:
         ui.repeatStepButton.visible = isAborted
         ui.startStepButton.visible = step is not None and step.kind in TRIALS and not isAborted
         ui.skipStepButton.visible = step is not None
-        self.showState()
+        self._showTime()
+        self._followTrial()
 
     def _showButtons(self, *_arguments: Any) -> None:
         ui = self._ui

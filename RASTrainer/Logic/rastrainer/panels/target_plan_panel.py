@@ -8,7 +8,7 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import fixed
-from rastrainer.panels.plain_text import toolTip
+from rastrainer.panels.plain_text import shortName
 from rastrainer.panels.widgets import (
     GRAY,
     GREEN,
@@ -16,8 +16,10 @@ from rastrainer.panels.widgets import (
     CancelableWork,
     chosenData,
     fillComboBox,
+    isFilled,
     millimeters,
     setLight,
+    setProperty,
     setText,
     setUsable,
 )
@@ -26,7 +28,6 @@ from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.target_plan_logic import PlanOnImages, targetsOf
 from rastrainer.slicer.scene.plan_points import startPlacing, whyNotRemoved
-from rastrainer.slicer.scene.registration_input import snapshot
 from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 from rastrainer.work_progress import no_progress
@@ -39,9 +40,6 @@ class PlanPanel:
         self._ui = ui
         self._session = session
         self._logic = session.plan
-        self._offered: tuple[Any, tuple[str, ...]] = (None, ())
-        self._seen: tuple = ()
-        self._known: tuple[PlanOnImages | None, str] = (None, "")
         self._keeping = CancelableWork(lambda _sentence: None, no_progress, self.showState)
         ui.placeTargetButton.connect("clicked()", self.placeTarget)
         ui.placeTrajectoryButton.connect("clicked()", self.placeTrajectory)
@@ -49,12 +47,13 @@ class PlanPanel:
         ui.undoPlanButton.connect("clicked()", self.undo)
         ui.sendPlanButton.connect("clicked()", self.send)
         self._keeping.connectButton(ui.keepPlanButton, self.save)
-        ui.planComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self.showState)
+        ui.planComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._chooseNode)
         ui.planTargetComboBox.connect("activated(int)", self._chooseTarget)
         self._listening = Listening(
             (self._logic.changed, self.showState),
             (session.registration.changed, self.showState),
             (session.link.statusChanged, self.showState),
+            (session.sceneChanged, self.showState),
         )
         self.showState()
 
@@ -106,14 +105,13 @@ class PlanPanel:
                 self._session.scenarioMade.emit(scenario.name)
 
     def showState(self, *_arguments: Any) -> None:
-        """Show the plan; called about ten times a second."""
+        """Show the plan."""
         plan, problem = self._read()
         self._logic.follow(plan)
         ui = self._ui
         self._showPointButtons()
         setText(ui.planWorldText, problem if plan is None else _place(plan))
-        setText(ui.planTreText, "–" if plan is None else _expected(plan))
-        ui.planTreText.toolTip = toolTip(INTERVAL_NOTE)
+        setText(ui.planTreText, "–" if plan is None else _expected(plan), INTERVAL_NOTE)
         isConnected = self._session.link.status.state is LinkState.CONNECTED
         setUsable(
             ui.sendPlanButton,
@@ -122,7 +120,8 @@ class PlanPanel:
             problem or _("Connect to the simulator first."),
         )
         isKeeping = self._keeping.isUnderWay
-        ui.keepPlanButton.text = _("Cancel") if isKeeping else _("Save as a new scenario")
+        title = _("Cancel") if isKeeping else _("Save as a new scenario")
+        setProperty(ui.keepPlanButton, "text", title)
         setUsable(
             ui.keepPlanButton,
             isKeeping or ui.planComboBox.currentNode() is not None,
@@ -154,41 +153,32 @@ class PlanPanel:
         )
 
     def _read(self) -> tuple[PlanOnImages | None, str]:
-        """Return the plan, or why there is none; recomputed only after a change."""
+        """Return the plan, or why there is none."""
         node = self._ui.planComboBox.currentNode()
+        if not isFilled(self._ui.planTargetComboBox, _entries(node)):
+            self._offerTargets(node)
+        try:
+            return self._logic.read(node, self._row()), ""
+        except InputError as error:
+            return None, str(error)
+
+    def _chooseNode(self, node: Any | None = None) -> None:
         self._offerTargets(node)
-        row = self._row()
-        placed = node.GetNumberOfDefinedControlPoints() if node is not None else 0
-        registration = self._session.registration
-        seen = (snapshot(node), placed, row, registration.shown, registration.problem)
-        if seen != self._seen:
-            self._seen = seen
-            try:
-                self._known = self._logic.read(node, row), ""
-            except InputError as error:
-                self._known = None, str(error)
-        return self._known
+        self.showState()
 
-    def _offerTargets(self, node: Any | None) -> None:
-        """Offer the points of a list as targets; where they change, the last is chosen."""
-        labels = targetsOf(node)
-        if (node, labels) != self._offered:
-            self._fillTargets(node, labels, len(labels) - 1)
-
-    def _fillTargets(self, node: Any | None, labels: tuple[str, ...], row: int) -> None:
-        self._offered = (node, labels)
-        entries = [(label, str(row)) for row, label in enumerate(labels)]
-        fillComboBox(self._ui.planTargetComboBox, entries, str(row))
-        self._ui.planTargetComboBox.enabled = len(labels) > 1
+    def _offerTargets(self, node: Any | None, row: int = -1) -> None:
+        """Offer the points of a list as targets, and choose that of a row."""
+        entries, box = _entries(node), self._ui.planTargetComboBox
+        fillComboBox(box, entries, entries[row][1] if entries else "")
+        box.enabled = len(entries) > 1
 
     def _chooseTarget(self, _index: int = 0) -> None:
         """Keep the user's choice, though a point was placed or removed while the list was open."""
         node, row = self._ui.planComboBox.currentNode(), self._row()
-        offeredNode, offered = self._offered
-        labels = targetsOf(node)
-        if node is offeredNode and row >= 0 and offered[row] in labels:
-            isSameRow = row < len(labels) and labels[row] == offered[row]
-            self._fillTargets(node, labels, row if isSameRow else labels.index(offered[row]))
+        chosen = self._ui.planTargetComboBox.currentText
+        labels = [shortName(label) for label in targetsOf(node)]
+        if chosen in labels and labels[row : row + 1] != [chosen]:
+            self._offerTargets(node, labels.index(chosen))
         self.showState()
 
     def _row(self) -> int:
@@ -199,6 +189,10 @@ class PlanPanel:
         self._ui.planComboBox.setCurrentNode(node)
         startPlacing(slicer.mrmlScene, node)
         self.showState()
+
+
+def _entries(node: Any | None) -> list[tuple[str, str]]:
+    return [(label, str(row)) for row, label in enumerate(targetsOf(node))]
 
 
 def _place(plan: PlanOnImages) -> str:

@@ -26,6 +26,7 @@ from rastrainer.protocol import Mode
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.scene.tables import showCalibration, showLearningCurve
 from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS
+from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.aborted_trials import StoredAbortedTrial
 from rastrainer.study.database.database import EXAMPLE, study_place
@@ -62,13 +63,15 @@ class TraineesPanel:
         ui.traineesCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
         ui.exportHistoryButton.connect("clicked()", self.exportHistory)
         self._isArchived = self._hasTrainee = False
-        self._logic.changed.connect(self._show)
+        self._listening = Listening(
+            (self._logic.changed, self._show), (session.sceneChanged, self._showPlots)
+        )
         self._show()
 
     def close(self) -> None:
         """Cancel a deletion that has not begun, and stop listening to the session."""
         self._deletion.cancel()
-        self._logic.changed.disconnect(self._show)
+        self._listening.close()
 
     def chooseStudy(self, path: str) -> None:
         """Continue with the study of another file, once its name is complete."""
@@ -224,8 +227,8 @@ class TraineesPanel:
             showChart(self._session.layout, chart, CALIBRATION)
             self._showMessage("{text}", text=" ".join(found.sentences()))
 
-    def showState(self) -> None:
-        """Show whether a plot is shown; called about ten times a second."""
+    def _showPlots(self) -> None:
+        """Show whether a plot is shown."""
         purpose = self._session.layout.purpose
         setChecked(self._ui.learningCurveButton, purpose == CURVE)
         setChecked(self._ui.calibrationButton, purpose == CALIBRATION)

@@ -19,7 +19,7 @@ from rastrainer.panels.widgets import (
     keepChecked,
     keepChosen,
     setLight,
-    setSentence,
+    setProperty,
     setText,
     setUsable,
 )
@@ -96,8 +96,9 @@ class TrainingPanel:
             (session.trainees.changed, self.showState),
             (session.taskChosen, self._showChoices),
             (session.link.statusChanged, self.showState),
+            (session.trials.trialKept, self.showState),
+            (session.secondPassed, self._showTime),
         )
-        self._showMessage("")
         self._showChoices()
         self._moveSlices()
         self.showState()
@@ -162,14 +163,15 @@ class TrainingPanel:
         slices = self._session.slices
         slices.showsNextPoint = self._ui.slicesNextPointCheckBox.checked
         slices.followsTool = self._ui.slicesToolCheckBox.checked
+        self._session.woken.emit()
 
     def showState(self, *_arguments: Any) -> None:
-        """Show the state of the trial; called about ten times a second."""
+        """Show the state of the trial."""
         ui, progress, session = self._ui, self._logic.progress, self._session
         nobody = _("None: choose one in the section Trainees.")
         setText(ui.trainingTraineeText, session.trainees.chosen or nobody)
         title = _("Start {task}").format(task=buttonTitle(session.taskTitle))
-        ui.startTaskButton.text = title
+        setProperty(ui.startTaskButton, "text", title)
         isConnected = session.link.status.state is LinkState.CONNECTED
         self._showButtons(progress, isConnected)
         received = len(session.trials.received)
@@ -180,18 +182,22 @@ class TrainingPanel:
             setLight(ui.clearanceLight, GRAY)
             for label in (ui.trialText, ui.nextPointText, ui.elapsedText, ui.clearanceText):
                 setText(label, "–")
-            setSentence(ui.instructionText, "")
+            setText(ui.instructionText, "")
             return
         trial = f"{shortName(progress.trainee)}, {shortName(task_title(progress.task))}"
         setText(ui.trialText, trial if progress.trainee else "–")
         setText(ui.phaseText, PHASES.get(progress.phase, progress.phase))
-        ui.pointsProgressBar.maximum = progress.total
-        ui.pointsProgressBar.value = min(progress.touched, progress.total)
+        setProperty(ui.pointsProgressBar, "maximum", progress.total)
+        setProperty(ui.pointsProgressBar, "value", min(progress.touched, progress.total))
         setText(ui.nextPointText, progress.nextPoint or "–")
-        setText(ui.elapsedText, _clock(progress.elapsedS))
+        self._showTime()
         self._showClearance(progress)
         text = _("Shown to the trainee: {sentence}").format(sentence=progress.instruction)
-        setSentence(ui.instructionText, text if progress.instruction else "")
+        setText(ui.instructionText, text if progress.instruction else "")
+
+    def _showTime(self) -> None:
+        if self._session.link.status.state is LinkState.CONNECTED:
+            setText(self._ui.elapsedText, _clock(self._logic.progress.elapsedS))
 
     def _start(self, task: str, procedure: str = "", method: str = "") -> None:
         with slicer.util.tryWithErrorDisplay(_("The trial was not started.")):
@@ -212,7 +218,7 @@ class TrainingPanel:
         ):
             setUsable(button, not reason, tip, reason)
         isPaused = progress.phase == Phase.PAUSED.value
-        ui.pauseButton.text = _("Resume") if isPaused else _("Pause")
+        setProperty(ui.pauseButton, "text", _("Resume") if isPaused else _("Pause"))
         mayPause = isConnected and (isPaused or progress.phase in _PAUSABLE)
         noTrial = _("No trial is running.")
         setUsable(ui.pauseButton, mayPause, _("Pause the trial and its time."), noTrial)
@@ -231,7 +237,7 @@ class TrainingPanel:
         setText(self._ui.clearanceText, shown)
 
     def _showMessage(self, sentence: str) -> None:
-        setSentence(self._ui.trainingMessageText, sentence)
+        setText(self._ui.trainingMessageText, sentence)
 
 
 def _clock(seconds: float) -> str:

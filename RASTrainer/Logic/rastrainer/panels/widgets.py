@@ -13,6 +13,7 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.panels.plain_text import LONGEST_TEXT, shortened, shortName, toolTip, wrappable
+from rastrainer.panels.section_layout import configureLabel
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
@@ -34,41 +35,41 @@ LINK_COLORS = {
 }
 
 
+def setProperty(widget: Any, name: str, value: Any) -> None:
+    """Set a property if it has another value: Qt may lay out and paint the whole window again."""
+    if getattr(widget, name) != value:
+        setattr(widget, name, value)
+
+
 def setLight(label: Any, color: str) -> None:
     """Show a colored dot in a label; words beside it say the same."""
-    label.text = f'<span style="color:{color}">●</span>'
+    setProperty(label, "text", f'<span style="color:{color}">●</span>')
 
 
-def setText(label: Any, text: str) -> None:
-    """Show what anyone may have written; overlong text is shown in full in the tool tip."""
-    shown = wrappable(shortened(text, LONGEST_TEXT))
-    if label.text != shown:
-        label.text = shown
-        label.toolTip = toolTip(text) if len(text) > LONGEST_TEXT else ""
+def setText(label: Any, text: str, tip: str = "") -> None:
+    """Show what anyone may have written in a label, which takes no space while it is empty.
 
-
-def setSentence(label: Any, sentence: str) -> None:
-    """Show a sentence in a label, which takes no space while it is empty."""
-    setText(label, sentence)
-    label.visible = bool(sentence)
+    Overlong text is shown in full in the tool tip, in place of `tip`.
+    """
+    shown, wasEmpty = wrappable(shortened(text, LONGEST_TEXT)), not label.text
+    setProperty(label, "text", shown)
+    setProperty(label, "toolTip", toolTip(text if len(text) > LONGEST_TEXT else tip))
+    # In a closed section, CTK hides again what is shown, which lays out the whole window.
+    if wasEmpty == bool(shown):
+        label.visible = bool(shown)
 
 
 def textLabel(text: str) -> Any:
     """Return a label for what anyone may have written, as those of the `.ui` files are."""
-    label = qt.QLabel()
-    label.textFormat = qt.Qt.PlainText
-    label.wordWrap = True
-    label.setSizePolicy(qt.QSizePolicy.Expanding, qt.QSizePolicy.Preferred)
-    # A label is at least as wide as its longest word, unless it has another minimum.
-    label.minimumWidth = 1
-    setText(label, text)
+    label = qt.QLabel(wrappable(shortened(text, LONGEST_TEXT)))
+    configureLabel(label, isWrapped=True)
     return label
 
 
 def connectAsPressed(button: Any, action: Callable[[], Callable[[], None]]) -> None:
     """Have a click do what the button meant when it was pressed.
 
-    A timer may give a button another meaning while the mouse is down, such as Resume for Pause.
+    A button may get another meaning while the mouse is down, such as Resume for Pause.
 
     Args:
         button: whose meaning changes.
@@ -85,29 +86,38 @@ def connectAsPressed(button: Any, action: Callable[[], Callable[[], None]]) -> N
 
 def setUsable(button: Any, usable: bool, tip: str, reason: str = "") -> None:
     """Enable a button with its tool tip, or disable it with the reason in its place."""
+    # In a closed group, each button says that it is disabled.
     button.enabled = usable
-    button.toolTip = toolTip(tip if usable or not reason else reason)
+    setProperty(button, "toolTip", toolTip(tip if usable or not reason else reason))
 
 
-def fillTable(table: Any, rows: Iterable[Sequence[str]], tips: Sequence[str] = ()) -> None:
-    """Replace the rows of a `QTableWidget`; each text, or the row's tip, is its tool tip."""
+def fillTable(table: Any, rows: Iterable[Sequence[str]], tips: Sequence[str] = ()) -> bool:
+    """Show rows in a `QTableWidget`, and return whether it showed others.
+
+    Each text, or the row's tip, is its tool tip.
+    """
     rows = list(rows)
-    table.setRowCount(len(rows))
+    hasChanged = table.rowCount != len(rows)
+    setProperty(table, "rowCount", len(rows))
     for number, texts in enumerate(rows):
         for column, text in enumerate(texts):
-            item = qt.QTableWidgetItem(shortened(text, LONGEST_TEXT))
-            item.setToolTip(toolTip(tips[number] if tips else text))
-            table.setItem(number, column, item)
-    table.resizeColumnsToContents()
-    table.resizeRowsToContents()
+            shown = shortened(text, LONGEST_TEXT), toolTip(tips[number] if tips else text)
+            item = table.item(number, column)
+            if item is None or (item.text(), item.toolTip()) != shown:
+                item, hasChanged = qt.QTableWidgetItem(shown[0]), True
+                item.setToolTip(shown[1])
+                table.setItem(number, column, item)
+    if hasChanged:
+        table.resizeColumnsToContents()
+        table.resizeRowsToContents()
+    return hasChanged
 
 
 def fillComboBox(combo: Any, entries: Iterable[tuple[str, str]], chosen: str) -> None:
     """Replace the entries (text, data) of a `QComboBox` and choose one, without a signal."""
     entries = [(shortName(text), data) for text, data in entries]
-    shown = [(combo.itemText(i), combo.itemData(i)) for i in range(combo.count)]
     wasBlocked = combo.blockSignals(True)
-    if shown != entries:
+    if not isFilled(combo, entries):
         combo.clear()
         for text, data in entries:
             combo.addItem(text, data)
@@ -115,6 +125,12 @@ def fillComboBox(combo: Any, entries: Iterable[tuple[str, str]], chosen: str) ->
     if combo.currentIndex != index:
         combo.setCurrentIndex(index)
     combo.blockSignals(wasBlocked)
+
+
+def isFilled(combo: Any, entries: Iterable[tuple[str, str]]) -> bool:
+    """Return whether a `QComboBox` has these entries (text, data)."""
+    shown = [(combo.itemText(i), combo.itemData(i)) for i in range(combo.count)]
+    return shown == [(shortName(text), data) for text, data in entries]
 
 
 def chosenData(combo: Any) -> str:
@@ -137,7 +153,7 @@ def chosenScenario(ui: Any, session: ModuleSession) -> Scenario:
 def setChecked(box: Any, checked: bool) -> None:
     """Check a box or not, without a signal."""
     wasBlocked = box.blockSignals(True)
-    box.checked = checked
+    setProperty(box, "checked", checked)
     box.blockSignals(wasBlocked)
 
 

@@ -7,6 +7,8 @@ from PySide6 import QtCore, QtGui, QtWidgets
 Style = QtWidgets.QStyle
 MARGIN = 4
 WITHOUT_LIMIT = 16777215
+COLLAPSED_HEIGHT = 10
+"""Pixels below the header of a closed section, unless it has another height."""
 
 
 class Folding(QtCore.QObject):
@@ -80,9 +82,17 @@ class ctkCollapsibleButton(QtWidgets.QAbstractButton):
         self.setCheckable(True)
         self.setChecked(True)
         self.toggled.connect(lambda isOpen: self.setCollapsed(not isOpen))
-        policy = QtWidgets.QSizePolicy.Policy.Preferred
-        self.setSizePolicy(policy, policy)
+        # As in CTK: all that is in it has, as its least width, that which it would like to have.
+        policy = QtWidgets.QSizePolicy.Policy
+        self.setSizePolicy(policy.Minimum, policy.Preferred)
+        self._collapsed_height = COLLAPSED_HEIGHT
         self.setContentsMargins(0, self._header_height(), 0, 0)
+
+    def setCollapsedHeight(self, height: int) -> None:
+        self._collapsed_height = height
+        self.updateGeometry()
+
+    collapsedHeight = QtCore.Property(int, lambda self: self._collapsed_height, setCollapsedHeight)
 
     def isCollapsed(self) -> bool:
         return self._folding.is_collapsed
@@ -92,7 +102,7 @@ class ctkCollapsibleButton(QtWidgets.QAbstractButton):
             return
         self._folding.fold(collapsed)
         self.setChecked(not collapsed)
-        self.setMaximumHeight(self._header_height() if collapsed else WITHOUT_LIMIT)
+        self.setMaximumHeight(self.sizeHint().height() if collapsed else WITHOUT_LIMIT)
         self.updateGeometry()
         self.contentsCollapsed.emit(collapsed)
 
@@ -106,9 +116,10 @@ class ctkCollapsibleButton(QtWidgets.QAbstractButton):
         header = QtCore.QSize(
             self.fontMetrics().horizontalAdvance(self.text()) + 40, self._header_height()
         )
+        below = QtCore.QSize(0, self._collapsed_height)
         if self.layout() is None or self.isCollapsed():
-            return header
-        return self.layout().totalSizeHint().expandedTo(header)
+            return header + below
+        return self.layout().totalSizeHint().expandedTo(header + below)
 
     def minimumSizeHint(self) -> QtCore.QSize:
         if self.layout() is None or self.isCollapsed():

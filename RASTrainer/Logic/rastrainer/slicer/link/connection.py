@@ -1,7 +1,8 @@
 """Keeps one connector in the scene and connected, and knows the state of the simulator.
 
 The scene may be cleared of the connector, the simulator restarted, or the line cut silently:
-`follow`, called about ten times a second, notices and reconnects.
+`follow` notices and reconnects; it is to be called a second after the last time at the latest, and
+soon after each event of the connector.
 """
 
 from __future__ import annotations
@@ -73,6 +74,11 @@ class SimulatorSearch:
         self.finding = None
         self._next = self._clock()
 
+    @property
+    def isTesting(self) -> bool:
+        """Whether a test is under way."""
+        return self._probe is not None
+
     def end(self) -> None:
         """Stop testing."""
         if self._probe is not None:
@@ -102,7 +108,7 @@ NOWHERE = 0
 it would reconnect 0.1 s after a loss, to whatever has the simulator's port by then."""
 CONNECT_WITHIN_S = 1.0
 """How long the connector may connect to a simulator that has answered; then it is tested again."""
-LONGEST_LOOK_S = 0.5
+LONGEST_LOOK_S = 1.5
 """At most so much of the time since the last look counts as silence: while Slicer itself is held
 up, such as by loading a volume, it hears no one."""
 
@@ -125,9 +131,14 @@ class SlicerConnection:
         scene: Any,
         findKit: Callable[[], ConnectorKit | None],
         onCommand: Callable[[str | bytes, str | bytes], None],
+        onChange: Callable[[], None],
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """`onCommand(name, content)` is called from inside VTK: it must not raise."""
+        """Prepare a connection.
+
+        `onCommand(name, content)`, and `onChange()` once the connector has another state, are
+        called from inside VTK: they must not raise.
+        """
         self.kit: ConnectorKit | None = None
         self.connector: Any | None = None
         self.isOpen = False
@@ -135,9 +146,10 @@ class SlicerConnection:
         self._scene = scene
         self._findKit = findKit
         self._onCommand = onCommand
+        self._onChange = onChange
         self._clock = clock
         self._search = SimulatorSearch(clock)
-        self._observerTag = 0
+        self._observerTags: list[int] = []
         self._address: tuple[str, int] | None = None
         self._isListening = False
         self._connectsUntil = 0.0
@@ -168,6 +180,20 @@ class SlicerConnection:
                 peerVersion=self.peerVersion,
             )
         )
+
+    @property
+    def isWanted(self) -> bool:
+        """Whether a connection is requested."""
+        return self._address is not None
+
+    @property
+    def isChanging(self) -> bool:
+        """Whether its state will soon be another, such as that of a test of who answers."""
+        if self._address is None or self.kit is None:
+            return False
+        if self.isOpen:
+            return not self._hasHeartbeat
+        return self._search.isTesting or self._clock() < self._connectsUntil
 
     def begin(self, address: tuple[str, int], isListening: bool) -> None:
         """Request a connection: to the address, or from any client of its port."""
@@ -261,9 +287,13 @@ class SlicerConnection:
         connector.SetName(CONNECTOR_NAME)
         connector.SetSaveWithScene(False)
         self._scene.AddNode(connector)
-        self._observerTag = connector.AddObserver(
-            connector.CommandReceivedEvent, self._onCommandReceived
-        )
+        self._observerTags = [
+            connector.AddObserver(connector.CommandReceivedEvent, self._onCommandReceived),
+            *(
+                connector.AddObserver(event, lambda *_event: self._onChange())
+                for event in (connector.ConnectedEvent, connector.DisconnectedEvent)
+            ),
+        ]
         return connector
 
     def _dropConnector(self) -> None:
@@ -271,7 +301,8 @@ class SlicerConnection:
         self._connectsUntil = self._clock()
         if self.connector is None:
             return
-        self.connector.RemoveObserver(self._observerTag)
+        for tag in self._observerTags:
+            self.connector.RemoveObserver(tag)
         self.connector.Stop()
         if self.connector.GetScene() is not None:
             self._scene.RemoveNode(self.connector)

@@ -1,8 +1,7 @@
 """The link to the simulator: one class for desktop Slicer and for the headless side.
 
-Everything happens in `process`, which the host calls about ten times a second: nodes are polled
-rather than observed, since any of them may be deleted at any time. Only answers and commands are
-processed sooner, if the host supports it.
+Everything happens in `process`, which the host calls soon after something has happened, and before
+`restS` seconds are over. Answers and commands are processed even sooner, if the host supports it.
 """
 
 from __future__ import annotations
@@ -32,6 +31,8 @@ def neverSoon(_work: Callable[[], None]) -> None:
     """Do nothing: the next `process` will do it."""
 
 
+SOON_S, REST_S = 0.1, 1.0
+"""Until the next look while something changes, and while nothing does."""
 POSES_HZ = 30.0
 """Requested rate of poses; software graphics renders them 20 times a second at best."""
 
@@ -47,6 +48,7 @@ class Link:
         trialCompleted: emits the record that the simulator delivers, a dict not yet checked.
         trialAborted: emits the record of an aborted trial, a dict not yet checked.
         stepAnswered: emits the answers to a questionnaire of a study, a dict not yet checked.
+        woken: emits nothing when `process` has something to do soon; perhaps from inside VTK.
     """
 
     def __init__(
@@ -74,6 +76,7 @@ class Link:
         self.trialCompleted = Signal()
         self.trialAborted = Signal()
         self.stepAnswered = Signal()
+        self.woken = Signal()
         self._scene = scene
         self._client = client
         self._callSoon = callSoon
@@ -91,7 +94,9 @@ class Link:
                 CommandName.STEP_ANSWERED: self.stepAnswered,
             },
         )
-        self._connection = SlicerConnection(scene, findKit, self._keepCommand, clock)
+        self._connection = SlicerConnection(
+            scene, findKit, self._keepCommand, self.woken.emit, clock
+        )
         self._pending = PendingCommands(self._guard, clock, self._processSoon)
         self._posesAreWanted = False
         self._preparedConnector: Any | None = None
@@ -111,6 +116,16 @@ class Link:
     def isOpen(self) -> bool:
         """Whether there is a connection."""
         return self._connection.isOpen
+
+    @property
+    def restS(self) -> float | None:
+        """The longest time until the next `process`; None: none is needed before `woken`.
+
+        Nothing reports that a simulator has fallen silent, or does not answer.
+        """
+        if self._connection.isChanging or self._test.isRunning:
+            return SOON_S
+        return REST_S if self._connection.isWanted else None
 
     @property
     def connector(self) -> Any | None:
@@ -145,7 +160,9 @@ class Link:
         Raises:
             InputError: no host, or the port is not valid.
         """
-        return self._test.begin(*checkedAddress(host, port), onFound)
+        status = self._test.begin(*checkedAddress(host, port), onFound)
+        self.woken.emit()
+        return status
 
     def disconnect(self) -> None:
         """Close the connection and do not reconnect."""
@@ -178,6 +195,7 @@ class Link:
         status = self._connection.status
         if not self.isOpen or status.state is LinkState.WRONG_VERSION:
             self._pending.refuse(onReply, status.sentence)
+            self._processSoon()
             return
         content = json.dumps(dict(arguments or {}), allow_nan=False)
         self._pending.send(Request(name, content, timeoutS, onReply), self._transmit)
@@ -203,6 +221,7 @@ class Link:
     def _begin(self, address: tuple[str, int], isListening: bool) -> None:
         self._connection.begin(address, isListening)
         self.process()
+        self.woken.emit()
 
     def _transmit(self, request: Request) -> Any:
         """Return the connector's command for a request, sent."""
@@ -264,6 +283,11 @@ class ConnectionCheck:
         self._probe: Probe | None = None
         self._address = ""
         self._onFound: Callable[[LinkStatus], None] = lambda _status: None
+
+    @property
+    def isRunning(self) -> bool:
+        """Whether a test is under way."""
+        return self._probe is not None
 
     def begin(self, host: str, port: int, onFound: Callable[[LinkStatus], None]) -> LinkStatus:
         """Start a test; a later `process` calls `onFound`. Return the status to show meanwhile."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +12,10 @@ from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario, playable_methods
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.connection import ConnectorKit
-from rastrainer.slicer.link.link import CallSoon, Link, neverSoon
+from rastrainer.slicer.link.link import REST_S, SOON_S, CallSoon, Link, neverSoon
 from rastrainer.slicer.logic.delivery_queue import AbortedTrialLogic
 from rastrainer.slicer.logic.landmark_logic import LandmarkLogic
+from rastrainer.slicer.logic.module_paths import ModulePaths
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic
 from rastrainer.slicer.logic.procedure_plan_logic import ProcedurePlanLogic
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
@@ -35,13 +36,13 @@ from rastrainer.slicer.logic.training_logic import TrainingLogic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.slicer.logic.views import BorrowedLayout, SliceFollower
 from rastrainer.slicer.program.child_process import OwnProcess
-from rastrainer.slicer.program.simulator_package import SimulatorPackage
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from rastrainer.slicer.scene.scenario_nodes import VolumeLoader
+from rastrainer.slicer.scene.scene_watch import SceneWatch
 from rastrainer.slicer.scene.trial_scene import followPlacement
 from rastrainer.slicer.settings import Settings
 from rastrainer.slicer.signal import Signal
-from rastrainer.study.database.database import LockWait, PostgresAddress, StudyPlace
+from rastrainer.study.database.database import LockWait, StudyPlace
 from rastrainer.study.database.postgres_connecting import find_driver_in
 from rastrainer.study.database.study import Study
 from rastrainer.trial.aborted_trial import AbortedTrial
@@ -51,33 +52,10 @@ from rastrainer.trial.ctps import PUBLISHED_STUDY, read_trials
 ROBOT = Path("robots", "iiwa7")
 
 
-@dataclass(frozen=True)
-class ModulePaths:
-    """Where the session reads and writes files.
-
-    Attributes:
-        assets: folder of scenarios, robots and published studies.
-        python: that sets the simulator up, runs it, and does long work in separate processes.
-        simulator: private folder of the simulator.
-        study: file of the study, until another is chosen.
-        records: folder of the journals of the simulator that is started from here.
-        library: folder of the user's own scenarios, which the simulator knows too.
-        package: the simulator as it comes with the module.
-        studyAddress: of the study in PostgreSQL; None for that of the file.
-    """
-
-    assets: Path
-    python: Path
-    simulator: Path
-    study: Path
-    records: Path
-    library: Path
-    package: SimulatorPackage
-    studyAddress: PostgresAddress | None = None
-
-
 class ModuleSession:
-    """Wires the parts together; `process` is to be called about ten times a second.
+    """Wires the parts together.
+
+    `process` is to be called soon after `woken` has been emitted, and when `restS` are over.
 
     Attributes:
         work: background jobs, one after the other.
@@ -113,6 +91,9 @@ class ModuleSession:
             asked to count them) at the slice views; the module's widget sets it.
         taskChosen: emits nothing, whenever another task is chosen.
         scenarioMade: emits the name of a scenario that has just been made.
+        woken: emits nothing when `process` has something to do soon; perhaps from inside VTK.
+        sceneChanged: emits nothing when what the panels show of the scene may be another.
+        secondPassed: emits nothing, about once a second as long as `process` is called.
         settings: what the user has chosen in the panels.
         layout: of the views, while tables or plots are shown.
     """
@@ -194,6 +175,11 @@ class ModuleSession:
         self.isSeen: Callable[[bool], bool] = lambda _inSlices: False
         self.taskChosen = Signal()
         self.scenarioMade = Signal()
+        self.woken = Signal()
+        self.sceneChanged = Signal()
+        self.secondPassed = Signal()
+        self._second = 0
+        self._watch = SceneWatch(scene)
         self._trial = ""
         self.training.sceneShown.connect(self.procedure.showPlan)
         self.training.sceneShown.connect(self.traces.begin)
@@ -203,6 +189,18 @@ class ModuleSession:
         self.link.stateChanged.connect(self._noticeNewTrial)
         self.replay.shown.connect(self.registration.reset)
         self.replay.procedureShown.connect(self.procedure.showOutcome)
+        for signal in (
+            self._watch.noticed,
+            self.link.woken,
+            self.link.statusChanged,
+            self.simulator.program.changed,
+            self.simulator.setup.changed,
+            self.simulator.running.changed,
+            self.trainees.changed,
+            self.trials.trialScored,
+            self.trials.problemFound,
+        ):
+            signal.connect(self._wake)
 
     def openStudy(self) -> Study:
         """Open the present study, or begin it; this thread draws the window and waits for no lock.
@@ -239,6 +237,19 @@ class ModuleSession:
         self.methods = tuple(each.value for each in playable_methods(scenario))
         self.taskChosen.emit()
 
+    def restS(self, isEntered: bool) -> float | None:
+        """Return how long the next `process` may wait; None: until `woken` is emitted.
+
+        Nothing reports what other programs write into the study, or that time has passed.
+
+        Args:
+            isEntered: someone looks at the module.
+        """
+        if self.simulator.isChanging or self.replay.isReleasing:
+            return SOON_S
+        isWatched = isEntered or self.simulator.program.isRunning
+        return self.link.restS or (REST_S if isWatched else None)
+
     def process(self) -> None:
         """Do what is due; while a scene is loaded or cleared, nothing is."""
         self.simulator.process()
@@ -262,6 +273,11 @@ class ModuleSession:
         followPlacement(self._scene)
         self.slices.process()
         self.layout.process()
+        if self._watch.takeChange():
+            self.sceneChanged.emit()
+        if self._second != int(time.monotonic()):
+            self._second = int(time.monotonic())
+            self.secondPassed.emit()
 
     def yieldTimeToWork(self) -> bool:
         """Let background work run for a moment; return whether any is left."""
@@ -287,6 +303,7 @@ class ModuleSession:
 
     def close(self) -> None:
         """Disconnect, close the study, and end the simulator that was started from here."""
+        self._watch.close()
         self.layout.giveBack()
         self.study.close()
         self.curriculum.close()
@@ -299,6 +316,9 @@ class ModuleSession:
         self.link.disconnect()
         self.trainees.close()
         self.simulator.close()
+
+    def _wake(self, *_values: Any) -> None:
+        self.woken.emit()
 
     def _isTrialOpen(self) -> bool:
         return self.link.isOpen and self.training.progress.isOpen

@@ -161,13 +161,14 @@ class ProcedureLogic:
 
     def _follow(self, state: Mapping[str, Any]) -> None:
         status, trialId = ProcedureStatus.of(state), str(state.get("trialId", ""))
+        shown = self.status, self.outcome
         if trialId != self._trialId:
             self._trialId = trialId
             self.outcome = None if status.name else self.outcome
         isWaiting = status.phase == Phase.VERIFYING.value and not status.isRegistered
         self.isRegistrationFailed = self.isRegistrationFailed and isWaiting
-        if status != self.status:
-            self.status = status
+        self.status = status
+        if shown != (self.status, self.outcome):
             self.changed.emit()
         if not isWaiting:
             self._registering = ""

@@ -48,6 +48,7 @@ class ReplayLogic:
         feedbackFound: emits nothing, whenever the feedback on another trial is known.
         shown: emits nothing, whenever another trial is shown, with its touches to be registered.
         procedureShown: emits the `ProcedureOutcome` of that trial, None where it has none.
+        isReleasing: whether states of a closed scene's replay are left, which `process` releases.
     """
 
     def __init__(
@@ -92,6 +93,7 @@ class ReplayLogic:
         self._requestedId = ""
         self._until: float | None = None
         self._outdated: Iterator[None] = iter(())
+        self.isReleasing = False
 
     def feedback(self, trial: StoredTrial) -> TrialFeedback | None:
         """Return the feedback on a trial; None while it is being prepared.
@@ -173,8 +175,7 @@ class ReplayLogic:
 
     def process(self) -> None:
         """Stop where the worst touch was made; request feedback that no score has given."""
-        for _slice in itertools.islice(self._outdated, SLICES_A_TURN):
-            pass
+        self.isReleasing = len(list(itertools.islice(self._outdated, SLICES_A_TURN))) > 0
         if self._awaitedId and not self._isBeingScored(self._awaitedId):
             self._awaitedId = ""
             self.feedbackFound.emit()

@@ -32,7 +32,7 @@ _ANY_ADDRESS = ("0.0.0.0", "::", "localhost", "")
 
 
 class RunningSimulator:
-    """Finds who records in the folder; call `process` about ten times a second.
+    """Finds who records in the folder; call `process` once a second, or more often.
 
     Attributes:
         holder: the simulator that does; None where there is none.
@@ -153,7 +153,7 @@ def _since(started: str) -> str:
 
 
 class SimulatorLogic:
-    """Sets up, starts and stops the simulator; call `process` about ten times a second.
+    """Sets up, starts and stops the simulator; call `process` once a second, or more often.
 
     Attributes:
         program: the simulator's process.
@@ -183,6 +183,12 @@ class SimulatorLogic:
     def needsSetup(self) -> bool:
         """Whether the simulator has to be set up before it can be started."""
         return not self.ownProgram and not self.setup.isCurrent
+
+    @property
+    def isChanging(self) -> bool:
+        """Whether something is being set up, started or ended, and says how far it is."""
+        isInBetween = self.program.state in (ProgramState.STARTING, ProgramState.STOPPING)
+        return self.setup.isRunning or isInBetween or self.running.isEnding
 
     def start(self, port: int, hasWindow: bool = False, hasNetwork: bool = False) -> None:
         """Start the simulator on this computer, or find one that runs already; see `running`.

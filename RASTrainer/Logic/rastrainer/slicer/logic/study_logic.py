@@ -34,7 +34,7 @@ class StudyLogic:
     Everything done is in the study's file before anyone is informed, so that the trainee resumes
     there when it is opened again. The simulator is sent what comes next for each trainee, also for
     those not chosen here, so that its own menu starts nothing else. Trial runs and breaks end by
-    themselves; `process` is to be called about ten times a second.
+    themselves; `process` is to be called once a second, or more often.
 
     Attributes:
         changed: emits nothing, whenever a step may have been done.

@@ -170,7 +170,7 @@ class BorrowedLayout:
 
 TRANSFORM, FIDUCIALS = "vtkMRMLLinearTransformNode", "vtkMRMLMarkupsFiducialNode"
 LEAST_MOVE_MM = 0.5
-PERIOD_S = 0.1
+PERIOD_S = 0.09
 """Between two jumps after the tool: each renders all slice views."""
 LEAST_TURN = 0.01
 """Of the tool, in rad, before the views along it follow."""
@@ -231,7 +231,7 @@ class SliceFollower:
         return self.followsTool or self._device is not None
 
     def process(self) -> None:
-        """Follow what has moved; called about ten times a second."""
+        """Follow what has moved."""
         device = self._device
         if device is not None:
             self._shownPoint = ()

@@ -246,7 +246,7 @@ class VolumeLoader:
         self._requested: tuple[str, ...] = ()
 
     def process(self) -> None:
-        """Start reading requested images; called about ten times a second."""
+        """Start reading requested images."""
         node = findNode(self._scene, VOLUME, Role.HEAD_VOLUME)
         requested = _requested(node)
         if requested == self._requested:

@@ -1,0 +1,92 @@
+"""A module that has nothing to do costs Slicer nothing: it paints, lays out and asks nothing."""
+
+import json
+
+import pytest
+
+from rastrainer.igtl.content import String
+from rastrainer.protocol import DeviceName
+from Testing.slicer.host.activity import ActivityWatch
+from Testing.slicer.simulator_double import connect_module
+
+CLOCK = 40
+"""Tenths of a second that Qt counts."""
+TICKS = CLOCK // 5
+"""At most twice a second; a module that polls does so ten times."""
+
+
+def idle_activity(host):
+    host.idle_for(1.0)
+    with ActivityWatch() as watch:
+        host.wait_until(lambda: watch.clock >= CLOCK, "time passes")
+    return watch
+
+
+@pytest.fixture
+def idle_state():
+    """What the simulator says of itself while no trial is open."""
+    return String(json.dumps({"phase": "idle", "instruction": "Ask for a trial."}))
+
+
+def test_without_a_connection_nothing_is_written_or_drawn_again(host):
+    host.open()
+    watch = idle_activity(host)
+    assert (watch.writes, watch.drawn) == ([], [])
+    assert 0 < watch.ticks <= TICKS
+
+
+def test_with_all_sections_open_nothing_is_written_or_drawn_again(host):
+    host.open()
+    for name in vars(host.widget.ui):
+        if name.endswith(("CollapsibleButton", "GroupBox")) and "collapsed" in dir(host.find(name)):
+            host.find(name).collapsed = False
+    watch = idle_activity(host)
+    assert (watch.writes, watch.drawn) == ([], [])
+
+
+def test_connected_nothing_is_written_or_drawn_again(host, simulator, idle_state):
+    host.open()
+    connect_module(host, simulator)
+    simulator.send(DeviceName.SIM_STATE, idle_state)
+    host.wait_until(lambda: "Ask for" in host.text("trainingText"), "the state arrives")
+    watch = idle_activity(host)
+    assert (watch.writes, watch.drawn) == ([], [])
+    assert watch.ticks <= TICKS
+
+
+def test_behind_another_module_without_a_connection_no_timer_runs(host):
+    host.open()
+    host.leave()
+    assert idle_activity(host).ticks == 0
+    # What happens meanwhile is shown at once all the same.
+    host.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Mine")
+    host.wait_until(lambda: host.widget.logic.session.restS(False) is None, "it rests again")
+
+
+def test_a_state_of_a_trial_is_shown_without_a_poll(host, simulator):
+    host.open()
+    connect_module(host, simulator)
+    host.idle_for(1.0)
+    with ActivityWatch() as watch:
+        simulator.send(
+            DeviceName.SIM_STATE, String(json.dumps({"phase": "idle", "instruction": "Now."}))
+        )
+        host.wait_until(lambda: "Now." in host.text("trainingText"), "the state arrives")
+    assert watch.ticks <= watch.clock // 5 + 2
+
+
+def test_a_sentence_is_shown_and_hidden_in_a_closed_section_without_a_layout(host):
+    from rastrainer.panels.widgets import setText
+
+    host.open()
+    label = host.find("pairingText")
+    host.find("simulatorCollapsibleButton").collapsed = True
+    setText(label, "A code.")
+    host.idle_for(0.2)
+    with ActivityWatch() as watch:
+        setText(label, "A code.")
+    assert watch.writes == []
+    host.find("simulatorCollapsibleButton").collapsed = False
+    assert label.visible
+    setText(label, "")
+    assert not label.visible
