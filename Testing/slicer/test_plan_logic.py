@@ -81,7 +81,7 @@ def test_a_target_is_mapped_into_world_with_its_expected_error(room):
     np.testing.assert_allclose(transforms.apply(shown.matrix, plan.targetWorld[None])[0], TUMOR)
     there = transforms.apply(room.head_to_world, TUMOR[None])[0]
     assert np.linalg.norm(plan.targetWorld - there) < 1.5
-    assert plan.expected == room.registration.targetError(shown, TUMOR)
+    assert plan.expected == room.registration.targetError(TUMOR)
     assert plan.entry is None
 
 
@@ -102,8 +102,7 @@ def test_each_planned_target_of_a_scenario_is_a_plan_and_so_is_its_trajectory(sc
     first, second = (room.logic.read(targets, row) for row in (0, 1))
     assert (first.name, second.name) == ("center", "Tumor")
     np.testing.assert_allclose([first.target, second.target], [scenario.target_position, TUMOR])
-    shown = room.registration.shown
-    assert second.expected == room.registration.targetError(shown, TUMOR)
+    assert second.expected == room.registration.targetError(TUMOR)
     line = findNode(scene, "vtkMRMLMarkupsLineNode", Role.TRAJECTORY)
     assert targetsOf(line) == ()
     plan = room.logic.read(line)

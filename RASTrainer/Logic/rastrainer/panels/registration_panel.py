@@ -23,7 +23,7 @@ from rastrainer.registration.fits import AFFINE, RIGID, SIMILARITY
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.slicer.logic.module_session import ModuleSession
-from rastrainer.slicer.logic.registration_logic import Comparison
+from rastrainer.slicer.logic.registration_comparison import Comparison
 from rastrainer.slicer.logic.views import jumpTo
 from rastrainer.slicer.scene.registration_input import Remedy
 from rastrainer.slicer.scene.trial_scene import isApplied, setApplied

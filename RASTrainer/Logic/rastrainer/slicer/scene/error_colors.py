@@ -10,9 +10,7 @@ import slicer
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk
 
-from rastrainer.registration.localization_error import LocalizationError
 from rastrainer.registration.registration import Registration
-from rastrainer.registration.target_error import expected_tre
 from rastrainer.slicer.scene.nodes import Role, findNode, findOrAddNode, nodesOfClass
 
 COLOR_TABLE_ID = "vtkMRMLColorTableNodeFileViridis.txt"
@@ -83,24 +81,10 @@ def _isSeen(node: Any | None) -> bool:
     return node is not None and bool(node.GetDisplayVisibility())
 
 
-def colorHead(
-    model: Any, registration: Registration, localization: LocalizationError | None = None
-) -> tuple[float, float]:
-    """Color a `vtkMRMLModelNode` by the expected TRE, and return least and largest of it, mm.
-
-    Args:
-        model: the head.
-        registration: whose error is shown.
-        localization: of the touches; equal in all directions if omitted.
-
-    Raises:
-        InputError: the registration has too few points.
-    """
-    points = slicer.util.arrayFromModelPoints(model).astype(float)
-    errors = expected_tre(registration, points, localization)
-    low, high = float(errors.min()), float(errors.max())
-    colorSkin(model, TRE_SCALARS, errors, colorRange(low, high), "TRE (mm)")
-    return low, high
+def colorHead(model: Any, errors: np.ndarray) -> None:
+    """Color a `vtkMRMLModelNode`, the head, by the expected TRE (v,) at each of its points, mm."""
+    ends = colorRange(float(errors.min()), float(errors.max()))
+    colorSkin(model, TRE_SCALARS, errors, ends, "TRE (mm)")
 
 
 def colorSkin(
