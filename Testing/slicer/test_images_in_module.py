@@ -128,7 +128,7 @@ def test_a_scene_cleared_as_soon_as_the_mri_is_loaded_gets_it_again(host):
             host.scene.Clear(0)
             session.scenario.show("colin27", session.task)
 
-    session.images.shown.connect(clear_and_show_again)
+    session.files.shown.connect(clear_and_show_again)
     host.press("showScenarioButton")
     host.wait_until(lambda: cleared, "the scene is cleared")
     wait_for_images(host)

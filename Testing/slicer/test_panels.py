@@ -253,6 +253,7 @@ def test_head_fiducials_and_robot_are_shown_and_another_model_can_be_the_head(pa
     fixed = findNode(panels.scene, "vtkMRMLMarkupsFiducialNode", Role.FIXED_FIDUCIALS)
     assert fixed.GetName() == "Task 2 fiducials"
     panels.check("robotCheckBox")
+    panels.finish_work()
     for role in (Role.HEAD_MODEL, *(f"{Role.ROBOT} link {number}" for number in range(8))):
         model = findNode(panels.scene, "vtkMRMLModelNode", role)
         assert panels.sees(model), role
@@ -282,6 +283,7 @@ def test_fits_and_errors_are_shown_with_their_units_and_a_fit_is_chosen(panels, 
     transform = findNode(panels.scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
     rigid = slicer.util.arrayFromTransformMatrix(transform)
     panels.choose("kindComboBox", "Similarity")
+    panels.finish_work()
     similar = slicer.util.arrayFromTransformMatrix(transform)
     assert np.linalg.det(rigid[:3, :3]) == pytest.approx(1.0)
     assert np.linalg.det(similar[:3, :3]) != pytest.approx(1.0, abs=1e-6)
@@ -297,6 +299,7 @@ def test_a_point_with_a_larger_stated_error_weighs_less_until_undo(panels, touch
     panels.choose("residualsTable", 2)
     panels.type("fleSpinBox", "20")
     panels.press("fleButton")
+    panels.finish_work()
     after = cells(panels, "residualsTable")
     assert after[2][3] == "20.00"
     assert float(after[2][1]) > float(before[2][1])
@@ -306,6 +309,7 @@ def test_a_point_with_a_larger_stated_error_weighs_less_until_undo(panels, touch
         "registrationText"
     )
     panels.press("undoButton")
+    panels.finish_work()
     assert cells(panels, "residualsTable") == before
 
 
@@ -319,6 +323,7 @@ def test_the_chosen_fiducial_is_shown_in_the_slices_and_left_out(panels, touched
         colin.task("task-1").fiducials[4, 2], abs=1e-3
     )
     panels.press("excludeButton")
+    panels.finish_work()
     assert "Left out: 5" in panels.text("registrationText")
 
 
@@ -342,6 +347,7 @@ def test_another_target_is_chosen_and_the_head_is_colored(panels, touched):
     panels.choose("targetComboBox", target)
     panels.wait_until(lambda: panels.text("treText") != before, "the error is updated")
     panels.check("headColoredCheckBox")
+    panels.finish_work()
     head = findNode(panels.scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
     assert head.GetDisplayNode().GetScalarVisibility()
 
@@ -352,6 +358,7 @@ def test_one_small_legend_is_drawn_only_in_the_3d_view(panels, touched, tmp_path
     head.SetOpacity(0.4)
     seen = [panels.legends()]
     panels.check("headColoredCheckBox")
+    panels.finish_work()
     seen.append(panels.legends())
     # Through a translucent head the colors would not be those of the legend.
     assert head.GetOpacity() == 1.0

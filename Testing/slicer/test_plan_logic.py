@@ -16,9 +16,10 @@ from rastrainer.slicer.logic.target_plan_logic import PlanLogic, targetsOf
 from rastrainer.slicer.logic.views import jumpTo
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints, worldPoints
 from rastrainer.slicer.scene.plan_points import startPlacing, stopPlacing
-from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
+from rastrainer.slicer.scene.scenario_nodes import showTask
 from rastrainer.trial.analysis import RevealedTruth
 from rastrainer_headless.connector import headlessKit
+from Testing.slicer.shown_scenario import show_whole
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
 
 TUMOR = np.array([20.0, -30.0, 40.0])
@@ -32,7 +33,7 @@ class Room:
         self.reply = {"reachable": True, "reason": ""}
         self.simulator = SimulatorDouble(lambda name, _a: {} if name == "Hello" else self.reply)
         self.link = Link(scene, headlessKit)
-        showScenario(scene, scenario)
+        show_whole(scene, scenario)
         showTask(scene, scenario, "task-1")
         fiducials = scenario.task("task-1").fiducials
         noise = np.random.default_rng(8).normal(0.0, 0.5, (15, 3))

@@ -18,7 +18,7 @@ from rastrainer.slicer.logic.registration_logic import RegistrationLogic
 from rastrainer.slicer.scene.error_colors import TRE_SCALARS
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints, worldPoints
 from rastrainer.slicer.scene.registration_input import Choices
-from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
+from rastrainer.slicer.scene.scenario_nodes import showTask
 from rastrainer.slicer.scene.trial_scene import (
     FIXED_REFERENCE,
     isApplied,
@@ -27,6 +27,7 @@ from rastrainer.slicer.scene.trial_scene import (
     setApplied,
 )
 from rastrainer.transforms import MM_PER_M
+from Testing.slicer.shown_scenario import show_whole
 
 LEGEND = "vtkMRMLColorLegendDisplayNode"
 
@@ -36,7 +37,7 @@ class Table:
 
     def __init__(self, scene, scenario):
         self.scene, self.scenario = scene, scenario
-        showScenario(scene, scenario)
+        show_whole(scene, scenario)
         self.fixed = showTask(scene, scenario, "task-1")
         noise = np.random.default_rng(3).normal(0.0, 0.6, (15, 3))
         self.touched_on_mri = scenario.task("task-1").fiducials + noise

@@ -15,7 +15,7 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.scenario.library import user_library
-from rastrainer.slicer.background_work import inBackground
+from rastrainer.slicer.background_work import CallLater, inBackground
 from rastrainer.slicer.logic.module_session import ModulePaths
 from rastrainer.slicer.logic.views import WITH_PLOT, WITH_TABLE, BorrowedLayout
 from rastrainer.slicer.program.simulator_package import SimulatorPackage, pythonSlicer
@@ -96,10 +96,14 @@ def fitThreeDViews() -> None:
         slicer.util.resetThreeDViews()
 
 
-def fitSliceViews() -> None:
-    """Let the slice views show their volumes as a whole, which moves their slices, too."""
-    if slicer.app.layoutManager() is not None:
-        slicer.util.resetSliceViews()
+def fitSliceViews(later: CallLater) -> None:
+    """Let the slice views show their volumes as a whole, one view after the other by `later`.
+
+    That moves their slices, too.
+    """
+    layoutManager = slicer.app.layoutManager()
+    for name in () if layoutManager is None else layoutManager.sliceViewNames():
+        later(layoutManager.sliceWidget(name).sliceLogic().FitSliceToAll)
 
 
 CURVE, CALIBRATION, TABLES = "learning curve", "calibration", "tables"

@@ -24,7 +24,6 @@ from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.registration_comparison import Comparison
-from rastrainer.slicer.logic.views import jumpTo
 from rastrainer.slicer.scene.registration_input import Remedy
 from rastrainer.slicer.scene.trial_scene import isApplied, setApplied
 from rastrainer.slicer.settings import FIT, IS_HEAD_COLORED
@@ -39,6 +38,7 @@ class RegistrationPanel:
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         self._ui = ui
         self._logic = session.registration
+        self._slices = session.slices
         self._remedies: tuple[Remedy, ...] = ()
         self._remedyWidgets: list[Any] = []
         self._labels: tuple[str, ...] = ()
@@ -108,7 +108,7 @@ class RegistrationPanel:
         """Center the slices on the chosen fiducial."""
         row, shown = self._ui.residualsTable.currentRow(), self._logic.shown
         if shown is not None and 0 <= row < len(shown.labels):
-            jumpTo(slicer.mrmlScene, shown.fixed_mm[row])
+            self._slices.show(shown.fixed_mm[row])
         self._showButtons()
 
     def _show(self) -> None:

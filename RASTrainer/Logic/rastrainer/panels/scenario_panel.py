@@ -60,8 +60,10 @@ class ScenarioPanel:
             (session.link.statusChanged, self._showUsable),
             (session.training.answered, self._showMessage),
             (session.scenarioMade, self.continueWith),
-            (session.images.shown, self._frameImages),
-            (session.images.problemFound, self._showMessage),
+            (session.files.shown, self._frame),
+            (session.files.problemFound, self._showMessage),
+            (session.scenario.robotShown, fitThreeDViews),
+            (session.scenario.problemFound, self._showMessage),
         )
         self._fill(session.settings.get(SCENARIO))
 
@@ -92,10 +94,7 @@ class ScenarioPanel:
 
     def showRobot(self, shown: bool) -> None:
         """Show the robot in the 3D view, or hide it."""
-        with slicer.util.tryWithErrorDisplay(_("The robot cannot be shown.")):
-            self._logic.setRobotShown(shown)
-            if shown:
-                fitThreeDViews()
+        self._logic.setRobotShown(shown)
 
     def useHead(self) -> None:
         """Show a model, or the skin of a volume, as the head."""
@@ -151,10 +150,13 @@ class ScenarioPanel:
         if self._session.link.status.state is LinkState.CONNECTED:
             self.loadIntoSimulator()
 
-    def _frameImages(self, _node: Any) -> None:
-        """Fit the slice views to newly loaded images, in place of the previous ones."""
-        fitSliceViews()
-        self._session.slices.showAgain()
+    def _frame(self, node: Any) -> None:
+        """Fit the views to a newly loaded head or images, in place of the previous ones."""
+        if node.IsA("vtkMRMLModelNode"):
+            fitThreeDViews()
+            return
+        fitSliceViews(self._session.work.later)
+        self._session.work.later(self._session.slices.showAgain)
 
     def _showProgress(self, step: str, share: float) -> None:
         if step:

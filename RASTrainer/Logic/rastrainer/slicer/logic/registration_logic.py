@@ -25,14 +25,13 @@ from rastrainer.slicer.scene.error_colors import (
     removeHeadColors,
     showResidualArrows,
 )
-from rastrainer.slicer.scene.nodes import Role, findNode, localPoints, worldPoints
+from rastrainer.slicer.scene.nodes import Role, findNode, localPoints, surfaceOf, worldPoints
 from rastrainer.slicer.scene.registration_input import (
     Choices,
     Pairs,
     SkinReader,
     readPairs,
     snapshot,
-    surfaceOf,
 )
 from rastrainer.slicer.scene.scenario_nodes import TASK_ATTRIBUTE
 from rastrainer.slicer.scene.tables import showFits, showResiduals
@@ -140,7 +139,10 @@ class RegistrationLogic:
     def setHeadColored(self, colored: bool) -> None:
         """Color the head by the target error to expect, or not."""
         self.isHeadColored = colored
-        self._compute()
+        if colored:
+            self._compute()
+        else:
+            self._colorHead(None)
 
     def change(self, choices: Choices) -> None:
         """Register the pairs with these changes; `undo` reverts them."""
@@ -270,7 +272,7 @@ class RegistrationLogic:
 
     def _showOnHead(self, comparison: Comparison) -> None:
         showResidualArrows(self._scene, comparison.fitOf(self.kind))
-        self._colorHead(comparison.headErrors)
+        self._colorHead(comparison.headErrors if self.isHeadColored else None)
 
     def targetError(self, position: np.ndarray) -> TargetError | None:
         """Return the error to expect with the shown fit at a place, (3,) float, RAS mm.
@@ -294,12 +296,12 @@ class RegistrationLogic:
     def _colorHead(self, errors: np.ndarray | None) -> None:
         """Color the head by errors at its points, or show its own color where there are none."""
         head = self._head()
-        if not surfaceOf(head):
+        if head is None:
             return
-        if errors is not None and len(errors) == head.GetPolyData().GetNumberOfPoints():
-            colorHead(head, errors)
-        else:
+        if errors is None:
             removeHeadColors(head)
+        else:
+            colorHead(head, errors)
 
     def _head(self) -> Any | None:
         return findNode(self._scene, "vtkMRMLModelNode", Role.HEAD_MODEL)

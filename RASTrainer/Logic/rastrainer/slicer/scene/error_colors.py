@@ -11,7 +11,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk
 
 from rastrainer.registration.registration import Registration
-from rastrainer.slicer.scene.nodes import Role, findNode, findOrAddNode, nodesOfClass
+from rastrainer.slicer.scene.nodes import Role, findNode, findOrAddNode, nodesOfClass, surfaceOf
 
 COLOR_TABLE_ID = "vtkMRMLColorTableNodeFileViridis.txt"
 """One of the color tables that every Slicer has; readable without color vision, too."""
@@ -90,7 +90,12 @@ def colorHead(model: Any, errors: np.ndarray) -> None:
 def colorSkin(
     model: Any, name: str, values: np.ndarray, ends: tuple[float, float], title: str
 ) -> None:
-    """Color a head by a value (v,) at each of its vertices, whose colors have these ends."""
+    """Color a head by a value (v,) at each of its vertices, whose colors have these ends.
+
+    A head with other vertices, which may have come since the values were requested, stays as it is.
+    """
+    if not surfaceOf(model) or model.GetPolyData().GetNumberOfPoints() != len(values):
+        return
     display = model.GetDisplayNode()
     scalars = numpy_to_vtk(values, deep=True)
     scalars.SetName(name)

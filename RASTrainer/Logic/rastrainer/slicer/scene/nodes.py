@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import slicer
 import vtk
-from vtk.util.numpy_support import numpy_to_vtk
+from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import DeviceName
@@ -119,6 +119,13 @@ def stampOf(path: Path) -> str:
     return f"{status.st_mtime_ns} {status.st_size}"
 
 
+def surfaceOf(model: Any | None) -> tuple:
+    """Return a value that changes with the surface of a model; empty where there is none."""
+    if model is None or model.GetPolyData() is None or model.GetPolyData().GetPoints() is None:
+        return ()
+    return model.GetID(), model.GetPolyData().GetPoints().GetMTime()
+
+
 def labelsOf(node: Any) -> tuple[str, ...]:
     """Return the labels of a `vtkMRMLMarkupsNode`."""
     return tuple(labelOf(node, i) for i in range(node.GetNumberOfControlPoints()))
@@ -162,13 +169,23 @@ TOUCH_COLOR = (0.95, 0.55, 0.1)
 POINT_PIXELS = 5.0
 
 
-def prepareNodes(scene: Any) -> None:
-    """Make the nodes that are missing; the connector adopts nodes of that name and class."""
-    capturedPointsNode(scene)
-    simStateNode(scene)
+def prepareNodes(scene: Any) -> Iterator[Any]:
+    """Make the nodes that are missing, one at each step, and yield all.
+
+    The connector adopts nodes of that name and class; what it has made itself meanwhile is adopted.
+    """
+    yield capturedPointsNode(scene)
+    yield simStateNode(scene)
     tips = (DeviceName.TOOL_TIP_TO_WORLD, DeviceName.INSTRUMENT_TIP_TO_WORLD)
-    for name in (*tips, *DeviceName.LINK_TO_WORLD):
-        _node(scene, "vtkMRMLLinearTransformNode", name, name).SetSaveWithScene(False)
+    for device in (*tips, *DeviceName.LINK_TO_WORLD):
+        yield poseNode(scene, device)
+
+
+def poseNode(scene: Any, device: str) -> Any:
+    """Return the transform that the connector fills for a device, or a new one; never saved."""
+    node = _node(scene, "vtkMRMLLinearTransformNode", device, device)
+    node.SetSaveWithScene(False)
+    return node
 
 
 def capturedPointsNode(scene: Any) -> Any:
@@ -204,14 +221,41 @@ def drawAsPoints(node: Any) -> None:
     display.SetLighting(False)
 
 
+def trianglesPolyData(
+    points: np.ndarray, triangles: np.ndarray, normals: np.ndarray
+) -> vtk.vtkPolyData:
+    """Return a surface.
+
+    Args:
+        points: (n, 3) float.
+        triangles: (m, 3) int, counterclockwise seen from outside.
+        normals: (n, 3) float, outward unit normals.
+    """
+    corners = np.ascontiguousarray(triangles, dtype=np.int64).ravel()
+    cells = vtk.vtkCellArray()
+    cells.SetData(3, numpy_to_vtkIdTypeArray(corners, deep=True))
+    directions = numpy_to_vtk(np.ascontiguousarray(normals, dtype=np.float32), deep=True)
+    directions.SetName("Normals")
+    surface = vtk.vtkPolyData()
+    surface.SetPoints(_vtkPoints(points))
+    surface.SetPolys(cells)
+    surface.GetPointData().SetNormals(directions)
+    return surface
+
+
+def _vtkPoints(places: np.ndarray) -> vtk.vtkPoints:
+    points = vtk.vtkPoints()
+    points.SetData(numpy_to_vtk(np.ascontiguousarray(places, dtype=np.float32), deep=True))
+    return points
+
+
 def pointCloud(places: np.ndarray) -> vtk.vtkPolyData:
     """Return places (n, 3) as points, each of them a vertex cell."""
-    points, cells = vtk.vtkPoints(), vtk.vtkCellArray()
-    points.SetData(numpy_to_vtk(np.ascontiguousarray(places, dtype=np.float32), deep=True))
+    cells = vtk.vtkCellArray()
     for number in range(len(places)):
         cells.InsertNextCell(1, (number,))
     cloud = vtk.vtkPolyData()
-    cloud.SetPoints(points)
+    cloud.SetPoints(_vtkPoints(places))
     cloud.SetVerts(cells)
     return cloud
 

@@ -20,7 +20,7 @@ from rastrainer.registration.fits import extents
 from rastrainer.registration.localization_error import LocalizationError, error_along_surface
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.warnings import SAME_PLACE, RegistrationWarning, find_order
-from rastrainer.slicer.scene.nodes import labelsOf, localPoints, worldPoints
+from rastrainer.slicer.scene.nodes import labelsOf, localPoints, surfaceOf, worldPoints
 from rastrainer.slicer.translation import _
 
 USUAL_FLE_MM = 1.0
@@ -243,13 +243,6 @@ class SkinReader:
             self._surface = surface
             self._skin = Skin(_meshOf(model)) if surface else None
         return self._skin
-
-
-def surfaceOf(model: Any | None) -> tuple:
-    """Return a value that changes with the surface of a model; empty where there is none."""
-    if model is None or model.GetPolyData() is None or model.GetPolyData().GetPoints() is None:
-        return ()
-    return model.GetID(), model.GetPolyData().GetPoints().GetMTime()
 
 
 def _meshOf(model: Any) -> HeadMesh | None:
