@@ -233,6 +233,33 @@ def test_another_study_file_is_used_when_chosen_and_an_invalid_one_is_reported(p
     assert panels.find("traineeComboBox").count == 2
 
 
+def test_a_folder_and_another_file_are_no_study_and_the_panel_says_so(panels, tmp_path):
+    panels.press("createTraineeButton")
+    (tmp_path / "notes.txt").write_text("Notes")
+    before = panels.find("studyPathLineEdit").currentPath
+    for chosen, words in ((tmp_path, "is a folder"), (tmp_path / "notes.txt", "is no study")):
+        panels.find("studyPathLineEdit").currentPath = str(chosen)
+        panels.process_events()
+        text = panels.text("traineeText")
+        assert f"{chosen.name} {words}" in text.replace("\u200b", "")
+        assert f"{Path(before).name} stays open" in text.replace("\u200b", "")
+    panels.find("studyPathLineEdit").currentPath = str(tmp_path / "second.db")
+    panels.process_events()
+    assert panels.text("traineeText").startswith("Choose who is training")
+
+
+def test_a_study_in_a_missing_folder_is_made_only_if_the_user_wants_it(panels, tmp_path):
+    before, new = panels.find("studyPathLineEdit").currentPath, tmp_path / "typo" / "study.db"
+    for answer in ("No", "Yes"):
+        panels.answer("There is no folder", answer)
+        panels.find("studyPathLineEdit").currentPath = str(new)
+        panels.process_events()
+        assert new.parent.is_dir() == (answer == "Yes")
+        assert panels.find("studyPathLineEdit").currentPath == (
+            str(new) if answer == "Yes" else before
+        )
+
+
 def test_an_unusable_address_is_refused_without_repeating_its_password(panels):
     panels.type("studyAddressLineEdit", "postgresql://seat:secret@host/study")
     assert "must not hold a password" in panels.messages[-1].text

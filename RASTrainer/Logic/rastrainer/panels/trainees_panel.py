@@ -40,7 +40,7 @@ class TraineesPanel:
         self._ui = ui
         self._session = session
         self._logic = session.trainees
-        self._isProblemShown = False
+        self._isStateShown = False
         self._isErasing = False
         self._deletion = CancelableWork(
             lambda sentence: self._showMessage("{text}", text=sentence),
@@ -73,7 +73,17 @@ class TraineesPanel:
     def chooseStudy(self, path: str) -> None:
         """Continue with the study of another file, once its name is complete."""
         isFile = isinstance(self._session.studyPlace, Path)
-        if not isFile or not path.endswith(".db") or Path(path) == self._session.studyFile:
+        if not isFile or Path(path) == self._session.studyFile:
+            return
+        if not path.endswith(".db"):
+            self._showNoStudy(Path(path))
+            return
+        folder = Path(path).parent
+        question = _("There is no folder {folder}. Make it, for a new study?").format(folder=folder)
+        if not folder.is_dir() and not slicer.util.confirmYesNoDisplay(
+            toolTip(question), _("Choose a study")
+        ):
+            self._showPlace()
             return
         with slicer.util.tryWithErrorDisplay(_("The study cannot be used.")):
             try:
@@ -81,6 +91,22 @@ class TraineesPanel:
             finally:
                 self._showPlace()
             self._session.settings.set(STUDY, path)
+
+    def _showNoStudy(self, path: Path) -> None:
+        """Say why what was chosen is no study; the beginning of a path is none either, yet."""
+        sentence = ""
+        if path.is_dir():
+            sentence = _(
+                "{path} is a folder: choose the file of a study in it, or enter the name of a new "
+                "one, such as {example}. Until then, {study} stays open."
+            )
+        elif path.is_file():
+            sentence = _(
+                "{path} is no study, whose name ends with .db. Until one is chosen, {study} stays "
+                "open."
+            )
+        example, study = path / "study.db", self._session.studyFile
+        self._showMessage(sentence, isState=True, path=path, example=example, study=study)
 
     def chooseStudyAddress(self) -> None:
         """Continue with the study at another address; without one, with that of the file."""
@@ -245,11 +271,8 @@ class TraineesPanel:
             trainee, history = self._logic.chosenTrainee(), self._logic.history()
             aborted = self._logic.aborted()
         except InputError as error:
-            self._showMessage("{error}", error=error)
-            self._isProblemShown = True
+            self._showMessage("{error}", isState=True, error=error)
             return
-        if self._isProblemShown:
-            self._showMessage("")
         entries = [(_("Choose a trainee"), ""), *((_entry(t), t.pseudonym) for t in trainees)]
         ui.pseudonymLineEdit.placeholderText = self._logic.study.next_pseudonym()
         fillComboBox(ui.traineeComboBox, entries, trainee.pseudonym if trainee else "")
@@ -274,21 +297,24 @@ class TraineesPanel:
         if trainee is not None:
             self._showMessage(
                 _("{name}, since {day}. Trials: {count}. {aborted}"),
+                isState=True,
                 name=trainee.pseudonym,
                 count=len(history),
                 day=day_of(trainee.created_utc),
                 aborted=_aborted(aborted),
             )
-        elif not ui.traineeText.text:
-            self._showMessage(_("Choose who is training, or create a new trainee."))
+        elif self._isStateShown or not ui.traineeText.text:
+            sentence = _("Choose who is training, or create a new trainee.")
+            self._showMessage(sentence, isState=True)
         fillTable(
             ui.historyTable,
             (_historyRow(number, trial) for number, trial in enumerate(history, start=1)),
             [trial.record.started_utc for trial in history],
         )
 
-    def _showMessage(self, sentence: str, **values: Any) -> None:
-        self._isProblemShown = False
+    def _showMessage(self, sentence: str, isState: bool = False, **values: Any) -> None:
+        """Show a sentence; one about the present state, until there is another state."""
+        self._isStateShown = isState
         setText(self._ui.traineeText, sentence.format(**values).rstrip())
 
 
