@@ -255,9 +255,8 @@ def test_a_study_in_a_missing_folder_is_made_only_if_the_user_wants_it(panels, t
         panels.find("studyPathLineEdit").currentPath = str(new)
         panels.process_events()
         assert new.parent.is_dir() == (answer == "Yes")
-        assert panels.find("studyPathLineEdit").currentPath == (
-            str(new) if answer == "Yes" else before
-        )
+        shown = panels.find("studyPathLineEdit").currentPath
+        assert shown == (str(new) if answer == "Yes" else before)
 
 
 def test_an_unusable_address_is_refused_without_repeating_its_password(panels):

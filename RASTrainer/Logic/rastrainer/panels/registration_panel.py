@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import qt
-import slicer
 
 from rastrainer.panels.plain_text import buttonTitle, toolTip
+from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
     chosenData,
     fillTable,
@@ -65,21 +65,21 @@ class RegistrationPanel:
 
     def excludeChosen(self) -> None:
         """Register again without the chosen fiducial."""
-        with slicer.util.tryWithErrorDisplay(_("The fiducial was not left out.")):
+        with showErrors(_("The fiducial was not left out.")):
             row = self._ui.residualsTable.currentRow()
             if row >= 0 and self._logic.shown is not None:
                 self._logic.exclude(self._logic.shown.labels[row])
 
     def localizeChosen(self) -> None:
         """Register again with the stated localization error of the chosen fiducial."""
-        with slicer.util.tryWithErrorDisplay(_("The localization error was not set.")):
+        with showErrors(_("The localization error was not set.")):
             row = self._ui.residualsTable.currentRow()
             if row >= 0 and self._logic.shown is not None:
                 self._logic.localize(self._logic.shown.labels[row], self._ui.fleSpinBox.value)
 
     def undo(self) -> None:
         "Undo the last change to the pairs."
-        with slicer.util.tryWithErrorDisplay(_("Nothing was undone.")):
+        with showErrors(_("Nothing was undone.")):
             self._logic.undo()
 
     def showState(self) -> None:
@@ -96,7 +96,7 @@ class RegistrationPanel:
         self._logic.chooseTarget(node)
 
     def _chooseKind(self, _index: int = 0) -> None:
-        with slicer.util.tryWithErrorDisplay(_("The fit cannot be shown.")):
+        with showErrors(_("The fit cannot be shown.")):
             self._logic.chooseKind(chosenData(self._ui.kindComboBox))
 
     def _apply(self, applied: bool) -> None:
@@ -208,7 +208,7 @@ class RegistrationPanel:
 
     def _applying(self, remedy: Remedy) -> Callable[[], None]:
         def apply() -> None:
-            with slicer.util.tryWithErrorDisplay(_("The pairs were not changed.")):
+            with showErrors(_("The pairs were not changed.")):
                 self._logic.change(remedy.choices)
 
         return apply

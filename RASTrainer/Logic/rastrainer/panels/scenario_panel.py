@@ -10,6 +10,7 @@ import slicer
 
 from rastrainer.number_text import fixed
 from rastrainer.panels.application import askWhereToSave, fitSliceViews, fitThreeDViews
+from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.training_panel import METHODS
 from rastrainer.panels.widgets import (
     CancelableWork,
@@ -76,7 +77,7 @@ class ScenarioPanel:
 
     def show(self) -> None:
         """Show the chosen head and the fiducials of the chosen task."""
-        with slicer.util.tryWithErrorDisplay(_("The scenario cannot be shown."), waitCursor=True):
+        with showErrors(_("The scenario cannot be shown."), waitCursor=True):
             name = chosenData(self._ui.scenarioComboBox)
             self._logic.show(name, self._session.task)
             self._session.slices.show(self._logic.find(name).target_position)
@@ -84,7 +85,7 @@ class ScenarioPanel:
 
     def loadIntoSimulator(self) -> None:
         """Load the chosen head into the simulator."""
-        with slicer.util.tryWithErrorDisplay(_("The scenario was not loaded.")):
+        with showErrors(_("The scenario was not loaded.")):
             scenario = self._session.scenario.find(chosenData(self._ui.scenarioComboBox))
             self._showMessage(
                 _("The simulator was asked to load {title}.").format(title=scenario.title)
@@ -98,7 +99,7 @@ class ScenarioPanel:
 
     def useHead(self) -> None:
         """Show a model, or the skin of a volume, as the head."""
-        with slicer.util.tryWithErrorDisplay(_("This cannot be used as the head.")):
+        with showErrors(_("This cannot be used as the head.")):
             node = self._ui.headModelComboBox.currentNode()
             used = self._work.run(lambda report: self._logic.useHead(node, report))
             if used is not None:
@@ -109,7 +110,7 @@ class ScenarioPanel:
 
     def importScenario(self) -> None:
         """Add a scenario that comes as a zip file, and choose it."""
-        with slicer.util.tryWithErrorDisplay(_("The scenario was not added.")):
+        with showErrors(_("The scenario was not added.")):
             path = qt.QFileDialog.getOpenFileName(
                 slicer.util.mainWindow(), _("Add a scenario"), "", "Zip (*.zip)"
             )
@@ -125,7 +126,7 @@ class ScenarioPanel:
 
     def exportScenario(self) -> None:
         """Write the chosen scenario as a zip file."""
-        with slicer.util.tryWithErrorDisplay(_("The scenario was not saved.")):
+        with showErrors(_("The scenario was not saved.")):
             name = chosenData(self._ui.scenarioComboBox)
             keepsFace = not self._ui.removeFaceCheckBox.checked
             keepsNames = not self._ui.removeNamesCheckBox.checked
@@ -280,7 +281,7 @@ class MethodsPanel:
     def compare(self) -> None:
         """Simulate trials on the chosen head, and show how each method registers them."""
         ui, logic = self._ui, self._session.methodComparison
-        with slicer.util.tryWithErrorDisplay(_("The methods were not compared.")):
+        with showErrors(_("The methods were not compared.")):
             scenario = chosenScenario(ui, self._session)
             trials, shift = ui.methodTrialsSpinBox.value, ui.methodShiftSpinBox.value
             self._showMessage(_("Trials are being simulated and registered."))

@@ -11,6 +11,7 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.number_text import fixed
 from rastrainer.panels.application import TABLES, askWhereToSave, fitThreeDViews, showTable
+from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
     CancelableWork,
     chosenData,
@@ -79,7 +80,7 @@ class ScorePanel:
         if not self._ui.showTablesButton.checked:
             self._session.layout.giveBack(TABLES)
             return
-        with slicer.util.tryWithErrorDisplay(_("The tables cannot be shown.")):
+        with showErrors(_("The tables cannot be shown.")):
             trial = self._trial()
             if trial is None:
                 return
@@ -95,7 +96,7 @@ class ScorePanel:
         """Write all trials of the study as a table."""
         path = askWhereToSave(_("Export all trials"), "trials.csv", "CSV (*.csv)")
         if path is not None:
-            with slicer.util.tryWithErrorDisplay(_("The trials were not exported.")):
+            with showErrors(_("The trials were not exported.")):
                 written = self._work.run(
                     lambda report: self._trainees.exportHistories(path, report)
                 )
@@ -111,7 +112,7 @@ class ScorePanel:
         caption = _("Folder for the report")
         folder = qt.QFileDialog.getExistingDirectory(slicer.util.mainWindow(), caption)
         if folder:
-            with slicer.util.tryWithErrorDisplay(_("The report was not written.")):
+            with showErrors(_("The report was not written.")):
                 study = self._session.studyPlace
                 page = self._work.run(
                     lambda report: inBackground(
@@ -124,14 +125,14 @@ class ScorePanel:
 
     def replay(self) -> None:
         """Show the trial again in the 3D view."""
-        with slicer.util.tryWithErrorDisplay(_("The trial is not shown.")):
+        with showErrors(_("The trial is not shown.")):
             trial = self._chosenTrial()
             self._work.run(lambda report: self._session.replay.show(trial, report))
             fitThreeDViews()
 
     def replayWorstTouch(self) -> None:
         """Show again how the worst touch came about."""
-        with slicer.util.tryWithErrorDisplay(_("The touch is not shown.")):
+        with showErrors(_("The touch is not shown.")):
             trial = self._chosenTrial()
             self._work.run(lambda report: self._session.replay.showWorstTouch(trial, report))
 

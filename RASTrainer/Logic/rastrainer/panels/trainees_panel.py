@@ -11,6 +11,7 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.panels.application import CALIBRATION, CURVE, askWhereToSave, showChart
 from rastrainer.panels.plain_text import toolTip
+from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
     CancelableWork,
     chosenData,
@@ -85,7 +86,7 @@ class TraineesPanel:
         ):
             self._showPlace()
             return
-        with slicer.util.tryWithErrorDisplay(_("The study cannot be used.")):
+        with showErrors(_("The study cannot be used.")):
             try:
                 self._session.chooseStudy(Path(path))
             finally:
@@ -111,7 +112,7 @@ class TraineesPanel:
     def chooseStudyAddress(self) -> None:
         """Continue with the study at another address; without one, with that of the file."""
         session, text = self._session, self._ui.studyAddressLineEdit.text.strip()
-        with slicer.util.tryWithErrorDisplay(_("The study cannot be used.")):
+        with showErrors(_("The study cannot be used.")):
             try:
                 place = study_place(text or session.studyFile)
                 if text and isinstance(place, Path):
@@ -138,14 +139,14 @@ class TraineesPanel:
     def createTrainee(self) -> None:
         """Add a trainee and choose them."""
         ui = self._ui
-        with slicer.util.tryWithErrorDisplay(_("The trainee was not created.")):
+        with showErrors(_("The trainee was not created.")):
             self._logic.create(ui.pseudonymLineEdit.text, ui.newConsentCheckBox.checked)
             ui.pseudonymLineEdit.text = ""
             ui.newConsentCheckBox.checked = False
 
     def setConsent(self, consent: bool) -> None:
         """Note whether the chosen trainee consents to research."""
-        with slicer.util.tryWithErrorDisplay(_("The consent was not saved.")):
+        with showErrors(_("The consent was not saved.")):
             try:
                 self._logic.setConsent(consent)
             except InputError:
@@ -154,13 +155,13 @@ class TraineesPanel:
 
     def archive(self) -> None:
         """Archive the chosen trainee, who stays in view."""
-        with slicer.util.tryWithErrorDisplay(_("The trainee was not archived.")):
+        with showErrors(_("The trainee was not archived.")):
             self._ui.archivedCheckBox.checked = True
             self._logic.setArchived(True)
 
     def unarchive(self) -> None:
         """Show the chosen trainee in the list again, who was archived."""
-        with slicer.util.tryWithErrorDisplay(_("The trainee was not restored.")):
+        with showErrors(_("The trainee was not restored.")):
             self._logic.setArchived(False)
 
     def exportTrainee(self) -> None:
@@ -168,7 +169,7 @@ class TraineesPanel:
         name = f"{self._logic.chosen}.json"
         path = askWhereToSave(_("Export the trainee"), name, "JSON (*.json)")
         if path is not None:
-            with slicer.util.tryWithErrorDisplay(_("The trainee was not exported.")):
+            with showErrors(_("The trainee was not exported.")):
                 count = self._logic.export(path)
                 self._showMessage(
                     _("{count} trials were written to {path}."), count=count, path=path
@@ -179,7 +180,7 @@ class TraineesPanel:
         name = f"{self._logic.chosen}.csv"
         path = askWhereToSave(_("Export the history"), name, "CSV (*.csv)")
         if path is not None:
-            with slicer.util.tryWithErrorDisplay(_("The history was not exported.")):
+            with showErrors(_("The history was not exported.")):
                 count = self._logic.exportHistory(path)
                 self._showMessage(
                     _("{count} trials were written to {path}."), count=count, path=path
@@ -187,7 +188,7 @@ class TraineesPanel:
 
     def deleteTrainee(self) -> None:
         """Delete the chosen trainee for good, after asking."""
-        with slicer.util.tryWithErrorDisplay(_("The trainee was not deleted.")):
+        with showErrors(_("The trainee was not deleted.")):
             name, trials = self._logic.chosen, len(self._logic.history())
             question = _(
                 "Delete {name} with {trials} trials from the study and from the journals on this "
@@ -234,7 +235,7 @@ class TraineesPanel:
         if not self._ui.learningCurveButton.checked:
             self._session.layout.giveBack(CURVE)
             return
-        with slicer.util.tryWithErrorDisplay(_("The learning curve cannot be shown.")):
+        with showErrors(_("The learning curve cannot be shown.")):
             trials = self._logic.history()
             chart = showLearningCurve(slicer.mrmlScene, self._logic.chosen, trials)
             showChart(self._session.layout, chart)
@@ -244,7 +245,7 @@ class TraineesPanel:
         if not self._ui.calibrationButton.checked:
             self._session.layout.giveBack(CALIBRATION)
             return
-        with slicer.util.tryWithErrorDisplay(_("The target errors cannot be shown.")):
+        with showErrors(_("The target errors cannot be shown.")):
             found = self._logic.calibration()
             chart = showCalibration(slicer.mrmlScene, found)
             showChart(self._session.layout, chart, CALIBRATION)

@@ -158,9 +158,9 @@ class SimulatorProgram:
             self._change(
                 ProgramState.FAILED,
                 _(
-                    "The simulator stopped unexpectedly: it crashed, or was ended from outside, for "
-                    "example by the task manager or for lack of memory. What it has recorded is "
-                    "kept: start it again to continue."
+                    "The simulator stopped unexpectedly: it crashed, or was ended from outside, "
+                    "for example by the task manager or for lack of memory. What it has recorded "
+                    "is kept: start it again to continue."
                 ),
             )
         else:
