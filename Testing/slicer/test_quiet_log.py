@@ -32,7 +32,7 @@ def at_work(host, make_record):
     return host
 
 
-def entries(host):
+def entries():
     """The entries of Slicer's log from warnings on."""
     text = Path(slicer.app.errorLogModel().filePath).read_text(encoding="utf-8")
     return [line for line in text.splitlines() if not line.startswith("[INFO]")]
@@ -47,13 +47,13 @@ def test_an_error_of_input_is_one_line_of_the_log_and_a_mistake_of_ours_its_trac
     host.press("createTraineeButton")
     message = host.messages[-1].text
     assert message.startswith("The trainee was not created.\n\n")
-    (line,) = entries(host)
+    (line,) = entries()
     assert line.startswith("[ERROR]")
     assert line.endswith(" ".join(message.split()))
     monkeypatch.setattr(host.widget.logic.session.trainees, "create", None)
     host.press("createTraineeButton")
     assert host.messages[-1].text.startswith("The trainee was not created.\n\n")
-    assert any(line.startswith("[CRITICAL]") for line in entries(host))
+    assert any(line.startswith("[CRITICAL]") for line in entries())
     assert "TypeError" in host.errors.pop()
 
 

@@ -10,7 +10,7 @@ import enum
 import functools
 import inspect
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import shiboken6
@@ -109,7 +109,14 @@ CONNECTIONS = "_connectionsOfHost"
 
 
 class Slot:
-    """Calls a function with as many arguments as it takes; what it raises is caught."""
+    """Calls a function with as many arguments as it takes; what it raises is caught.
+
+    Attributes:
+        watchers: called before and after each call that is not made within another one.
+    """
+
+    watchers: ClassVar[list[Callable[[], None]]] = []
+    _depth: ClassVar[int] = 0
 
     def __init__(self, function: Callable[..., Any], argument_count: int | None = None) -> None:
         self.function = function
@@ -117,10 +124,21 @@ class Slot:
         self._count = taken if argument_count is None else min(taken, argument_count)
 
     def __call__(self, *arguments: Any) -> None:
+        Slot._tell_watchers()
+        Slot._depth += 1
         try:
             self.function(*(from_qt(item) for item in arguments[: self._count]))
         except Exception as exception:  # PythonQt prints it, and continues.
             FAILURES.catch(exception)
+        finally:
+            Slot._depth -= 1
+            Slot._tell_watchers()
+
+    @classmethod
+    def _tell_watchers(cls) -> None:
+        if not cls._depth:
+            for watcher in cls.watchers:
+                watcher()
 
 
 class BoundSignal:

@@ -11,7 +11,14 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk
 
 from rastrainer.registration.registration import Registration
-from rastrainer.slicer.scene.nodes import Role, findNode, findOrAddNode, nodesOfClass, surfaceOf
+from rastrainer.slicer.scene.nodes import (
+    Role,
+    changedOnce,
+    findNode,
+    findOrAddNode,
+    nodesOfClass,
+    surfaceOf,
+)
 
 COLOR_TABLE_ID = "vtkMRMLColorTableNodeFileViridis.txt"
 """One of the color tables that every Slicer has; readable without color vision, too."""
@@ -30,11 +37,12 @@ OPACITY_ATTRIBUTE = "RASTrainer.opacity"
 def showScalars(model: Any, name: str, ends: tuple[float, float]) -> None:
     """Color a `vtkMRMLModelNode` by point data of that name, whose colors have these ends."""
     display = model.GetDisplayNode()
-    display.SetActiveScalar(name, vtk.vtkAssignAttribute.POINT_DATA)
-    display.SetAndObserveColorNodeID(COLOR_TABLE_ID)
-    display.SetScalarRangeFlag(display.UseManualScalarRange)
-    display.SetScalarRange(*ends)
-    display.SetScalarVisibility(True)
+    with changedOnce(display):
+        display.SetActiveScalar(name, vtk.vtkAssignAttribute.POINT_DATA)
+        display.SetAndObserveColorNodeID(COLOR_TABLE_ID)
+        display.SetScalarRangeFlag(display.UseManualScalarRange)
+        display.SetScalarRange(*ends)
+        display.SetScalarVisibility(True)
 
 
 def showLegend(node: Any, title: str, rank: int) -> Any | None:
@@ -48,10 +56,11 @@ def showLegend(node: Any, title: str, rank: int) -> Any | None:
     legend = slicer.vtkSlicerColorLogic.GetColorLegendDisplayNode(node)
     if legend is None:
         legend = slicer.vtkSlicerColorLogic.AddDefaultColorLegendDisplayNode(node)
-        legend.SetVisibility2D(False)
-        legend.SetSize(*SIZE)
-        legend.SetPosition(*PLACE)
-        legend.SetLabelFormat("%.2f")
+        with changedOnce(legend):
+            legend.SetVisibility2D(False)
+            legend.SetSize(*SIZE)
+            legend.SetPosition(*PLACE)
+            legend.SetLabelFormat("%.2f")
     legend.SetTitleText(title)
     legend.SetAttribute(RANK_ATTRIBUTE, str(rank))
     _showHighest(node.GetScene())
@@ -168,9 +177,10 @@ def glyphsPolyData(
 def showResidualArrows(scene: Any, registration: Registration) -> Any:
     """Show the arrows in a `vtkMRMLModelNode` and return it."""
     node = findOrAddNode(scene, "vtkMRMLModelNode", Role.RESIDUAL_ARROWS, "Residual arrows")
-    node.SetAndObservePolyData(glyphsPolyData(registration))
-    node.SetDescription(f"Residuals, {magnification(registration):g} times as long")
-    showScalars(node, RESIDUAL_SCALARS, residualRange(registration))
+    with changedOnce(node):
+        node.SetDescription(f"Residuals, {magnification(registration):g} times as long")
+        showScalars(node, RESIDUAL_SCALARS, residualRange(registration))
+        node.SetAndObservePolyData(glyphsPolyData(registration))
     showLegend(node, "Residual (mm)", ARROWS_RANK)
     return node
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -56,6 +57,16 @@ class Role:
     LANDMARKS = "landmarks"
     TRACED_POINTS = "traced points"
     NEXT_PLACE = "next place of the trace"
+
+
+@contextlib.contextmanager
+def changedOnce(node: Any) -> Iterator[None]:
+    """Have a node tell of all changes together: at each event every view would draw it again."""
+    wasModifying = node.StartModify()
+    try:
+        yield
+    finally:
+        node.EndModify(wasModifying)
 
 
 def findNode(scene: Any, className: str, role: str) -> Any | None:
@@ -154,12 +165,11 @@ def setPoints(node: Any, labels: Sequence[str], points: np.ndarray) -> None:
         labels: one for each point.
         points: (n, 3) float, mm, in the node's own frame.
     """
-    wasModifying = node.StartModify()
-    node.RemoveAllControlPoints()
-    slicer.util.updateMarkupsControlPointsFromArray(node, np.asarray(points, dtype=float))
-    for index, label in enumerate(labels):
-        node.SetNthControlPointLabel(index, label)
-    node.EndModify(wasModifying)
+    with changedOnce(node):
+        node.RemoveAllControlPoints()
+        slicer.util.updateMarkupsControlPointsFromArray(node, np.asarray(points, dtype=float))
+        for index, label in enumerate(labels):
+            node.SetNthControlPointLabel(index, label)
 
 
 ORIGINAL_NAME = "OriginalNodeName"
@@ -197,10 +207,11 @@ def capturedPointsNode(scene: Any) -> Any:
         node.SetLocked(True)
         node.CreateDefaultDisplayNodes()
         display = node.GetDisplayNode()
-        display.SetSelectedColor(TOUCH_COLOR)
-        display.SetGlyphScale(2.5)
-        display.SetTextScale(3.5)
-        display.SetOccludedVisibility(True)
+        with changedOnce(display):
+            display.SetSelectedColor(TOUCH_COLOR)
+            display.SetGlyphScale(2.5)
+            display.SetTextScale(3.5)
+            display.SetOccludedVisibility(True)
     return node
 
 
@@ -215,10 +226,11 @@ def drawAsPoints(node: Any) -> None:
     """Draw a model as the points of a trace."""
     node.SetSelectable(False)
     display = node.GetDisplayNode()
-    display.SetRepresentation(display.PointsRepresentation)
-    display.SetPointSize(POINT_PIXELS)
-    display.SetColor(TOUCH_COLOR)
-    display.SetLighting(False)
+    with changedOnce(display):
+        display.SetRepresentation(display.PointsRepresentation)
+        display.SetPointSize(POINT_PIXELS)
+        display.SetColor(TOUCH_COLOR)
+        display.SetLighting(False)
 
 
 def trianglesPolyData(

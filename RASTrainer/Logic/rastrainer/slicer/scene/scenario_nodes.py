@@ -24,6 +24,7 @@ from rastrainer.slicer.background_work import BackgroundWork, CallLater, callNow
 from rastrainer.slicer.scene.nodes import (
     TASK_ATTRIBUTE,
     Role,
+    changedOnce,
     findNode,
     findOrAddNode,
     isShown,
@@ -102,13 +103,14 @@ def taskKey(scenarioName: str, taskName: str) -> str:
 
 
 def _fillFiducials(node: Any, task: Task) -> None:
-    node.SetName(f"{task.title} fiducials")
-    setPoints(node, task.labels, task.fiducials)
-    node.SetLocked(True)
     display = node.GetDisplayNode()
-    display.SetSelectedColor(FIDUCIAL_COLOR)
-    display.SetGlyphScale(2.0)
-    display.SetTextScale(3.5)
+    with changedOnce(node), changedOnce(display):
+        node.SetName(f"{task.title} fiducials")
+        setPoints(node, task.labels, task.fiducials)
+        node.SetLocked(True)
+        display.SetSelectedColor(FIDUCIAL_COLOR)
+        display.SetGlyphScale(2.0)
+        display.SetTextScale(3.5)
 
 
 def _showHead(scene: Any, scenario: Scenario) -> None:
@@ -138,12 +140,11 @@ def _requestMesh(
     node.SetAndObservePolyData(None)
     display = node.GetDisplayNode()
     # All at once, and before the surface comes: at each change every view would cut or redraw it.
-    wasModifying = display.StartModify()
-    display.SetColor(color)
-    display.SetOpacity(opacity)
-    display.SetVisibility2D(True)
-    display.SetSliceIntersectionThickness(OUTLINE_PIXELS)
-    display.EndModify(wasModifying)
+    with changedOnce(display):
+        display.SetColor(color)
+        display.SetOpacity(opacity)
+        display.SetVisibility2D(True)
+        display.SetSliceIntersectionThickness(OUTLINE_PIXELS)
     return True
 
 

@@ -13,7 +13,7 @@ import vtk
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
-from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, Role, findNode, findOrAddNode
+from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, Role, changedOnce, findNode, findOrAddNode
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.tre_calibration import TreCalibration, share_text
@@ -31,13 +31,12 @@ class Column:
 def showTable(scene: Any, role: str, name: str, columns: Sequence[Column]) -> Any:
     """Put columns into the `vtkMRMLTableNode` of a role and return it."""
     node = findOrAddNode(scene, "vtkMRMLTableNode", role, name)
-    wasModifying = node.StartModify()
-    node.RemoveAllColumns()
-    node.SetUseColumnTitleAsColumnHeader(True)
-    for column in columns:
-        node.AddColumn(_array(column))
-    node.SetLocked(True)
-    node.EndModify(wasModifying)
+    with changedOnce(node):
+        node.RemoveAllColumns()
+        node.SetUseColumnTitleAsColumnHeader(True)
+        for column in columns:
+            node.AddColumn(_array(column))
+        node.SetLocked(True)
     return node
 
 
