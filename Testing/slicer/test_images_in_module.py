@@ -42,6 +42,7 @@ def show_scenario(host):
 
 def wait_for_images(host):
     host.wait_until(lambda: images(host) and images(host).GetImageData(), "the images are loaded")
+    host.finish_work()
 
 
 def test_the_mri_is_behind_head_and_fiducials_in_each_slice_view(host, tmp_path):

@@ -345,6 +345,7 @@ def test_the_chosen_fiducial_is_shown_in_the_slices_and_left_out(panels, touched
     wait_for_images(panels)
     view = panels.scene.AddNewNodeByClass("vtkMRMLSliceNode", "Mine")
     panels.choose("residualsTable", 4)
+    panels.finish_work()
     assert view.GetSliceToRAS().GetElement(2, 3) == pytest.approx(
         colin.task("task-1").fiducials[4, 2], abs=1e-3
     )

@@ -22,7 +22,6 @@ from rastrainer.panels.widgets import (
     setText,
     setUsable,
 )
-from rastrainer.report.report import write_report
 from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.scene.score_tables import (
@@ -40,7 +39,6 @@ from rastrainer.slicer.translation import _
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.outcomes import short_mode_title, task_title
-from rastrainer.study.study_data import read_study_data
 from rastrainer.trial.analysis import TrialAnalysis
 from rastrainer.trial.ctps import CTPS_WARNING
 
@@ -288,6 +286,9 @@ class ScorePanel:
 
 def _reportOn(study: StudyPlace, folder: Path) -> Path:
     """Write the report on a study into a folder and return its page."""
+    from rastrainer.report.report import write_report
+    from rastrainer.study.study_data import read_study_data
+
     return write_report(read_study_data(study), folder).page
 
 

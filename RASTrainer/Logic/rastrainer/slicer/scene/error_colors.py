@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import slicer
 import vtk
-from vtk.util.numpy_support import numpy_to_vtk
 
 from rastrainer.registration.registration import Registration
 from rastrainer.slicer.scene.nodes import (
@@ -18,6 +17,7 @@ from rastrainer.slicer.scene.nodes import (
     findOrAddNode,
     nodesOfClass,
     surfaceOf,
+    vtkArray,
 )
 
 COLOR_TABLE_ID = "vtkMRMLColorTableNodeFileViridis.txt"
@@ -106,9 +106,7 @@ def colorSkin(
     if not surfaceOf(model) or model.GetPolyData().GetNumberOfPoints() != len(values):
         return
     display = model.GetDisplayNode()
-    scalars = numpy_to_vtk(values, deep=True)
-    scalars.SetName(name)
-    model.GetPolyData().GetPointData().AddArray(scalars)
+    model.GetPolyData().GetPointData().AddArray(vtkArray(values, name))
     model.GetPolyData().Modified()
     if model.GetAttribute(OPACITY_ATTRIBUTE) is None:
         model.SetAttribute(OPACITY_ATTRIBUTE, str(display.GetOpacity()))

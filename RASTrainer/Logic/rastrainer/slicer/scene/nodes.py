@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import slicer
 import vtk
-from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import DeviceName
@@ -243,21 +242,30 @@ def trianglesPolyData(
         triangles: (m, 3) int, counterclockwise seen from outside.
         normals: (n, 3) float, outward unit normals.
     """
+    from vtk.util.numpy_support import numpy_to_vtkIdTypeArray
+
     corners = np.ascontiguousarray(triangles, dtype=np.int64).ravel()
     cells = vtk.vtkCellArray()
     cells.SetData(3, numpy_to_vtkIdTypeArray(corners, deep=True))
-    directions = numpy_to_vtk(np.ascontiguousarray(normals, dtype=np.float32), deep=True)
-    directions.SetName("Normals")
     surface = vtk.vtkPolyData()
     surface.SetPoints(_vtkPoints(points))
     surface.SetPolys(cells)
-    surface.GetPointData().SetNormals(directions)
+    surface.GetPointData().SetNormals(vtkArray(normals.astype(np.float32), "Normals"))
     return surface
+
+
+def vtkArray(values: np.ndarray, name: str = "") -> Any:
+    """Return a copy of numbers (n,) or (n, k) as an array of VTK's."""
+    from vtk.util.numpy_support import numpy_to_vtk
+
+    array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
+    array.SetName(name)
+    return array
 
 
 def _vtkPoints(places: np.ndarray) -> vtk.vtkPoints:
     points = vtk.vtkPoints()
-    points.SetData(numpy_to_vtk(np.ascontiguousarray(places, dtype=np.float32), deep=True))
+    points.SetData(vtkArray(places.astype(np.float32)))
     return points
 
 

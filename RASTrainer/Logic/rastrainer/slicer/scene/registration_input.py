@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import slicer
-from vtk.util.numpy_support import vtk_to_numpy
 
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, pair
@@ -246,6 +245,8 @@ class SkinReader:
 
 
 def _meshOf(model: Any) -> HeadMesh | None:
+    from vtk.util.numpy_support import vtk_to_numpy
+
     cells = model.GetPolyData().GetPolys()
     if not cells.GetNumberOfCells() or cells.IsHomogeneous() != 3:
         return None

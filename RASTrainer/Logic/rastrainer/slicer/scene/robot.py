@@ -6,7 +6,6 @@ from typing import Any
 
 import slicer
 import vtk
-from vtk.util.numpy_support import numpy_to_vtk
 
 from rastrainer.protocol import DeviceName
 from rastrainer.slicer.scene.nodes import (
@@ -15,6 +14,7 @@ from rastrainer.slicer.scene.nodes import (
     findNode,
     poseNode,
     trianglesPolyData,
+    vtkArray,
 )
 from rastrainer.slicer.scene.robot_description import LinkMesh
 
@@ -47,9 +47,7 @@ def addLink(scene: Any, number: int, mesh: LinkMesh) -> None:
     node.SetSaveWithScene(False)
     node.SetSelectable(False)
     surface = trianglesPolyData(mesh.points, mesh.triangles, mesh.normals)
-    colors = numpy_to_vtk(mesh.colors, deep=True)
-    colors.SetName(COLORS)
-    surface.GetPointData().SetScalars(colors)
+    surface.GetPointData().SetScalars(vtkArray(mesh.colors, COLORS))
     node.SetAndObservePolyData(surface)
     node.SetAndObserveDisplayNodeID(display.GetID())
     scene.AddNode(node)

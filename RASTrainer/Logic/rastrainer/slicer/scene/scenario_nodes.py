@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 import slicer
 import vtk
-from vtk.util.numpy_support import numpy_to_vtk
 
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.volume import read_nrrd
@@ -33,6 +32,7 @@ from rastrainer.slicer.scene.nodes import (
     removeNode,
     setPoints,
     trianglesPolyData,
+    vtkArray,
 )
 from rastrainer.slicer.scene.requested_files import (
     FileContent,
@@ -243,7 +243,6 @@ def _fillVolume(node: Any, image: tuple[np.ndarray, np.ndarray]) -> None:
     values, ijkToRas = image
     data = vtk.vtkImageData()
     data.SetDimensions(values.shape)
-    scalars = numpy_to_vtk(values.ravel(order="F"), deep=True)
-    data.GetPointData().SetScalars(scalars)
+    data.GetPointData().SetScalars(vtkArray(values.ravel(order="F")))
     node.SetIJKToRASMatrix(slicer.util.vtkMatrixFromArray(ijkToRas))
     node.SetAndObserveImageData(data)

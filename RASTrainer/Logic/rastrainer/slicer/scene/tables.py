@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import vtk
@@ -16,7 +16,9 @@ from rastrainer.registration.target_error import TargetError
 from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, Role, changedOnce, findNode, findOrAddNode
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.values import StoredTrial
-from rastrainer.study.tre_calibration import TreCalibration, share_text
+
+if TYPE_CHECKING:
+    from rastrainer.study.tre_calibration import TreCalibration
 
 
 @dataclass(frozen=True)
@@ -299,6 +301,8 @@ def _showIdentity(scene: Any, end: float) -> Any:
 
 
 def _calibrationTitle(found: TreCalibration) -> str:
+    from rastrainer.study.tre_calibration import share_text
+
     if found.inside is None:
         return _("True against expected TRE")
     return _("True against expected TRE: {count} of {total} inside, {share}").format(
