@@ -133,6 +133,8 @@ class User:
     def finish_work(self) -> None:
         """Wait until the module has shown what it computes in the background."""
         work = self.widget.logic.session.work
+        # What was requested begins when the module's timer notices it.
+        self.widget.onTimeout()
         self.wait_until(lambda: not work.isBusy, "all work is done")
 
     def _now(self) -> str:
