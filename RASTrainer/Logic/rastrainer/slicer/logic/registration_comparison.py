@@ -13,7 +13,7 @@ from rastrainer.registration.fits import RIGID
 from rastrainer.registration.localization_error import LocalizationError
 from rastrainer.registration.registration import Registration, register_all_kinds
 from rastrainer.registration.target_error import TargetError, expected_tre, target_error
-from rastrainer.slicer.scene.registration_input import Choices, Pairs, Remedy, Skin, remedies
+from rastrainer.slicer.scene.registration_input import Choices, Pairs, Remedy, SkinNormals, remedies
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +33,7 @@ class ComparisonRequest:
     choices: Choices
     kind: str
     target: np.ndarray | None
-    skin: Skin | None
+    skin: SkinNormals | None
     headPoints: np.ndarray | None
 
 
@@ -101,6 +101,6 @@ def compareFits(request: ComparisonRequest) -> Comparison:
     return Comparison(pairs, fits, localizations, errors, leaveOneOut, found, headErrors)
 
 
-def _localization(skin: Skin | None, fit: Registration) -> LocalizationError | None:
+def _localization(skin: SkinNormals | None, fit: Registration) -> LocalizationError | None:
     # Errors stated for single points replace those estimated from the skin.
     return None if skin is None or fit.weights is not None else skin.localizationError(fit)

@@ -188,7 +188,7 @@ SAME_HEAD_MM = 3.0
 """Fiducials farther from the surface do not lie on this head."""
 
 
-class Skin:
+class SkinNormals:
     """A head's surface and its normals at points, each found once; for one thread at a time."""
 
     def __init__(self, mesh: HeadMesh | None) -> None:
@@ -233,14 +233,14 @@ class SkinReader:
 
     def __init__(self) -> None:
         self._surface: tuple = ()
-        self._skin: Skin | None = None
+        self._skin: SkinNormals | None = None
 
-    def read(self, model: Any | None) -> Skin | None:
+    def read(self, model: Any | None) -> SkinNormals | None:
         """Return the skin of a `vtkMRMLModelNode`; None where there is no surface yet."""
         surface = surfaceOf(model)
         if surface != self._surface:
             self._surface = surface
-            self._skin = Skin(_meshOf(model)) if surface else None
+            self._skin = SkinNormals(_meshOf(model)) if surface else None
         return self._skin
 
 
