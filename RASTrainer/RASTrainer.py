@@ -68,8 +68,8 @@ class RASTrainer(ScriptedLoadableModule):
 
 def registerSampleData():
     """Add the MRI that comes with this module to the module Sample Data."""
-    from rastrainer.panels.application import assetsFolder
-    from rastrainer.panels.application import registerSampleData as register
+    from rastrainer.panels.sample_data import assetsFolder
+    from rastrainer.panels.sample_data import registerSampleData as register
 
     register(assetsFolder(Path(__file__)))
 
@@ -339,8 +339,10 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
             self.assertEqual(ui.residualsTable.rowCount, 15)
             self.assertIn("7", fixture.child("warning0Text").text)
             fixture.child("remedy0Button").click()
+            fixture.process()
             self.assertEqual(ui.residualsTable.rowCount, 14)
             ui.undoButton.click()
+            fixture.process()
             self.assertEqual(ui.residualsTable.rowCount, 15)
 
     def test_aPlannedTargetIsCarriedToTheRobot(self):

@@ -42,7 +42,7 @@ from rastrainer.slicer.logic.scenario_cache import ScenarioCache
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.slicer.scene.error_colors import magnification
 from rastrainer.slicer.scene.nodes import labelsOf, localPoints
-from rastrainer.slicer.scene.scenario_nodes import VolumeLoader, showScenario
+from rastrainer.slicer.scene.scenario_nodes import scenarioLoader, showScenario
 from rastrainer.study.database.study import STUDY_FILE, Study
 from rastrainer.trial.analysis import PublishedScore, RevealedTruth, TrialAnalysis
 from rastrainer.trial.ctps import CTPS_WARNING, read_trials
@@ -75,7 +75,7 @@ class HeadlessHost:
         self._output = output
         self._touches = 0
         self._work = BackgroundWork()
-        self._images = VolumeLoader(self.application.scene, self._work)
+        self._files = scenarioLoader(self.application.scene, self._work)
         self._presenter = TrialLogic(
             self.application.scene,
             self.link,
@@ -95,7 +95,7 @@ class HeadlessHost:
         for problems in (
             self._presenter.problemFound,
             self._aborted.problemFound,
-            self._images.problemFound,
+            self._files.problemFound,
             self._procedure.answered,
         ):
             problems.connect(lambda sentence: printEvent("problem", sentence=sentence))
@@ -117,7 +117,7 @@ class HeadlessHost:
             if self.link.connector is not None:
                 self.link.connector.PeriodicProcess()
             self.link.process()
-            self._images.process()
+            self._files.process()
             self._work.process()
             time.sleep(PERIOD_S)
         return self.latest

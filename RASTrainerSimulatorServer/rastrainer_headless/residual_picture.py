@@ -18,7 +18,7 @@ from rastrainer.slicer.scene.error_colors import (
     glyphsPolyData,
     residualRange,
 )
-from rastrainer.slicer.scene.scenario_nodes import trianglesPolyData
+from rastrainer.slicer.scene.scenario_nodes import meshPolyData
 
 WIDTH, HEIGHT = 1800, 1080
 _VIEWS = ((0.0, 0.09, 0.45, 0.92), (0.45, 0.09, 0.9, 0.92))
@@ -59,7 +59,7 @@ def writeResidualPicture(
     window.SetNumberOfLayers(2)
     window.AddRenderer(_page(title, caption))
     colors = _colors(registration)
-    surface = trianglesPolyData(head.vertices, head.triangles)
+    surface = meshPolyData(head)
     center = 0.5 * (head.vertices.min(axis=0) + head.vertices.max(axis=0))
     outward = outwardDirections(registration.fixed_mm, center)
     directions = chooseTwoViews(outward)

@@ -77,6 +77,7 @@ def rows(quick: bool) -> list[dict]:
         delays = [_command_delay(session.link) for _ in range(5 * seconds)]
         bursts = [_time_to_send(session.link) for _ in range(2 if quick else 5)]
         host.check("robotCheckBox")
+        host.finish_work()
         _start_trial(player)
         _idle_for(SETTLE_S)
         moving = Cost(host, seconds, _mover(player))

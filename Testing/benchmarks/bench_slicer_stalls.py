@@ -1,11 +1,17 @@
 """How long the module keeps Slicer's window from answering: the longest stall of each step.
 
-The host plays Slicer, whose main thread keeps Python's lock while it waits for events.
+The host plays Slicer, whose main thread keeps Python's lock while it waits for events. What
+Slicer's own views, trees and widgets then do for the module it cannot measure, so it counts what
+they are handed in one turn (`SceneLoad`): events of nodes, new nodes, surfaces and images, their
+cells, and moved slice views.
 """
 
+import subprocess
+import sys
 import tempfile
 import uuid
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +32,7 @@ from Testing.slicer.head.phantoms import phantom
 from Testing.slicer.head.volume_file import write_volume
 from Testing.slicer.host.event_loop import StallWatch
 from Testing.slicer.host.host import Host
+from Testing.slicer.host.scene_load import SceneLoad
 from Testing.slicer.recorded_trial import write_recorded_trial
 from Testing.slicer.simulator_double import SimulatorDouble
 
@@ -34,6 +41,27 @@ TRIAL_S = 300.0
 EARLIER_TRIALS = 40
 OWN = "without waits for a CPU"
 """Priority of other programs, by which stalls can be compared on a busy machine."""
+IN_ALL = "in all turns"
+UNITS = {
+    "events": "events",
+    "nodes": "nodes",
+    "kibibytes": "KiB",
+    "cells": "cells",
+    "views": "views",
+}
+IMPORTS = """
+import sys, time
+import Testing.slicer.host.host
+for name in [name for name in sys.modules if name.split(".")[0] == "rastrainer"]:
+    del sys.modules[name]
+from Testing.slicer.host.installation import Installation
+Installation().add_modules()
+began = time.process_time()
+import rastrainer.slicer.logic.module_session, rastrainer.panels.panel_stack
+ended = time.process_time()
+ours = [name for name in sys.modules if name.split(".")[0] == "rastrainer"]
+print(1e3 * (ended - began), len(ours))
+"""
 JOURNALS_DELETED = 10
 LARGER_STUDY = 40, 10
 """Trainees, and trials of each."""
@@ -51,17 +79,46 @@ SECTIONS = (
 
 
 def rows(quick: bool) -> list[dict]:
-    """Return the rows `stalls.*`, the longest stall of the main thread in each step."""
+    """Return the rows `stalls.*`, the longest stall of the main thread in each step.
+
+    The rows `handed.*` are the most that the scene was handed in one turn of the step.
+    """
     longest: dict[str, list[float]] = {}
+    loads: dict[str, SceneLoad] = {}
     for _ in range(1 if quick else 3):
         with tempfile.TemporaryDirectory() as folder:
-            for step, seconds in _Steps(Path(folder)).measured().items():
+            steps = _Steps(Path(folder))
+            for step, seconds in steps.measured().items():
                 longest.setdefault(step, []).append(1e3 * np.array(seconds))
-    return [
-        row(f"stalls.{step}", of_wall, "ms", OWN, of_own)
+            loads = steps.loads
+    return _import_rows() + [
+        found
         for step, values in longest.items()
         for of_wall, of_own in [np.transpose(values)]
+        for found in (
+            row(f"stalls.{step}", of_wall, "ms", OWN, of_own),
+            *_load_rows(step, loads[step]),
+        )
     ]
+
+
+def _load_rows(step: str, load: SceneLoad) -> list[dict]:
+    """Return what one turn has handed over at most, beside all turns of the step."""
+    most, total = asdict(load.most), asdict(load.total)
+    return [
+        row(f"handed.{step}.{kind}", [most[kind]], UNITS[kind], IN_ALL, [total[kind]])
+        for kind in UNITS
+        if total[kind]
+    ]
+
+
+def _import_rows() -> list[dict]:
+    """Return what it costs to import the module's session and panels, beside what is imported."""
+    found = subprocess.run(
+        [sys.executable, "-c", IMPORTS], capture_output=True, check=True, text=True
+    )
+    milliseconds, modules = map(float, found.stdout.split())
+    return [row("stalls.imports_at_opening", [milliseconds], "ms", "modules of ours", [modules])]
 
 
 class _Steps:
@@ -70,6 +127,7 @@ class _Steps:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._longest: dict[str, tuple[float, float]] = {}
+        self.loads: dict[str, SceneLoad] = {}
         self._colin = load_scenario(asset_path("scenarios", "colin27"))
         self._touches = transforms.apply(
             self._colin.perturbed_head_to_world(SEED),
@@ -109,12 +167,18 @@ class _Steps:
         program = write_program(self._folder / "rastrainer", self._folder / "pid", [])
         host.type("programPathLineEdit", str(program))
         host.type("portSpinBox", str(self._simulator.port))
-        host.press("connectButton")
-        host.wait_until(lambda: self._simulator.commands, "it is connected")
+        self._watch("connect", self._connect)
+
+    def _connect(self) -> None:
+        self._host.press("connectButton")
+        self._host.wait_until(lambda: self._simulator.commands, "it is connected")
 
     def _play(self) -> None:
         host = self._host
         self._watch("show_scenario", lambda: host.press("showScenarioButton"))
+        place = self._colin.target_position + 10.0
+        slices = host.widget.logic.session.slices
+        self._watch("next_point", lambda: slices.show(place))
         self._watch("show_robot", lambda: host.check("robotCheckBox"))
         host.check("robotCheckBox", False)
         self._watch("trial", self._touch)
@@ -203,9 +267,11 @@ class _Steps:
         return write_volume(self._folder / "head.nrrd", scan)
 
     def _watch(self, step: str, work: Callable[[], object]) -> None:
-        with StallWatch() as watch:
+        with StallWatch() as watch, SceneLoad(self._host.scene) as load:
             work()
+            self._host.finish_work()
             self._host.idle_for(0.5)
+        self.loads[step] = load
         self._longest[step] = watch.longest_s, watch.longest_own_s
         for stall in sorted(watch.stalls, key=lambda stall: -stall.own_s)[:3]:
             times = f"{1e3 * stall.seconds:.0f} ms, {1e3 * stall.own_s:.0f} of its own"

@@ -11,7 +11,7 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, NO_LINE, encode_line
 from rastrainer.scenario.scenario import Scenario, load_scenario
-from rastrainer.slicer.scene.robot import readArmChain
+from rastrainer.slicer.scene.robot_description import readArmChain
 from rastrainer.study.database.study import Study
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
 from rastrainer.trial.record import TrialRecord

@@ -179,7 +179,9 @@ def test_a_killed_simulator_is_noticed_although_its_window_is_open_and_takes_it_
 ):
     kill(number(tmp_path / "pid"))
     wait_until(lambda: program.state is ProgramState.FAILED, program.process, LONG_S)
-    assert program.sentence.startswith("The simulator ended by itself (status 1)")
+    assert "was ended from outside" in program.sentence
+    assert "exit abnormally" not in program.sentence
+    assert program.sentence.endswith("start it again to continue.")
     ends(tmp_path / "window")
 
 

@@ -16,7 +16,7 @@ from rastrainer.slicer.logic import head_preview
 from rastrainer.slicer.logic.replay_logic import SLICES_A_TURN
 from rastrainer.slicer.logic.scenario_maker import NewScenarioOptions
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints
-from rastrainer.slicer.scene.robot import readArmChain
+from rastrainer.slicer.scene.robot_description import readArmChain
 from rastrainer.slicer.scene.trial_replay import STATES_A_SLICE, showReplay
 from rastrainer_simulator.assets import asset_path
 from Testing.slicer.recorded_trial import URDF, store_trial_on_colin, write_recorded_trial

@@ -42,6 +42,7 @@ def show_scenario(host):
 
 def wait_for_images(host):
     host.wait_until(lambda: images(host) and images(host).GetImageData(), "the images are loaded")
+    host.finish_work()
 
 
 def test_the_mri_is_behind_head_and_fiducials_in_each_slice_view(host, tmp_path):
@@ -128,7 +129,7 @@ def test_a_scene_cleared_as_soon_as_the_mri_is_loaded_gets_it_again(host):
             host.scene.Clear(0)
             session.scenario.show("colin27", session.task)
 
-    session.images.shown.connect(clear_and_show_again)
+    session.files.shown.connect(clear_and_show_again)
     host.press("showScenarioButton")
     host.wait_until(lambda: cleared, "the scene is cleared")
     wait_for_images(host)

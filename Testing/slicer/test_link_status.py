@@ -42,6 +42,7 @@ def found(peer):
         ),
         (found(Peer.NOBODY), LinkState.ABSENT, "No simulator answers", "Start the simulator"),
         (found(Peer.UNKNOWN_HOST), LinkState.ABSENT, "no computer by that name", "IPv4"),
+        (found(Peer.WITHOUT_IPV4), LinkState.ABSENT, "is an IPv6 address", "127.0.0.1"),
         (found(Peer.WEB_PAGE), LinkState.OTHER_PROGRAM, "is a web page (HTTP), not", "18944"),
         (found(Peer.ENCRYPTED), LinkState.OTHER_PROGRAM, "encrypted port (TLS)", "18944"),
         (found(Peer.SILENT), LinkState.OTHER_PROGRAM, "sends nothing", "18944"),

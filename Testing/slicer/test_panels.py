@@ -233,6 +233,32 @@ def test_another_study_file_is_used_when_chosen_and_an_invalid_one_is_reported(p
     assert panels.find("traineeComboBox").count == 2
 
 
+def test_a_folder_and_another_file_are_no_study_and_the_panel_says_so(panels, tmp_path):
+    panels.press("createTraineeButton")
+    (tmp_path / "notes.txt").write_text("Notes")
+    before = panels.find("studyPathLineEdit").currentPath
+    for chosen, words in ((tmp_path, "is a folder"), (tmp_path / "notes.txt", "is no study")):
+        panels.find("studyPathLineEdit").currentPath = str(chosen)
+        panels.process_events()
+        text = panels.text("traineeText")
+        assert f"{chosen.name} {words}" in text.replace("\u200b", "")
+        assert f"{Path(before).name} stays open" in text.replace("\u200b", "")
+    panels.find("studyPathLineEdit").currentPath = str(tmp_path / "second.db")
+    panels.process_events()
+    assert panels.text("traineeText").startswith("Choose who is training")
+
+
+def test_a_study_in_a_missing_folder_is_made_only_if_the_user_wants_it(panels, tmp_path):
+    before, new = panels.find("studyPathLineEdit").currentPath, tmp_path / "typo" / "study.db"
+    for answer in ("No", "Yes"):
+        panels.answer("There is no folder", answer)
+        panels.find("studyPathLineEdit").currentPath = str(new)
+        panels.process_events()
+        assert new.parent.is_dir() == (answer == "Yes")
+        shown = panels.find("studyPathLineEdit").currentPath
+        assert shown == (str(new) if answer == "Yes" else before)
+
+
 def test_an_unusable_address_is_refused_without_repeating_its_password(panels):
     panels.type("studyAddressLineEdit", "postgresql://seat:secret@host/study")
     assert "must not hold a password" in panels.messages[-1].text
@@ -253,6 +279,7 @@ def test_head_fiducials_and_robot_are_shown_and_another_model_can_be_the_head(pa
     fixed = findNode(panels.scene, "vtkMRMLMarkupsFiducialNode", Role.FIXED_FIDUCIALS)
     assert fixed.GetName() == "Task 2 fiducials"
     panels.check("robotCheckBox")
+    panels.finish_work()
     for role in (Role.HEAD_MODEL, *(f"{Role.ROBOT} link {number}" for number in range(8))):
         model = findNode(panels.scene, "vtkMRMLModelNode", role)
         assert panels.sees(model), role
@@ -282,6 +309,7 @@ def test_fits_and_errors_are_shown_with_their_units_and_a_fit_is_chosen(panels, 
     transform = findNode(panels.scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
     rigid = slicer.util.arrayFromTransformMatrix(transform)
     panels.choose("kindComboBox", "Similarity")
+    panels.finish_work()
     similar = slicer.util.arrayFromTransformMatrix(transform)
     assert np.linalg.det(rigid[:3, :3]) == pytest.approx(1.0)
     assert np.linalg.det(similar[:3, :3]) != pytest.approx(1.0, abs=1e-6)
@@ -297,6 +325,7 @@ def test_a_point_with_a_larger_stated_error_weighs_less_until_undo(panels, touch
     panels.choose("residualsTable", 2)
     panels.type("fleSpinBox", "20")
     panels.press("fleButton")
+    panels.finish_work()
     after = cells(panels, "residualsTable")
     assert after[2][3] == "20.00"
     assert float(after[2][1]) > float(before[2][1])
@@ -306,6 +335,7 @@ def test_a_point_with_a_larger_stated_error_weighs_less_until_undo(panels, touch
         "registrationText"
     )
     panels.press("undoButton")
+    panels.finish_work()
     assert cells(panels, "residualsTable") == before
 
 
@@ -315,10 +345,12 @@ def test_the_chosen_fiducial_is_shown_in_the_slices_and_left_out(panels, touched
     wait_for_images(panels)
     view = panels.scene.AddNewNodeByClass("vtkMRMLSliceNode", "Mine")
     panels.choose("residualsTable", 4)
+    panels.finish_work()
     assert view.GetSliceToRAS().GetElement(2, 3) == pytest.approx(
         colin.task("task-1").fiducials[4, 2], abs=1e-3
     )
     panels.press("excludeButton")
+    panels.finish_work()
     assert "Left out: 5" in panels.text("registrationText")
 
 
@@ -342,6 +374,7 @@ def test_another_target_is_chosen_and_the_head_is_colored(panels, touched):
     panels.choose("targetComboBox", target)
     panels.wait_until(lambda: panels.text("treText") != before, "the error is updated")
     panels.check("headColoredCheckBox")
+    panels.finish_work()
     head = findNode(panels.scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
     assert head.GetDisplayNode().GetScalarVisibility()
 
@@ -352,6 +385,7 @@ def test_one_small_legend_is_drawn_only_in_the_3d_view(panels, touched, tmp_path
     head.SetOpacity(0.4)
     seen = [panels.legends()]
     panels.check("headColoredCheckBox")
+    panels.finish_work()
     seen.append(panels.legends())
     # Through a translucent head the colors would not be those of the legend.
     assert head.GetOpacity() == 1.0

@@ -16,9 +16,10 @@ from rastrainer.slicer.logic.target_plan_logic import PlanLogic, targetsOf
 from rastrainer.slicer.logic.views import jumpTo
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints, worldPoints
 from rastrainer.slicer.scene.plan_points import startPlacing, stopPlacing
-from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
+from rastrainer.slicer.scene.scenario_nodes import showTask
 from rastrainer.trial.analysis import RevealedTruth
 from rastrainer_headless.connector import headlessKit
+from Testing.slicer.shown_scenario import show_whole
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
 
 TUMOR = np.array([20.0, -30.0, 40.0])
@@ -32,7 +33,7 @@ class Room:
         self.reply = {"reachable": True, "reason": ""}
         self.simulator = SimulatorDouble(lambda name, _a: {} if name == "Hello" else self.reply)
         self.link = Link(scene, headlessKit)
-        showScenario(scene, scenario)
+        show_whole(scene, scenario)
         showTask(scene, scenario, "task-1")
         fiducials = scenario.task("task-1").fiducials
         noise = np.random.default_rng(8).normal(0.0, 0.5, (15, 3))
@@ -81,7 +82,7 @@ def test_a_target_is_mapped_into_world_with_its_expected_error(room):
     np.testing.assert_allclose(transforms.apply(shown.matrix, plan.targetWorld[None])[0], TUMOR)
     there = transforms.apply(room.head_to_world, TUMOR[None])[0]
     assert np.linalg.norm(plan.targetWorld - there) < 1.5
-    assert plan.expected == room.registration.targetError(shown, TUMOR)
+    assert plan.expected == room.registration.targetError(TUMOR)
     assert plan.entry is None
 
 
@@ -102,8 +103,7 @@ def test_each_planned_target_of_a_scenario_is_a_plan_and_so_is_its_trajectory(sc
     first, second = (room.logic.read(targets, row) for row in (0, 1))
     assert (first.name, second.name) == ("center", "Tumor")
     np.testing.assert_allclose([first.target, second.target], [scenario.target_position, TUMOR])
-    shown = room.registration.shown
-    assert second.expected == room.registration.targetError(shown, TUMOR)
+    assert second.expected == room.registration.targetError(TUMOR)
     line = findNode(scene, "vtkMRMLMarkupsLineNode", Role.TRAJECTORY)
     assert targetsOf(line) == ()
     plan = room.logic.read(line)

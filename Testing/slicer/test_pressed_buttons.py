@@ -141,6 +141,7 @@ def test_cancel_does_not_restart_work_that_ended_meanwhile(host, monkeypatch):
 def test_the_button_of_a_warning_stays_while_the_registration_is_redisplayed(touched):
     session = touched.widget.logic.session
     press_slowly(touched, "remedy0Button", lambda: session.registration.chooseKind("similarity"))
+    touched.finish_work()
     assert touched.find("residualsTable").rowCount == 14
 
 
@@ -148,7 +149,9 @@ def test_a_fiducial_stays_chosen_by_its_label_whichever_row_it_moves_to(touched)
     session = touched.widget.logic.session
     touched.choose("residualsTable", 9)
     session.registration.exclude("7")
+    touched.finish_work()
     touched.press("excludeButton")
+    touched.finish_work()
     assert session.registration.choices.excluded == {"7", "10"}
     assert not touched.find("excludeButton").enabled
 

@@ -4,6 +4,7 @@ import uuid
 from pathlib import Path
 
 import pytest
+import slicer
 
 from rastrainer.scenario.points import LABELS
 from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
@@ -29,6 +30,32 @@ def at_work(host, make_record):
     setPoints(capturedPointsNode(host.scene), LABELS, touched)
     host.wait_until(lambda: host.find("residualsTable").rowCount == 15, "touches are registered")
     return host
+
+
+def entries():
+    """The entries of Slicer's log from warnings on."""
+    text = Path(slicer.app.errorLogModel().filePath).read_text(encoding="utf-8")
+    return [line for line in text.splitlines() if not line.startswith("[INFO]")]
+
+
+def test_an_error_of_input_is_one_line_of_the_log_and_a_mistake_of_ours_its_traceback(
+    host, monkeypatch
+):
+    host.open()
+    host.unfold("pseudonymLineEdit")
+    for _time in range(2):
+        host.type("pseudonymLineEdit", "T001")
+        host.press("createTraineeButton")
+    message = host.messages[-1].text
+    assert message.startswith("The trainee was not created.\n\n")
+    (line,) = entries()
+    assert line.startswith("[ERROR]")
+    assert line.endswith(" ".join(message.split()))
+    monkeypatch.setattr(host.widget.logic.session.trainees, "create", None)
+    host.press("createTraineeButton")
+    assert host.messages[-1].text.startswith("The trainee was not created.\n\n")
+    assert any(line.startswith("[CRITICAL]") for line in entries())
+    assert "TypeError" in host.errors.pop()
 
 
 def test_saving_reopening_and_resaving_a_replay_leaves_the_log_empty(at_work, tmp_path):

@@ -10,15 +10,15 @@ from rastrainer import transforms
 from rastrainer.head.mesh import nearest_on_mesh
 from rastrainer.registration.fits import AFFINE, KINDS, RIGID
 from rastrainer.registration.localization_error import error_along_surface
-from rastrainer.registration.registration import register
-from rastrainer.registration.target_error import target_error
+from rastrainer.registration.registration import register, register_all_kinds
+from rastrainer.registration.target_error import expected_tre, target_error
 from rastrainer.scenario.points import LABELS
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
 from rastrainer.slicer.scene.error_colors import TRE_SCALARS
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints, worldPoints
 from rastrainer.slicer.scene.registration_input import Choices
-from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
+from rastrainer.slicer.scene.scenario_nodes import showTask
 from rastrainer.slicer.scene.trial_scene import (
     FIXED_REFERENCE,
     isApplied,
@@ -27,6 +27,7 @@ from rastrainer.slicer.scene.trial_scene import (
     setApplied,
 )
 from rastrainer.transforms import MM_PER_M
+from Testing.slicer.shown_scenario import show_whole
 
 LEGEND = "vtkMRMLColorLegendDisplayNode"
 
@@ -36,7 +37,7 @@ class Table:
 
     def __init__(self, scene, scenario):
         self.scene, self.scenario = scene, scenario
-        showScenario(scene, scenario)
+        show_whole(scene, scenario)
         self.fixed = showTask(scene, scenario, "task-1")
         noise = np.random.default_rng(3).normal(0.0, 0.6, (15, 3))
         self.touched_on_mri = scenario.task("task-1").fiducials + noise
@@ -237,7 +238,7 @@ def test_the_head_is_colored_by_the_expected_error_at_each_place(table):
     head = table.node(Role.HEAD_MODEL, "vtkMRMLModelNode")
     values = slicer.util.arrayFromModelPointData(head, TRE_SCALARS)
     points = slicer.util.arrayFromModelPoints(head)
-    there = table.logic.targetError(table.logic.shown, points[100])
+    there = table.logic.targetError(points[100])
     assert values[100] == pytest.approx(there.expected_mm)
     assert len(values) == len(points)
     display = head.GetDisplayNode()
@@ -266,7 +267,7 @@ def test_points_off_the_head_have_an_isotropic_error(table):
     setPoints(table.fixed, LABELS, 0.5 * table.scenario.task("task-1").fiducials)
     table.touch(transforms.apply(table.scenario.head_to_world, 0.5 * table.touched_on_mri))
     shown, position = table.logic.shown, table.scenario.target_position
-    assert table.logic.targetError(shown, position) == target_error(shown, position)
+    assert table.logic.targetError(position) == target_error(shown, position)
 
 
 def test_other_lists_can_be_registered_and_deleted_nodes_do_not_matter(table):
@@ -301,31 +302,67 @@ def test_without_a_registration_no_arrows_of_an_old_one_are_shown(table):
     assert arrows.GetPolyData().GetNumberOfPoints() == 0
 
 
-def test_a_new_head_is_prepared_in_another_thread_and_its_touches_registered_again(
-    scene, scenario, monkeypatch
+@pytest.fixture
+def threads(monkeypatch):
+    """Returns the threads in which fits and normals are computed, by what is computed."""
+    found = {}
+
+    def watch(place, function):
+        def watched(*arguments):
+            found.setdefault(function.__name__, set()).add(threading.get_ident())
+            return function(*arguments)
+
+        monkeypatch.setattr(f"rastrainer.slicer.{place}.{function.__name__}", watched)
+
+    watch("scene.registration_input", nearest_on_mesh)
+    watch("logic.registration_comparison", register_all_kinds)
+    watch("logic.registration_comparison", target_error)
+    watch("logic.registration_comparison", expected_tre)
+    return found
+
+
+def test_no_fit_and_no_error_is_computed_in_the_main_thread(table, logic_in_turns, work, threads):
+    logic_in_turns.setHeadColored(True)
+    setPoints(capturedPointsNode(table.scene), LABELS, table.touched)
+    logic_in_turns.process()
+    in_turns(work)
+    assert logic_in_turns.comparison is not None
+    assert threads.keys() == {
+        "nearest_on_mesh",
+        "register_all_kinds",
+        "target_error",
+        "expected_tre",
+    }
+    assert threading.get_ident() not in set.union(*threads.values())
+
+
+def test_the_normals_of_a_new_head_are_found_before_its_points_are_touched(
+    table, logic_in_turns, work, threads
 ):
-    threads, work = set(), BackgroundWork()
+    logic_in_turns.process()
+    in_turns(work)
+    assert threads.pop("nearest_on_mesh")
+    setPoints(capturedPointsNode(table.scene), LABELS, table.touched)
+    logic_in_turns.process()
+    in_turns(work)
+    assert logic_in_turns.comparison is not None
+    assert "nearest_on_mesh" not in threads
 
-    def watched(mesh, point):
-        threads.add(threading.get_ident())
-        return nearest_on_mesh(mesh, point)
 
-    monkeypatch.setattr("rastrainer.slicer.scene.registration_input.nearest_on_mesh", watched)
-    table = Table(scene, scenario)
-    table.touch()
-    at_once = table.logic.comparison
-    threads.clear()
-    logic = RegistrationLogic(scene, work)
-    logic.process()
-    work.process()
-    assert logic.comparison is not None
-    while work.isBusy:
-        work.yieldTime()
-        work.process()
-    assert threads
-    assert threading.get_ident() not in threads
-    assert logic.comparison.errors[RIGID] == at_once.errors[RIGID]
-    work.close()
+def test_touches_are_registered_again_on_another_head(table, logic_in_turns, work):
+    head = table.node(Role.HEAD_MODEL, "vtkMRMLModelNode")
+    surface = head.GetPolyData()
+    head.SetAndObservePolyData(None)
+    setPoints(capturedPointsNode(table.scene), LABELS, table.touched)
+    logic_in_turns.process()
+    in_turns(work)
+    without = logic_in_turns.comparison.errors[RIGID]
+    head.SetAndObservePolyData(surface)
+    logic_in_turns.process()
+    in_turns(work)
+    table.logic.process()
+    assert logic_in_turns.comparison.errors[RIGID] == table.logic.comparison.errors[RIGID]
+    assert logic_in_turns.comparison.errors[RIGID] != without
 
 
 @pytest.fixture
@@ -347,17 +384,21 @@ def in_turns(work):
         work.process()
 
 
-def test_with_turns_touches_are_registered_in_one_turn_and_shown_in_the_next(
+def test_with_turns_each_part_of_a_registration_is_shown_in_a_separate_turn(
     table, logic_in_turns, work
 ):
-    logic = logic_in_turns
-    setPoints(capturedPointsNode(table.scene), LABELS, table.touched)
+    logic, scene = logic_in_turns, table.scene
+    setPoints(capturedPointsNode(scene), LABELS, table.touched)
     logic.process()
-    assert logic.comparison is None
-    work.process()
-    assert logic.comparison is not None
-    assert logic.transform() is None
-    work.process()
+    seen = []
+    while work.isBusy:
+        work.yieldTime()
+        work.process()
+        arrows = table.node(Role.RESIDUAL_ARROWS, "vtkMRMLModelNode")
+        seen.append((logic.transform(), table.node(Role.FITS), arrows, logic.comparison))
+    counts = [sum(part is not None for part in parts) for parts in seen]
+    assert counts == sorted(counts)
+    assert set(counts) == {0, 1, 2, 3, 4}
     np.testing.assert_array_equal(matrixOf(logic.transform()), logic.shown.matrix)
 
 
@@ -385,16 +426,16 @@ def test_lists_that_are_deleted_between_two_turns_are_not_shown(table, logic_in_
     assert logic_in_turns.problem
 
 
-def test_changes_repeated_between_two_turns_are_shown_once(table, logic_in_turns, work):
+def test_of_changes_that_follow_one_another_only_the_last_is_shown(table, logic_in_turns, work):
     shown = []
-    logic_in_turns.changed.connect(lambda: shown.append(logic_in_turns.choices.excluded))
+    logic_in_turns.changed.connect(lambda: shown.append(logic_in_turns.comparison.pairs.excluded))
     setPoints(capturedPointsNode(table.scene), LABELS, table.touched)
     logic_in_turns.process()
     work.process()
     logic_in_turns.exclude("4")
-    assert shown == [{"4"}]
-    work.process()
-    assert shown == [{"4"}]
+    logic_in_turns.exclude("5")
+    in_turns(work)
+    assert shown == [("4", "5")]
 
 
 def test_a_list_that_changes_back_is_registered_again_even_after_another_registration(

@@ -68,6 +68,7 @@ def test_a_replay_registers_all_its_touches_and_to_its_own_tasks_fiducials(host,
     replay(host, trials, 1, "task-1")
     host.choose("residualsTable", 3)
     host.press("excludeButton")
+    host.finish_work()
     assert host.find("residualsTable").rowCount == 14
     replay(host, trials, 2, "task-2")
     # They are not paired with another task's fiducials.

@@ -1,14 +1,17 @@
 """The robot is in the 3D view and follows the poses that the link brings."""
 
+import functools
 import shutil
 
 import numpy as np
 import pytest
 import slicer
+import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.scene.nodes import capturedPointsNode
-from rastrainer.slicer.scene.robot import robotNode, setRobotVisible, showRobot
+from rastrainer.slicer.scene.robot import addLink, missingLinks, robotNode, setRobotVisible
+from rastrainer.slicer.scene.robot_description import readLinkMeshes
 from rastrainer.slicer.scene.scenario_nodes import showTask
 from rastrainer.slicer.scene.trial_scene import followPlacement, setApplied, showPlannedPlace
 from rastrainer.transforms import MM_PER_M
@@ -19,6 +22,11 @@ from rastrainer_simulator.robot.model import load_robot
 ROBOT = asset_path("robots", "iiwa7")
 
 
+@functools.cache
+def links():
+    return readLinkMeshes(ROBOT)
+
+
 def bounds(node):
     values = [0.0] * 6
     node.GetRASBounds(values)
@@ -27,9 +35,14 @@ def bounds(node):
 
 @pytest.fixture
 def robot(scene):
-    showRobot(scene, ROBOT)
-    followPlacement(scene)
+    add_links(scene)
     return [robotNode(scene, number) for number in range(8)]
+
+
+def add_links(scene):
+    for number in missingLinks(scene):
+        addLink(scene, number, links()[number])
+    followPlacement(scene)
 
 
 def test_each_link_is_one_colored_model_that_is_not_saved_with_the_scene(scene, robot):
@@ -37,10 +50,25 @@ def test_each_link_is_one_colored_model_that_is_not_saved_with_the_scene(scene, 
         assert node.GetPolyData().GetNumberOfCells() > 1000
         colors = slicer.util.arrayFromModelPointData(node, "color")
         assert len(np.unique(colors, axis=0)) > 1
+        normals = slicer.util.arrayFromModelPointData(node, "Normals")
+        np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0, atol=1e-4)
         assert not node.GetSaveWithScene()
-    count = scene.GetNumberOfNodes()
-    showRobot(scene, ROBOT)
-    assert scene.GetNumberOfNodes() == count
+    assert missingLinks(scene) == []
+
+
+def test_a_link_comes_complete_so_that_no_view_draws_it_twice(scene):
+    seen = []
+
+    @vtk.calldata_type(vtk.VTK_OBJECT)
+    def watch(_scene, _event, node):
+        if node.IsA("vtkMRMLModelNode"):
+            seen.append((node.GetName(), node.GetDisplayNode().GetVisibility()))
+            node.AddObserver(vtk.vtkCommand.ModifiedEvent, lambda *_event: seen.append("changed"))
+            node.AddObserver(node.PolyDataModifiedEvent, lambda *_event: seen.append("changed"))
+
+    scene.AddObserver(scene.NodeAddedEvent, watch)
+    addLink(scene, 3, links()[3])
+    assert seen == [("Robot link 3", 1)]
 
 
 def test_the_robot_moves_with_the_poses_of_its_links(scene, robot):
@@ -77,8 +105,7 @@ def test_deleted_parts_are_recreated_when_the_robot_is_shown_again(scene, robot)
     scene.RemoveNode(robot[3])
     scene.RemoveNode(scene.GetFirstNode("Link5ToWorld", "vtkMRMLLinearTransformNode"))
     followPlacement(scene)
-    showRobot(scene, ROBOT)
-    followPlacement(scene)
+    add_links(scene)
     assert robotNode(scene, 3).GetParentTransformNode().GetName() == "Link3ToWorld"
     assert robotNode(scene, 5).GetParentTransformNode().GetName() == "Link5ToWorld"
 
@@ -88,13 +115,12 @@ def test_the_robot_can_be_hidden(scene, robot):
     assert not any(node.GetDisplayVisibility() for node in robot)
 
 
-def test_a_folder_without_a_robot_is_reported(scene, tmp_path):
+def test_a_folder_without_a_robot_is_reported(tmp_path):
     with pytest.raises(InputError, match="There is no file"):
-        showRobot(scene, tmp_path)
+        readLinkMeshes(tmp_path)
     shutil.copy(ROBOT / "iiwa7.urdf", tmp_path)
     with pytest.raises(InputError, match=r"mesh .*stl is missing"):
-        showRobot(scene, tmp_path)
-    assert robotNode(scene, 0) is None
+        readLinkMeshes(tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -105,10 +131,9 @@ def test_a_folder_without_a_robot_is_reported(scene, tmp_path):
         pytest.param("</robot>", "", "not well-formed", id="cut-short"),
     ],
 )
-def test_a_malformed_urdf_is_refused_with_a_message(scene, tmp_path, before, after, problem):
+def test_a_malformed_urdf_is_refused_with_a_message(tmp_path, before, after, problem):
     text = (ROBOT / "iiwa7.urdf").read_text(encoding="utf-8")
     assert before in text
     (tmp_path / "iiwa7.urdf").write_text(text.replace(before, after), encoding="utf-8")
     with pytest.raises(InputError, match=problem):
-        showRobot(scene, tmp_path)
-    assert robotNode(scene, 0) is None
+        readLinkMeshes(tmp_path)

@@ -12,8 +12,9 @@ from rastrainer.head.mesh import write_head_mesh
 from rastrainer.scenario.points import PlannedTarget, PlannedTrajectory
 from rastrainer.slicer.scene import scenario_nodes as shown
 from rastrainer.slicer.scene.nodes import Role, findNode, labelsOf, worldPoints
-from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
+from rastrainer.slicer.scene.scenario_nodes import showTask
 from Testing.domain.scenario.made_up_scenario import ball_head
+from Testing.slicer.shown_scenario import show_whole
 
 FIDUCIALS = "vtkMRMLMarkupsFiducialNode"
 LINE, MODEL = "vtkMRMLMarkupsLineNode", "vtkMRMLModelNode"
@@ -35,7 +36,7 @@ def planned(scenario):
 
 
 def test_head_and_target_are_shown_in_ras(scene, scenario):
-    showScenario(scene, scenario)
+    show_whole(scene, scenario)
     bounds = [0.0] * 6
     findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL).GetRASBounds(bounds)
     np.testing.assert_allclose(bounds, [-90.0, 90.0] * 3, atol=1.0)
@@ -45,7 +46,7 @@ def test_head_and_target_are_shown_in_ras(scene, scenario):
 
 
 def test_all_targets_and_the_trajectory_are_shown_the_scenarios_own_first(scene, planned):
-    showScenario(scene, planned)
+    show_whole(scene, planned)
     targets = findNode(scene, FIDUCIALS, Role.TARGET)
     assert labelsOf(targets) == ("center", "Cyst")
     np.testing.assert_allclose(worldPoints(targets), [[0, 10, -20], [10, 20, 30]])
@@ -57,20 +58,20 @@ def test_all_targets_and_the_trajectory_are_shown_the_scenarios_own_first(scene,
 
 
 def test_the_skull_is_visible_through_the_skin_and_named_for_what_it_is(scene, planned):
-    showScenario(scene, planned)
+    show_whole(scene, planned)
     skull = findNode(scene, MODEL, Role.SKULL)
     assert skull.GetName() == "Skull (approximation)"
     bounds = [0.0] * 6
     skull.GetRASBounds(bounds)
     np.testing.assert_allclose(bounds, [-80.0, 80.0] * 3, atol=1.0)
     assert findNode(scene, MODEL, Role.HEAD_MODEL).GetDisplayNode().GetOpacity() < 1.0
-    showScenario(scene, replace(planned, name="ct", is_skull_approximate=False))
+    show_whole(scene, replace(planned, name="ct", is_skull_approximate=False))
     assert skull.GetName() == "Skull"
 
 
 def test_anything_the_new_scenario_lacks_is_removed(scene, planned, scenario):
-    showScenario(scene, planned)
-    showScenario(scene, scenario)
+    show_whole(scene, planned)
+    show_whole(scene, scenario)
     assert findNode(scene, LINE, Role.TRAJECTORY) is None
     assert findNode(scene, MODEL, Role.SKULL) is None
     assert labelsOf(findNode(scene, FIDUCIALS, Role.TARGET)) == ("center",)
@@ -91,7 +92,7 @@ def test_a_surface_is_shown_in_its_final_look_so_that_no_view_draws_it_again(sce
             node.AddObserver(vtk.vtkCommand.ModifiedEvent, note)
 
     tag = scene.AddObserver(scene.NodeAddedEvent, watch)
-    showScenario(scene, planned)
+    show_whole(scene, planned)
     scene.RemoveObserver(tag)
     head, skull = (findNode(scene, MODEL, role) for role in (Role.HEAD_MODEL, Role.SKULL))
     assert {look[0] for look in looks} == {head.GetDisplayNodeID(), skull.GetDisplayNodeID()}
@@ -100,10 +101,10 @@ def test_a_surface_is_shown_in_its_final_look_so_that_no_view_draws_it_again(sce
 
 
 def test_showing_a_scenario_again_adds_no_node(scene, planned):
-    showScenario(scene, planned)
+    show_whole(scene, planned)
     showTask(scene, planned, "task-1")
     count = scene.GetNumberOfNodes()
-    showScenario(scene, planned)
+    show_whole(scene, planned)
     showTask(scene, planned, "task-2")
     assert scene.GetNumberOfNodes() == count
 
@@ -116,14 +117,14 @@ def overwrite_mesh(path, mesh):
 
 
 def test_a_scenario_rebuilt_under_its_name_is_shown_again(scene, planned):
-    showScenario(scene, planned)
+    show_whole(scene, planned)
     showTask(scene, planned, "task-1")
     overwrite_mesh(planned.head_mesh, ball_head(70.0))
     overwrite_mesh(planned.skull_mesh, ball_head(60.0))
     task = planned.task("task-1")
     moved = replace(task, fiducials=task.fiducials * 70.0 / 90.0)
     rebuilt = replace(planned, tasks=(moved,))
-    showScenario(scene, rebuilt)
+    show_whole(scene, rebuilt)
     node = showTask(scene, rebuilt, "task-1")
     for role, radius in ((Role.HEAD_MODEL, 70.0), (Role.SKULL, 60.0)):
         bounds = findNode(scene, MODEL, role).GetPolyData().GetBounds()
@@ -132,13 +133,14 @@ def test_a_scenario_rebuilt_under_its_name_is_shown_again(scene, planned):
 
 
 def test_a_shown_mesh_is_not_read_again_and_a_missing_one_is_reported(scene, planned, monkeypatch):
-    showScenario(scene, planned)
+    show_whole(scene, planned)
     with monkeypatch.context() as patch:
         patch.setattr(shown, "read_head_mesh", None)
-        showScenario(scene, planned)
+        show_whole(scene, planned)
     planned.head_mesh.unlink()
-    with pytest.raises(InputError, match="does not exist"):
-        showScenario(scene, planned)
+    (problem,) = show_whole(scene, planned)
+    assert problem.startswith("No head is shown: The mesh ")
+    assert findNode(scene, MODEL, Role.HEAD_MODEL) is None
 
 
 def test_the_fiducials_of_a_task_are_numbered_and_locked(scene, scenario):

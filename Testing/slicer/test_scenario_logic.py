@@ -1,13 +1,18 @@
 """Any model or volume of the scene can be the head that is shown."""
 
+import threading
+
 import numpy as np
 import pytest
 import slicer
 
 from rastrainer.errors import InputError
+from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.logic.scenario_logic import ScenarioLogic
 from rastrainer.slicer.program.child_process import runHere
 from rastrainer.slicer.scene.nodes import Role, findNode
+from rastrainer.slicer.scene.robot import missingLinks
+from rastrainer.slicer.scene.robot_description import READ_LINKS
 from rastrainer.slicer.scene.trial_scene import isApplied
 from rastrainer_simulator.assets import asset_path
 
@@ -21,8 +26,32 @@ class Cache:
 
 
 @pytest.fixture
-def logic(scene, scenario):
-    return ScenarioLogic(scene, Cache(scenario), asset_path("robots", "iiwa7"), runHere)
+def work():
+    work = BackgroundWork()
+    yield work
+    work.close()
+
+
+@pytest.fixture
+def runs():
+    """The functions that were run, each with its thread."""
+    return []
+
+
+@pytest.fixture
+def logic(scene, scenario, work, runs):
+    def run(function, *arguments, **named):
+        runs.append((function, threading.get_ident()))
+        return runHere(function, *arguments, **named)
+
+    return ScenarioLogic(scene, Cache(scenario), asset_path("robots", "iiwa7"), run, work)
+
+
+def in_turns(work, note=lambda: None):
+    while work.isBusy:
+        work.yieldTime()
+        work.process()
+        note()
 
 
 def volume(scene, values, spacing):
@@ -37,9 +66,53 @@ def test_showing_a_scenario_places_the_robots_world_as_planned(scene, logic):
     transform = findNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
     assert isApplied(transform)
     assert not logic.isRobotShown
+
+
+def test_the_robot_is_read_elsewhere_once_and_comes_one_link_in_a_turn(scene, logic, work, runs):
+    shown, counts = [], []
+    logic.robotShown.connect(lambda: shown.append(missingLinks(scene)))
     logic.setRobotShown(True)
     assert logic.isRobotShown
+    in_turns(work, lambda: counts.append(8 - len(missingLinks(scene))))
+    assert sorted(set(counts)) == list(range(9))
+    ((function, thread),) = runs
+    assert function == READ_LINKS
+    assert thread != threading.get_ident()
+    assert shown == [[]]
     logic.setRobotShown(False)
+    assert not logic.isRobotShown
+    logic.setRobotShown(True)
+    in_turns(work)
+    assert logic.isRobotShown
+    scene.Clear(0)
+    logic.forgetScene()
+    assert not logic.isRobotShown
+    logic.setRobotShown(True)
+    in_turns(work)
+    assert missingLinks(scene) == []
+    assert len(runs) == 1
+
+
+def test_a_robot_that_is_hidden_or_cleared_while_it_comes_stays_away(scene, logic, work):
+    def clear():
+        scene.Clear(0)
+        logic.forgetScene()
+
+    for end in (lambda: logic.setRobotShown(False), clear):
+        logic.setRobotShown(True)
+        in_turns(work, end)
+        assert not logic.isRobotShown
+        assert len(missingLinks(scene)) >= 7
+
+
+def test_a_robot_whose_files_are_missing_is_reported(scene, scenario, work, tmp_path):
+    logic = ScenarioLogic(scene, Cache(scenario), tmp_path, runHere, work)
+    problems = []
+    logic.problemFound.connect(problems.append)
+    logic.setRobotShown(True)
+    in_turns(work)
+    (problem,) = problems
+    assert problem.startswith("The robot cannot be shown. There is no file")
     assert not logic.isRobotShown
 
 

@@ -1,18 +1,26 @@
 """A scenario's images are the background of the slice views, read once and in the background."""
 
+import threading
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import slicer
 
+from rastrainer.head.mesh import write_head_mesh
 from rastrainer.head.volume import VolumeFile, write_head_volume
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.scene import scenario_nodes
 from rastrainer.slicer.scene.nodes import Role, findNode
-from rastrainer.slicer.scene.scenario_nodes import VOLUME, VolumeLoader, showImages, showScenario
+from rastrainer.slicer.scene.scenario_nodes import (
+    MODEL,
+    VOLUME,
+    scenarioLoader,
+    showImages,
+    showScenario,
+)
 from rastrainer_headless.scene import HeadlessScene
-from Testing.domain.scenario.made_up_scenario import ball_volume
+from Testing.domain.scenario.made_up_scenario import ball_head, ball_volume
 
 
 class Loading:
@@ -21,10 +29,14 @@ class Loading:
     def __init__(self, scene):
         self.scene = scene
         self.work = BackgroundWork()
-        self.loader = VolumeLoader(scene, self.work)
+        self.loader = scenarioLoader(scene, self.work)
         self.shown, self.problems = [], []
-        self.loader.shown.connect(self.shown.append)
+        self.loader.shown.connect(self.take)
         self.loader.problemFound.connect(self.problems.append)
+
+    def take(self, node):
+        if node.IsA(VOLUME):
+            self.shown.append(node)
 
     def finish(self):
         self.loader.process()
@@ -66,7 +78,7 @@ def test_the_images_lie_where_the_head_is_with_their_window_in_all_slice_views(
     assert np.array_equal(slicer.util.arrayFromVolume(node).T, images.values)
     bounds, head = [0.0] * 6, [0.0] * 6
     node.GetRASBounds(bounds)
-    findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL).GetRASBounds(head)
+    findNode(scene, MODEL, Role.HEAD_MODEL).GetRASBounds(head)
     assert all(low < other for low, other in zip(bounds[::2], head[::2], strict=True))
     assert all(high > other for high, other in zip(bounds[1::2], head[1::2], strict=True))
     display = node.GetDisplayNode()
@@ -77,20 +89,37 @@ def test_the_images_lie_where_the_head_is_with_their_window_in_all_slice_views(
     assert loading.problems == []
 
 
-def test_nothing_is_read_before_the_loader_runs_nor_on_the_main_thread(
-    scene, loading, imaged, monkeypatch
+def test_meshes_and_images_are_read_beside_the_main_thread_and_shown_one_in_a_turn(
+    scene, imaged, monkeypatch
 ):
-    def read(_path):
-        raise AssertionError("read on the main thread")
+    threads = {}
 
-    with monkeypatch.context() as patch:
-        patch.setattr(scenario_nodes, "read_nrrd", read)
-        showScenario(scene, imaged)
-        assert loading.node.GetImageData() is None
+    def watch(name):
+        function = getattr(scenario_nodes, name)
+
+        def watched(path):
+            threads[path.name] = threading.get_ident()
+            return function(path)
+
+        monkeypatch.setattr(scenario_nodes, name, watched)
+
+    for name in ("read_head_mesh", "read_nrrd"):
+        watch(name)
+    skull = imaged.folder / "skull.ply"
+    write_head_mesh(skull, ball_head(80.0))
+    showScenario(scene, replace(imaged, skull_mesh=skull))
+    assert threads == {}
+    loading, filled = Loading(scene), []
     loading.loader.process()
-    assert loading.node.GetImageData() is None
-    loading.finish()
-    assert loading.node.GetImageData() is not None
+    while loading.work.isBusy:
+        loading.work.yieldTime()
+        loading.work.process()
+        models = [findNode(scene, MODEL, role) for role in (Role.HEAD_MODEL, Role.SKULL)]
+        data = [*(model.GetPolyData() for model in models), loading.node.GetImageData()]
+        filled.append(sum(each is not None for each in data))
+    assert threads.keys() == {"head.ply", "skull.ply", "volume.nrrd"}
+    assert threading.get_ident() not in threads.values()
+    assert {1, 2, 3} <= set(filled)
 
 
 def test_displayed_images_are_not_read_again_and_a_users_changes_stay(scene, loading, imaged):
@@ -153,7 +182,7 @@ def test_unusable_images_are_reported_and_the_head_is_shown(scene, loading, imag
     (sentence,) = loading.problems
     assert sentence.startswith("There are no images in the slice views: ")
     assert "volume.nrrd" in sentence
-    assert findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL) is not None
+    assert findNode(scene, MODEL, Role.HEAD_MODEL) is not None
 
 
 def test_a_node_deleted_while_it_is_read_stays_deleted(scene, loading, imaged):

@@ -30,6 +30,8 @@ from rastrainer.trial.ctps import CTPS_WARNING, Trial
 from rastrainer.trial.scoring import score_trial
 from Testing.domain.report.studied_procedures import outcome
 from Testing.domain.trial.trial_records import REFERENCE, gentle_score, make_traced
+from Testing.slicer.host.failures import FAILURES, VtkMessages
+from Testing.slicer.host.stand_ins.plot_view import draw_chart
 from Testing.slicer.recorded_trial import scored_analysis
 
 COHORT = [Trial("desktop", str(n), "1", 80.0 + 10.0 * n, 1.0 + 0.1 * n) for n in range(4)]
@@ -135,6 +137,7 @@ def test_the_history_is_a_table_and_two_learning_curves(scene, add_trial):
     table = findNode(scene, "vtkMRMLTableNode", Role.HISTORY)
     scores = slicer.util.arrayFromTableColumn(table, "score")
     assert scores.tolist() == [trial.score.score for trial in trials]
+    table = findNode(scene, "vtkMRMLTableNode", Role.LEARNING_CURVE)
     for index in range(2):
         series = chart.GetNthPlotSeriesNode(index)
         assert series.GetTableNodeID() == table.GetID()
@@ -182,6 +185,22 @@ def test_a_study_without_truths_has_an_empty_plot_and_a_message(scene, logic, ma
         "No trial has both an expected and a true target error.",
         "1 trial has no expected target error and cannot be shown.",
     ]
+
+
+def test_plots_of_one_trial_or_none_leave_the_log_empty(scene, logic, add_trial):
+    messages = VtkMessages()
+    try:
+        draw_chart(showCalibration(scene, logic.calibration()), 200, 150)
+        trial = add_trial(1, trainee="a")
+        assert len(logic.calibration().points) == 1
+        for chart in (
+            showCalibration(scene, logic.calibration()),
+            showLearningCurve(scene, "a", [trial]),
+        ):
+            draw_chart(chart, 200, 150)
+    finally:
+        messages.close()
+    assert FAILURES.texts == []
 
 
 def test_a_learning_curve_over_two_methods_says_so(scene, add_trial):

@@ -8,7 +8,7 @@ import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import find_track
-from rastrainer.slicer.scene.robot import ArmChain, readArmChain
+from rastrainer.slicer.scene.robot_description import ArmChain, readArmChain
 from rastrainer.slicer.scene.trial_replay import (
     STATES_A_SLICE,
     findReplay,

@@ -42,7 +42,7 @@ def play(room, follower, point, task="task-1"):
 
 
 def put_tool(scene, tip):
-    prepareNodes(scene)
+    list(prepareNodes(scene))
     pose = findNode(scene, TRANSFORM, DeviceName.TOOL_TIP_TO_WORLD)
     pose.SetMatrixTransformToParent(vtk_matrix(transforms.rigid(np.eye(3), tip)))
 
@@ -99,7 +99,7 @@ def pose_of_tool(room):
 
 def test_the_tool_tip_is_where_the_registration_places_it_on_the_head(room, scenario):
     assert pose_of_tool(room) is None
-    prepareNodes(room.scene)
+    list(prepareNodes(room.scene))
     assert pose_of_tool(room) is None
     stand(room, scenario)
     assert pose_of_tool(room) is None
@@ -138,6 +138,24 @@ def test_following_is_rate_limited_and_needs_motion(room, follower, scenario):
     np.testing.assert_allclose(place(room.scene), first + UP, atol=1e-3)
 
 
+def test_the_views_jump_one_in_a_turn_but_follow_the_tool_at_once(room, scenario):
+    turns, scene = [], room.scene
+    follower = SliceFollower(scene, room.logic, lambda: room.now, turns.append)
+    follower.show((10.0, 20.0, 30.0))
+    for moved in range(1, 4):
+        turns.pop(0)()
+        assert np.count_nonzero(place(scene) == [10.0, 20.0, 30.0]) == moved
+    assert turns == []
+    stand(room, scenario)
+    put_tool(scene, TIP)
+    follower.followsTool = True
+    room.now += PERIOD_S
+    follower.process()
+    tip = poseOnHead(scene, DeviceName.TOOL_TIP_TO_WORLD)[:3, 3]
+    np.testing.assert_allclose(place(scene), tip, atol=1e-3)
+    assert turns == []
+
+
 def test_a_shown_place_is_shown_again_after_the_views_were_moved(room, follower):
     follower.showAgain()
     follower.show((10.0, 20.0, 30.0))
@@ -173,7 +191,7 @@ def test_in_a_cleared_scene_the_slices_go_to_a_stationary_tool(room, follower, s
 
 
 def put_instrument(scene, tip, direction):
-    prepareNodes(scene)
+    list(prepareNodes(scene))
     pose = findNode(scene, TRANSFORM, DeviceName.INSTRUMENT_TIP_TO_WORLD)
     across = np.cross(direction, [0.3, 0.9, 0.1])
     across /= np.linalg.norm(across)

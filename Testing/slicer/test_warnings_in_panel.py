@@ -36,8 +36,7 @@ def touches():
 
 def touch(host, points):
     """Put touches into the scene, and wait until the panel has processed them."""
-    work = host.widget.logic.session.work
-    host.wait_until(lambda: not work.isBusy, "what was there before is shown")
+    host.finish_work()
     host.find("registrationText").text = ""
     setPoints(capturedPointsNode(host.scene), LABELS[: len(points)], points)
     host.wait_until(lambda: host.text("registrationText"), "the touches are registered")
@@ -74,18 +73,20 @@ MENDED = {
 }
 
 
-def test_one_click_fixes_a_fault_at_once_and_undo_reverts_it(panel, touches):
+def test_one_click_fixes_a_fault_and_undo_reverts_it(panel, touches):
     for case, (change, named, button) in MENDED.items():
         touch(panel, change(touches))
         assert named in " ".join(warnings(panel)), case
         number = next(n for n, text in enumerate(warnings(panel)) if named in text)
         assert panel.text(f"remedy{number}Button") == button, case
         panel.press(f"remedy{number}Button")
+        panel.finish_work()
         assert named not in " ".join(warnings(panel)), case
         left = button.removeprefix("Leave out ")
         assert (f"Left out: {left};" in panel.text("registrationText")) == (left != button), case
         assert panel.find("residualsTable").rowCount == (15 if left == button else 14), case
         panel.press("undoButton")
+        panel.finish_work()
         assert named in " ".join(warnings(panel)), case
         assert panel.find("residualsTable").rowCount == 15, case
 

@@ -62,7 +62,7 @@ def save(picture: Path) -> None:
         host = Host(Path(temporary))
         host.open()
         host.press("showScenarioButton")
-        host.idle_for(3.0)
+        host.finish_work()
         host.widget.logic.session.procedure.showOutcome(outcome)
         first = outcome.analysis.trajectories[0]
         AlongInstrument(host.scene).show(first.tip, first.axis_direction)

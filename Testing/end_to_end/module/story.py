@@ -75,6 +75,7 @@ class Story:
         host.choose("taskComboBox", "Task 1")
         host.press("showScenarioButton")
         host.check("robotCheckBox")
+        host.finish_work()
         assert host.scene.GetFirstNodeByName("Robot link 7") is not None
         # The MRI follows once the head is shown.
         volumes = "vtkMRMLScalarVolumeNode"

@@ -54,6 +54,7 @@ class Tutorial:
         host.choose("taskComboBox", "Task 1")
         host.press("showScenarioButton")
         host.check("robotCheckBox")
+        host.finish_work()
         host.idle_for(2.0)
         host.look_from(AZIMUTH, ELEVATION, ZOOM)
         self._only("scenario")
@@ -103,6 +104,7 @@ class Tutorial:
         """Show the touch that is off in all views."""
         host = self._host
         host.choose("residualsTable", SLIP_AT - 1)
+        host.finish_work()
         host.find("residualsGroupBox").collapsed = True
         host.look_at(HEAD, FROM_THE_RIGHT, ELEVATION, DISTANCE_MM)
 
@@ -133,13 +135,14 @@ class Tutorial:
         """Close the scene, which is full, and show the head again."""
         self._host.clear_scene()
         self._host.press("showScenarioButton")
-        self._host.idle_for(2.0)
+        self._host.finish_work()
 
     def _carry_out_procedure(self) -> None:
         """Start the task with the procedure, and lead it until the instrument is at its target."""
         host = self._host
         self._reset_scene()
         host.check("robotCheckBox")
+        host.finish_work()
         self._only("training")
         host.choose("procedureComboBox", PROCEDURE)
         self._next("Pause")

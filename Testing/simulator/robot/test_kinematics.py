@@ -3,7 +3,7 @@ import pinocchio as pin
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.scene.robot import readArmChain
+from rastrainer.slicer.scene.robot_description import readArmChain
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.robot.kinematics import make_kinematics

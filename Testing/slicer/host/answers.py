@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass
 from typing import Any
 
@@ -70,7 +69,6 @@ class Answers:
         if answer not in buttons:
             FAILURES.add(f"“{text}” has no button {answer}; it has {', '.join(buttons)}.")
             answer = buttons[-1]
-        FAILURES.note_shown(sys.exc_info()[1])
         self.messages.append(Message(title.strip(), text, details, answer))
         return answer
 

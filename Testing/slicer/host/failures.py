@@ -12,7 +12,6 @@ from typing import Any
 
 import vtk
 
-from rastrainer.errors import InputError
 from Testing.slicer.host.members import Checked
 
 
@@ -27,7 +26,6 @@ class Failures:
     def __init__(self) -> None:
         self.texts: list[str] = []
         self.listener: Callable[[str], None] | None = None
-        self._shown: list[BaseException] = []
 
     def add(self, text: str) -> None:
         """Remember a failure that is no exception."""
@@ -35,19 +33,12 @@ class Failures:
         if self.listener is not None:
             self.listener(text)
 
-    def note_shown(self, exception: BaseException | None) -> None:
-        """Remember that the user was shown this exception."""
-        if exception is not None:
-            self._shown.append(exception)
-
     def catch(self, exception: BaseException) -> None:
-        """Take what a slot raised, unless the user was shown it as a sentence."""
-        wasShown = any(exception is shown for shown in self._shown)
-        if not (wasShown and isinstance(exception, InputError)):
-            text = "".join(traceback.format_exception(exception))
-            if text not in self.texts:  # A timer would repeat it ten times a second.
-                self.add(text)
-                print(text, file=sys.stderr)
+        """Take what a slot raised: Slicer logs its traceback, also where a message was shown."""
+        text = "".join(traceback.format_exception(exception))
+        if text not in self.texts:  # A timer would repeat it ten times a second.
+            self.add(text)
+            print(text, file=sys.stderr)
 
 
 FAILURES = Failures()

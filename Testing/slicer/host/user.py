@@ -131,6 +131,13 @@ class User:
                 raise AssertionError(f"In {timeout_s} s it did not happen: {what}. {self._now()}")
             self._wait()
 
+    def finish_work(self) -> None:
+        """Wait until the module has shown what it computes in the background."""
+        work = self.widget.logic.session.work
+        # What was requested begins when the module's timer notices it.
+        self.widget.onTimeout()
+        self.wait_until(lambda: not work.isBusy, "all work is done")
+
     def _now(self) -> str:
         """Return what may explain why nothing happens."""
         found = [message.text for message in self.messages]

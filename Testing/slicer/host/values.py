@@ -10,7 +10,7 @@ import enum
 import functools
 import inspect
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import shiboken6
@@ -114,7 +114,11 @@ class Slot:
 
     Attributes:
         is_tick: whether it is called by a timer.
+        watchers: called before and after each call that is not made within another one.
     """
+
+    watchers: ClassVar[list[Callable[[], None]]] = []
+    _depth: ClassVar[int] = 0
 
     def __init__(self, function: Callable[..., Any], argument_count: int | None = None) -> None:
         self.function = function
@@ -124,10 +128,21 @@ class Slot:
 
     def __call__(self, *arguments: Any) -> None:
         given = [from_qt(item) for item in arguments[: self._count]]
+        Slot._tell_watchers()
+        Slot._depth += 1
         try:
             run_slot(self.function, given, self.is_tick)
         except Exception as exception:  # PythonQt prints it, and continues.
             FAILURES.catch(exception)
+        finally:
+            Slot._depth -= 1
+            Slot._tell_watchers()
+
+    @classmethod
+    def _tell_watchers(cls) -> None:
+        if not cls._depth:
+            for watcher in cls.watchers:
+                watcher()
 
 
 class BoundSignal:

@@ -90,7 +90,7 @@ def show_scenario(tour: Tour) -> str:
     hands.choose("taskComboBox", "Task 1")
     hands.click("showScenarioButton")
     hands.check("robotCheckBox")
-    hands.must(slicer.util.getNode("Robot link 7"), "There is no robot.")
+    hands.wait_until(lambda: slicer.util.getNodes("Robot link 7"), "the robot is shown")
     return hands.text("scenarioText")
 
 

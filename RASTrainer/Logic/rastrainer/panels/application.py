@@ -1,4 +1,4 @@
-"""Slicer's application: where it keeps what the module needs, its views, dialogs and samples."""
+"""Slicer's application: where it keeps what the module needs, its views, dialogs and downloads."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.panels.plain_text import toolTip
+from rastrainer.panels.sample_data import assetsFolder
 from rastrainer.scenario.library import user_library
-from rastrainer.slicer.background_work import inBackground
+from rastrainer.slicer.background_work import CallLater, inBackground
 from rastrainer.slicer.logic.module_paths import ModulePaths
 from rastrainer.slicer.logic.views import WITH_PLOT, WITH_TABLE, BorrowedLayout
 from rastrainer.slicer.program.simulator_package import SimulatorPackage, pythonSlicer
@@ -49,12 +50,6 @@ def _studyAddress(settings: Settings) -> PostgresAddress | None:
         place = study_place(settings.get(STUDY_ADDRESS))
         return None if isinstance(place, Path) else place
     return None
-
-
-def assetsFolder(moduleFile: Path) -> Path:
-    """Return where scenarios and the robot are: installed with the module, or in a checkout."""
-    installed = moduleFile.parent / "Resources" / "RASTrainer"
-    return installed if installed.is_dir() else moduleFile.parents[1] / "assets"
 
 
 def callSoon(work: Callable[[], None]) -> None:
@@ -96,10 +91,14 @@ def fitThreeDViews() -> None:
         slicer.util.resetThreeDViews()
 
 
-def fitSliceViews() -> None:
-    """Let the slice views show their volumes as a whole, which moves their slices, too."""
-    if slicer.app.layoutManager() is not None:
-        slicer.util.resetSliceViews()
+def fitSliceViews(later: CallLater) -> None:
+    """Let the slice views show their volumes as a whole, one view after the other by `later`.
+
+    That moves their slices, too.
+    """
+    layoutManager = slicer.app.layoutManager()
+    for name in () if layoutManager is None else layoutManager.sliceViewNames():
+        later(layoutManager.sliceWidget(name).sliceLogic().FitSliceToAll)
 
 
 CURVE, CALIBRATION, TABLES = "learning curve", "calibration", "tables"
@@ -141,35 +140,6 @@ def askWhereToSave(caption: str, proposed: str, kind: str) -> Path | None:
     if path.exists() and not slicer.util.confirmYesNoDisplay(toolTip(question), caption):
         return None
     return path
-
-
-CATEGORY, SAMPLE = "RASTrainer", "Colin27Head"
-SCENARIO = Path("scenarios", "colin27")
-VOLUME, THUMBNAIL = "volume.nrrd", "preview.png"
-
-
-def registerSampleData(assets: Path) -> None:
-    """Register the MRI below the folder of assets; nothing happens where either is not there.
-
-    The file lies on this computer, so that the sample needs no network. Its checksum makes Sample
-    Data fetch it again where its cache has one of an older version.
-    """
-    try:
-        import SampleData
-    except ImportError:
-        return
-    volume = assets / SCENARIO / VOLUME
-    if not volume.is_file():
-        return
-    SampleData.SampleDataLogic.registerCustomSampleDataSource(
-        category=CATEGORY,
-        sampleName=SAMPLE,
-        thumbnailFileName=str(assets / SCENARIO / THUMBNAIL),
-        uris=volume.resolve().as_uri(),
-        fileNames=f"{SAMPLE}.nrrd",
-        nodeNames=SAMPLE,
-        checksums=f"SHA256:{slicer.util.computeChecksum('SHA256', str(volume))}",
-    )
 
 
 ANSWER_S = 10.0

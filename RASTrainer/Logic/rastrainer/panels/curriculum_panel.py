@@ -9,6 +9,7 @@ import slicer
 
 from rastrainer.number_text import fixed
 from rastrainer.panels.plain_text import toolTip
+from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import fillTable, setText, setUsable
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.translation import _
@@ -43,13 +44,13 @@ class CurriculumPanel:
 
     def setCurriculum(self) -> None:
         """Have the chosen trainee, or everybody, follow the chosen file's curriculum."""
-        with slicer.util.tryWithErrorDisplay(_("The curriculum was not set.")):
+        with showErrors(_("The curriculum was not set.")):
             path = Path(self._ui.curriculumPathLineEdit.currentPath)
             self._logic.choose(path, self._ui.everybodyCheckBox.checked)
 
     def endCurriculum(self) -> None:
         """Have the chosen trainee, or everybody, follow no curriculum, after asking."""
-        with slicer.util.tryWithErrorDisplay(_("The curriculum was not ended.")):
+        with showErrors(_("The curriculum was not ended.")):
             isForEverybody = self._ui.everybodyCheckBox.checked
             who = _("everybody") if isForEverybody else self._session.trainees.chosen
             question = _(

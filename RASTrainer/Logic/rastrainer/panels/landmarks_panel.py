@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import slicer
-
 from rastrainer.errors import InputError
 from rastrainer.number_text import fixed
+from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
     CancelableWork,
     chosenData,
@@ -61,7 +60,7 @@ class LandmarksPanel:
 
     def propose(self) -> None:
         """Replace the landmarks by proposed ones on the chosen head."""
-        with slicer.util.tryWithErrorDisplay(_("No landmarks could be proposed.")):
+        with showErrors(_("No landmarks could be proposed.")):
             scenario = chosenScenario(self._ui, self._session)
             said = self._work.run(lambda report: self._logic.propose(scenario, report))
             if said is not None:
@@ -69,7 +68,7 @@ class LandmarksPanel:
 
     def show(self) -> None:
         """Replace the landmarks by those of the chosen scenario."""
-        with slicer.util.tryWithErrorDisplay(_("The landmarks cannot be shown.")):
+        with showErrors(_("The landmarks cannot be shown.")):
             scenario = chosenScenario(self._ui, self._session)
             if not scenario.landmarks:
                 raise InputError(_("{title} has no landmarks.").format(title=scenario.title))
@@ -79,7 +78,7 @@ class LandmarksPanel:
 
     def place(self) -> None:
         """Let the next click in a view place the chosen landmark."""
-        with slicer.util.tryWithErrorDisplay(_("No landmark can be placed.")):
+        with showErrors(_("No landmark can be placed.")):
             self._logic.points.startPlacing(chosenData(self._ui.landmarkNameComboBox))
 
     def remove(self) -> None:
@@ -94,7 +93,7 @@ class LandmarksPanel:
 
     def check(self) -> None:
         """Check the landmarks on the head of the chosen scenario, and the robot's reach."""
-        with slicer.util.tryWithErrorDisplay(_("The landmarks were not checked.")):
+        with showErrors(_("The landmarks were not checked.")):
             scenario = chosenScenario(self._ui, self._session)
             said = self._work.run(lambda report: self._logic.check(scenario, report))
             if said is not None:
@@ -102,7 +101,7 @@ class LandmarksPanel:
 
     def save(self) -> None:
         """Copy the chosen scenario with these landmarks and use the copy."""
-        with slicer.util.tryWithErrorDisplay(_("The landmarks were not saved.")):
+        with showErrors(_("The landmarks were not saved.")):
             title = self._ui.landmarksTitleLineEdit.text.strip()
             scenario = chosenScenario(self._ui, self._session)
             saved = self._work.run(lambda report: self._logic.save(scenario, title, report))

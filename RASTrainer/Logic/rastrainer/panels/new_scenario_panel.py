@@ -9,6 +9,7 @@ import slicer
 
 from rastrainer.head.trial_head import MAX_PERTURBATION, Perturbation
 from rastrainer.panels.application import downloadSample, fitThreeDViews
+from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import CancelableWork, setText, setUsable
 from rastrainer.protocol import WORLD_LIMIT_MM
 from rastrainer.scenario.scenario import STAND_DIAMETERS_MM, Scenario
@@ -111,7 +112,7 @@ class NewScenarioPanel:
 
     def loadSampleData(self) -> None:
         """Download an MRI through Slicer's Sample Data, and choose it."""
-        with slicer.util.tryWithErrorDisplay(_("The sample could not be loaded."), waitCursor=True):
+        with showErrors(_("The sample could not be loaded."), waitCursor=True):
             logic = slicer.util.getModuleLogic("SampleData")
             volume = self._work.run(
                 lambda report: downloadSample(slicer.mrmlScene, logic, SAMPLE, report)
@@ -132,7 +133,7 @@ class NewScenarioPanel:
 
     def preview(self) -> None:
         """Show the head that is found, to accept it or to change it."""
-        with slicer.util.tryWithErrorDisplay(_("No head could be shown.")):
+        with showErrors(_("No head could be shown.")):
             warnings = self._work.run(lambda report: self._maker.preview(*self._wanted(), report))
             if warnings is not None:
                 text = _(
@@ -144,9 +145,7 @@ class NewScenarioPanel:
 
     def check(self) -> None:
         """Report at once whether set-up, plan and fiducials can be used."""
-        with slicer.util.tryWithErrorDisplay(
-            _("The scenario could not be made with these choices.")
-        ):
+        with showErrors(_("The scenario could not be made with these choices.")):
             warnings = self._work.run(lambda report: self._maker.check(*self._wanted(), report))
             if warnings is not None:
                 text = _("Set-up, plan and fiducials can be used.")
@@ -154,7 +153,7 @@ class NewScenarioPanel:
 
     def make(self) -> None:
         """Make the scenario and use it."""
-        with slicer.util.tryWithErrorDisplay(_("The scenario was not made.")):
+        with showErrors(_("The scenario was not made.")):
             made = self._work.run(lambda report: self._maker.make(*self._wanted(), report))
             if made is not None:
                 self._useScenario(*made)

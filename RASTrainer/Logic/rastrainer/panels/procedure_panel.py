@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-import slicer
-
 from rastrainer.number_text import fixed
+from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import fillTable, keepChecked, setText, setUsable
 from rastrainer.procedure.errors import TrajectoryErrors
 from rastrainer.protocol import CommandName, Phase
@@ -148,7 +147,7 @@ class ProcedurePanel:
 
     def _action(self, step: _Step) -> Callable[[], None]:
         def act() -> None:
-            with slicer.util.tryWithErrorDisplay(_("The command was not sent.")):
+            with showErrors(_("The command was not sent.")):
                 step.do(self._logic)
 
         return act

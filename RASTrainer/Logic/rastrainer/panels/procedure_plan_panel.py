@@ -8,6 +8,7 @@ from typing import Any
 import slicer
 
 from rastrainer.number_text import fixed
+from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
     CancelableWork,
     chosenData,
@@ -88,7 +89,7 @@ class ProcedurePlanPanel:
 
     def edit(self) -> None:
         """Load the chosen procedure into the scene, in place of the plan there."""
-        with slicer.util.tryWithErrorDisplay(_("The procedure cannot be edited.")):
+        with showErrors(_("The procedure cannot be edited.")):
             ui = self._ui
             scenario = chosenScenario(ui, self._session)
             procedure = self._logic.edit(scenario, chosenData(ui.procedurePlanComboBox))
@@ -105,7 +106,7 @@ class ProcedurePlanPanel:
 
     def placeLine(self) -> None:
         """Let the next two clicks place a line, from its entry to its target."""
-        with slicer.util.tryWithErrorDisplay(_("No line can be placed.")):
+        with showErrors(_("No line can be placed.")):
             startPlacing(slicer.mrmlScene, newPlanLine(slicer.mrmlScene))
             self.showState()
 
@@ -132,7 +133,7 @@ class ProcedurePlanPanel:
 
     def placeCheckpoint(self) -> None:
         """Let the next click place a checkpoint, in the chosen list or in the plan's own."""
-        with slicer.util.tryWithErrorDisplay(_("No checkpoint can be placed.")):
+        with showErrors(_("No checkpoint can be placed.")):
             chosen = self._ui.checkpointsComboBox
             node = chosen.currentNode() or checkpointList(slicer.mrmlScene)
             chosen.setCurrentNode(node)
@@ -147,7 +148,7 @@ class ProcedurePlanPanel:
 
     def check(self) -> None:
         """Measure all lines on the head of the chosen scenario."""
-        with slicer.util.tryWithErrorDisplay(_("The lines were not checked.")):
+        with showErrors(_("The lines were not checked.")):
             self._problem = ""
             scenario = chosenScenario(self._ui, self._session)
             plan, snapshot = self._description(), self._snapshot()
@@ -158,7 +159,7 @@ class ProcedurePlanPanel:
 
     def save(self) -> None:
         """Copy the chosen scenario with this procedure and use the copy."""
-        with slicer.util.tryWithErrorDisplay(_("The procedure was not saved.")):
+        with showErrors(_("The procedure was not saved.")):
             title = self._ui.procedureScenarioLineEdit.text.strip()
             scenario, plan = chosenScenario(self._ui, self._session), self._description()
             saved = self._work.run(lambda report: self._logic.save(scenario, title, plan, report))

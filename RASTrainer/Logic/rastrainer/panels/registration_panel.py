@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import qt
-import slicer
 
 from rastrainer.panels.plain_text import buttonTitle
+from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
     chosenData,
     fillTable,
@@ -23,8 +23,7 @@ from rastrainer.registration.fits import AFFINE, RIGID, SIMILARITY
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.slicer.logic.module_session import ModuleSession
-from rastrainer.slicer.logic.registration_logic import Comparison
-from rastrainer.slicer.logic.views import jumpTo
+from rastrainer.slicer.logic.registration_comparison import Comparison
 from rastrainer.slicer.scene.registration_input import Remedy
 from rastrainer.slicer.scene.trial_scene import isApplied, setApplied
 from rastrainer.slicer.settings import FIT, IS_HEAD_COLORED
@@ -40,6 +39,7 @@ class RegistrationPanel:
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         self._ui = ui
         self._logic = session.registration
+        self._slices = session.slices
         self._remedies: tuple[Remedy, ...] = ()
         self._remedyWidgets: list[Any] = []
         self._labels: tuple[str, ...] = ()
@@ -69,21 +69,21 @@ class RegistrationPanel:
 
     def excludeChosen(self) -> None:
         """Register again without the chosen fiducial."""
-        with slicer.util.tryWithErrorDisplay(_("The fiducial was not left out.")):
+        with showErrors(_("The fiducial was not left out.")):
             row = self._ui.residualsTable.currentRow()
             if row >= 0 and self._logic.shown is not None:
                 self._logic.exclude(self._logic.shown.labels[row])
 
     def localizeChosen(self) -> None:
         """Register again with the stated localization error of the chosen fiducial."""
-        with slicer.util.tryWithErrorDisplay(_("The localization error was not set.")):
+        with showErrors(_("The localization error was not set.")):
             row = self._ui.residualsTable.currentRow()
             if row >= 0 and self._logic.shown is not None:
                 self._logic.localize(self._logic.shown.labels[row], self._ui.fleSpinBox.value)
 
     def undo(self) -> None:
         "Undo the last change to the pairs."
-        with slicer.util.tryWithErrorDisplay(_("Nothing was undone.")):
+        with showErrors(_("Nothing was undone.")):
             self._logic.undo()
 
     def _showApplied(self) -> None:
@@ -101,7 +101,7 @@ class RegistrationPanel:
         self._woken.emit()
 
     def _chooseKind(self, _index: int = 0) -> None:
-        with slicer.util.tryWithErrorDisplay(_("The fit cannot be shown.")):
+        with showErrors(_("The fit cannot be shown.")):
             self._logic.chooseKind(chosenData(self._ui.kindComboBox))
 
     def _apply(self, applied: bool) -> None:
@@ -113,7 +113,7 @@ class RegistrationPanel:
         """Center the slices on the chosen fiducial."""
         row, shown = self._ui.residualsTable.currentRow(), self._logic.shown
         if shown is not None and 0 <= row < len(shown.labels):
-            jumpTo(slicer.mrmlScene, shown.fixed_mm[row])
+            self._slices.show(shown.fixed_mm[row])
         self._showButtons()
 
     def _show(self) -> None:
@@ -210,7 +210,7 @@ class RegistrationPanel:
 
     def _applying(self, remedy: Remedy) -> Callable[[], None]:
         def apply() -> None:
-            with slicer.util.tryWithErrorDisplay(_("The pairs were not changed.")):
+            with showErrors(_("The pairs were not changed.")):
                 self._logic.change(remedy.choices)
 
         return apply

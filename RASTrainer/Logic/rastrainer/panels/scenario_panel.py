@@ -10,6 +10,7 @@ import slicer
 
 from rastrainer.number_text import fixed
 from rastrainer.panels.application import askWhereToSave, fitSliceViews, fitThreeDViews
+from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.training_panel import METHODS
 from rastrainer.panels.widgets import (
     CancelableWork,
@@ -59,9 +60,11 @@ class ScenarioPanel:
             (session.link.statusChanged, self._showUsable),
             (session.training.answered, self._showMessage),
             (session.scenarioMade, self.continueWith),
-            (session.images.shown, self._frameImages),
+            (session.files.shown, self._frame),
+            (session.files.problemFound, self._showMessage),
+            (session.scenario.robotShown, fitThreeDViews),
+            (session.scenario.problemFound, self._showMessage),
             (session.sceneChanged, self._showRobotBox),
-            (session.images.problemFound, self._showMessage),
         )
         self._fill(session.settings.get(SCENARIO))
 
@@ -74,7 +77,7 @@ class ScenarioPanel:
 
     def show(self) -> None:
         """Show the chosen head and the fiducials of the chosen task."""
-        with slicer.util.tryWithErrorDisplay(_("The scenario cannot be shown."), waitCursor=True):
+        with showErrors(_("The scenario cannot be shown."), waitCursor=True):
             name = chosenData(self._ui.scenarioComboBox)
             self._logic.show(name, self._session.task)
             self._session.slices.show(self._logic.find(name).target_position)
@@ -82,7 +85,7 @@ class ScenarioPanel:
 
     def loadIntoSimulator(self) -> None:
         """Load the chosen head into the simulator."""
-        with slicer.util.tryWithErrorDisplay(_("The scenario was not loaded.")):
+        with showErrors(_("The scenario was not loaded.")):
             scenario = self._session.scenario.find(chosenData(self._ui.scenarioComboBox))
             self._showMessage(
                 _("The simulator was asked to load {title}.").format(title=scenario.title)
@@ -92,14 +95,11 @@ class ScenarioPanel:
 
     def showRobot(self, shown: bool) -> None:
         """Show the robot in the 3D view, or hide it."""
-        with slicer.util.tryWithErrorDisplay(_("The robot cannot be shown.")):
-            self._logic.setRobotShown(shown)
-            if shown:
-                fitThreeDViews()
+        self._logic.setRobotShown(shown)
 
     def useHead(self) -> None:
         """Show a model, or the skin of a volume, as the head."""
-        with slicer.util.tryWithErrorDisplay(_("This cannot be used as the head.")):
+        with showErrors(_("This cannot be used as the head.")):
             node = self._ui.headModelComboBox.currentNode()
             used = self._work.run(lambda report: self._logic.useHead(node, report))
             if used is not None:
@@ -110,7 +110,7 @@ class ScenarioPanel:
 
     def importScenario(self) -> None:
         """Add a scenario that comes as a zip file, and choose it."""
-        with slicer.util.tryWithErrorDisplay(_("The scenario was not added.")):
+        with showErrors(_("The scenario was not added.")):
             path = qt.QFileDialog.getOpenFileName(
                 slicer.util.mainWindow(), _("Add a scenario"), "", "Zip (*.zip)"
             )
@@ -126,7 +126,7 @@ class ScenarioPanel:
 
     def exportScenario(self) -> None:
         """Write the chosen scenario as a zip file."""
-        with slicer.util.tryWithErrorDisplay(_("The scenario was not saved.")):
+        with showErrors(_("The scenario was not saved.")):
             name = chosenData(self._ui.scenarioComboBox)
             keepsFace = not self._ui.removeFaceCheckBox.checked
             keepsNames = not self._ui.removeNamesCheckBox.checked
@@ -151,10 +151,13 @@ class ScenarioPanel:
         if self._session.link.status.state is LinkState.CONNECTED:
             self.loadIntoSimulator()
 
-    def _frameImages(self, _node: Any) -> None:
-        """Fit the slice views to newly loaded images, in place of the previous ones."""
-        fitSliceViews()
-        self._session.slices.showAgain()
+    def _frame(self, node: Any) -> None:
+        """Fit the views to a newly loaded head or images, in place of the previous ones."""
+        if node.IsA("vtkMRMLModelNode"):
+            fitThreeDViews()
+            return
+        fitSliceViews(self._session.work.later)
+        self._session.work.later(self._session.slices.showAgain)
 
     def _showProgress(self, step: str, share: float) -> None:
         if step:
@@ -277,7 +280,7 @@ class MethodsPanel:
     def compare(self) -> None:
         """Simulate trials on the chosen head, and show how each method registers them."""
         ui, logic = self._ui, self._session.methodComparison
-        with slicer.util.tryWithErrorDisplay(_("The methods were not compared.")):
+        with showErrors(_("The methods were not compared.")):
             scenario = chosenScenario(ui, self._session)
             trials, shift = ui.methodTrialsSpinBox.value, ui.methodShiftSpinBox.value
             self._showMessage(_("Trials are being simulated and registered."))

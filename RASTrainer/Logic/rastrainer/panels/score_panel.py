@@ -11,6 +11,7 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.number_text import fixed
 from rastrainer.panels.application import TABLES, askWhereToSave, fitThreeDViews, showTable
+from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
     CancelableWork,
     chosenData,
@@ -20,7 +21,6 @@ from rastrainer.panels.widgets import (
     setText,
     setUsable,
 )
-from rastrainer.report.report import write_report
 from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.scene.score_tables import (
@@ -38,7 +38,6 @@ from rastrainer.slicer.translation import _
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.outcomes import short_mode_title, task_title
-from rastrainer.study.study_data import read_study_data
 from rastrainer.trial.analysis import TrialAnalysis
 from rastrainer.trial.ctps import CTPS_WARNING
 
@@ -79,7 +78,7 @@ class ScorePanel:
         if not self._ui.showTablesButton.checked:
             self._session.layout.giveBack(TABLES)
             return
-        with slicer.util.tryWithErrorDisplay(_("The tables cannot be shown.")):
+        with showErrors(_("The tables cannot be shown.")):
             trial = self._trial()
             if trial is None:
                 return
@@ -95,7 +94,7 @@ class ScorePanel:
         """Write all trials of the study as a table."""
         path = askWhereToSave(_("Export all trials"), "trials.csv", "CSV (*.csv)")
         if path is not None:
-            with slicer.util.tryWithErrorDisplay(_("The trials were not exported.")):
+            with showErrors(_("The trials were not exported.")):
                 written = self._work.run(
                     lambda report: self._trainees.exportHistories(path, report)
                 )
@@ -111,7 +110,7 @@ class ScorePanel:
         caption = _("Folder for the report")
         folder = qt.QFileDialog.getExistingDirectory(slicer.util.mainWindow(), caption)
         if folder:
-            with slicer.util.tryWithErrorDisplay(_("The report was not written.")):
+            with showErrors(_("The report was not written.")):
                 study = self._session.studyPlace
                 page = self._work.run(
                     lambda report: inBackground(
@@ -124,14 +123,14 @@ class ScorePanel:
 
     def replay(self) -> None:
         """Show the trial again in the 3D view."""
-        with slicer.util.tryWithErrorDisplay(_("The trial is not shown.")):
+        with showErrors(_("The trial is not shown.")):
             trial = self._chosenTrial()
             self._work.run(lambda report: self._session.replay.show(trial, report))
             fitThreeDViews()
 
     def replayWorstTouch(self) -> None:
         """Show again how the worst touch came about."""
-        with slicer.util.tryWithErrorDisplay(_("The touch is not shown.")):
+        with showErrors(_("The touch is not shown.")):
             trial = self._chosenTrial()
             self._work.run(lambda report: self._session.replay.showWorstTouch(trial, report))
 
@@ -288,6 +287,9 @@ class ScorePanel:
 
 def _reportOn(study: StudyPlace, folder: Path) -> Path:
     """Write the report on a study into a folder and return its page."""
+    from rastrainer.report.report import write_report
+    from rastrainer.study.study_data import read_study_data
+
     return write_report(read_study_data(study), folder).page
 
 

@@ -7,6 +7,7 @@ from typing import Any
 import slicer
 
 from rastrainer.panels.plain_text import toolTip
+from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import connectAsPressed, keepPath, keepText, setText, setUsable
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
@@ -44,7 +45,7 @@ class SetupPanel:
 
     def setUp(self) -> None:
         """Start the set-up."""
-        with slicer.util.tryWithErrorDisplay(_("The simulator could not be set up.")):
+        with showErrors(_("The simulator could not be set up.")):
             self._ui.setupLogEdit.clear()
             self._simulator.startSetup(
                 self._ui.indexLineEdit.text, self._ui.wheelsPathLineEdit.currentPath
@@ -52,7 +53,7 @@ class SetupPanel:
 
     def remove(self) -> None:
         """Remove what was set up, after asking."""
-        with slicer.util.tryWithErrorDisplay(_("The simulator could not be removed.")):
+        with showErrors(_("The simulator could not be removed.")):
             question = _(
                 "Remove the simulator, the folder {folder}, from this computer? Trials, studies "
                 "and scenarios stay. It can be set up again at any time."

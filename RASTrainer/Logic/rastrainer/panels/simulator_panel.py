@@ -9,6 +9,7 @@ import slicer
 
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.setup_panel import costSentence
+from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
     LINK_COLORS,
     connectAsPressed,
@@ -80,23 +81,23 @@ class SimulatorPanel:
 
     def stopSimulator(self) -> None:
         """End the simulator that was started here."""
-        with slicer.util.tryWithErrorDisplay(_("The simulator could not be stopped.")):
+        with showErrors(_("The simulator could not be stopped.")):
             self._simulator.stop()
 
     def connect(self) -> None:
         """Connect to the simulator, unless a connection is already being made."""
-        with slicer.util.tryWithErrorDisplay(_("The connection could not be started.")):
+        with showErrors(_("The connection could not be started.")):
             if self._isOff():
                 self._link.connectTo(self._ui.hostLineEdit.text, self._ui.portSpinBox.value)
 
     def disconnect(self) -> None:
         """Disconnect from the simulator."""
-        with slicer.util.tryWithErrorDisplay(_("The connection could not be closed.")):
+        with showErrors(_("The connection could not be closed.")):
             self._link.disconnect()
 
     def testConnection(self) -> None:
         """Check once whether a simulator answers, and show the result."""
-        with slicer.util.tryWithErrorDisplay(_("The connection could not be tested.")):
+        with showErrors(_("The connection could not be tested.")):
             host, port = self._ui.hostLineEdit.text, self._ui.portSpinBox.value
             self._showWords(self._link.testConnection(host, port, self._showTest))
 
@@ -110,7 +111,7 @@ class SimulatorPanel:
 
     def _start(self) -> None:
         ui = self._ui
-        with slicer.util.tryWithErrorDisplay(_("The simulator could not be started.")):
+        with showErrors(_("The simulator could not be started.")):
             self._simulator.start(
                 freePort(ui.portSpinBox.value),
                 hasWindow=ui.windowCheckBox.checked,
@@ -202,12 +203,12 @@ class RunningSimulatorPanel:
 
     def connectToIt(self) -> None:
         """Connect to the simulator that is already running."""
-        with slicer.util.tryWithErrorDisplay(_("The connection could not be started.")):
+        with showErrors(_("The connection could not be started.")):
             self._running.connect()
 
     def endIt(self) -> None:
         """End the simulator that is already running."""
-        with slicer.util.tryWithErrorDisplay(_("The simulator could not be ended.")):
+        with showErrors(_("The simulator could not be ended.")):
             self._running.end()
 
     def _show(self) -> None:

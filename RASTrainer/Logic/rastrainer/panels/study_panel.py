@@ -13,6 +13,7 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.panels.plain_text import toolTip
+from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
     chosenData,
     fillTable,
@@ -67,7 +68,7 @@ class StudyPanel:
 
     def begin(self) -> None:
         """Make the chosen file the protocol of the study, after asking."""
-        with slicer.util.tryWithErrorDisplay(_("The study was not started.")):
+        with showErrors(_("The study was not started.")):
             question = _(
                 "Begin the study with this protocol? A study keeps its protocol permanently; "
                 "another protocol needs a new study file."
@@ -77,17 +78,17 @@ class StudyPanel:
 
     def enroll(self) -> None:
         """Enroll the chosen trainee in the study."""
-        with slicer.util.tryWithErrorDisplay(_("The trainee was not enrolled.")):
+        with showErrors(_("The trainee was not enrolled.")):
             self._logic.enroll()
 
     def startStep(self) -> None:
         """Start the trial that comes next."""
-        with slicer.util.tryWithErrorDisplay(_("The step was not started.")):
+        with showErrors(_("The step was not started.")):
             self._logic.startStep()
 
     def saveAnswers(self) -> None:
         """Store the answers to the questionnaire."""
-        with slicer.util.tryWithErrorDisplay(_("The answers were not saved.")):
+        with showErrors(_("The answers were not saved.")):
             self._logic.answer(self._form.answers())
 
     def skipStep(self) -> None:
@@ -97,13 +98,13 @@ class StudyPanel:
         if step is not None:
             # By its name: while the dialog is open, the step may be done.
             skip = partial(self._logic.skipStep, step.name)
-            with slicer.util.tryWithErrorDisplay(_("The step was not skipped.")):
+            with showErrors(_("The step was not skipped.")):
                 self._withReason(_("Skip the step"), question, skip)
 
     def explainRepeat(self) -> None:
         """Say why an aborted trial is played again; only then can it be started."""
         question = _("Why is the aborted trial repeated? The reason goes into the report.")
-        with slicer.util.tryWithErrorDisplay(_("The reason was not saved.")):
+        with showErrors(_("The reason was not saved.")):
             self._withReason(_("Repeat the step"), question, self._logic.explainRepeat)
 
     def _withReason(self, title: str, question: str, do: Callable[[str], None]) -> None:

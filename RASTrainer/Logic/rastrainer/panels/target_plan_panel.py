@@ -9,6 +9,7 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.number_text import fixed
 from rastrainer.panels.plain_text import shortName
+from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
     GRAY,
     GREEN,
@@ -64,34 +65,34 @@ class PlanPanel:
 
     def placeTarget(self) -> None:
         """Let the next click in a view place a target, beside those that are placed."""
-        with slicer.util.tryWithErrorDisplay(_("No target can be placed.")):
+        with showErrors(_("No target can be placed.")):
             self._place(self._logic.points.newTarget())
 
     def placeTrajectory(self) -> None:
         """Let the next two clicks place a trajectory, from its entry to the target."""
-        with slicer.util.tryWithErrorDisplay(_("No trajectory can be placed.")):
+        with showErrors(_("No trajectory can be placed.")):
             self._place(self._logic.points.newTrajectory())
 
     def removePoint(self) -> None:
         """Remove the chosen target, or the last point of a trajectory."""
-        with slicer.util.tryWithErrorDisplay(_("The point was not removed.")):
+        with showErrors(_("The point was not removed.")):
             self._logic.points.remove(self._ui.planComboBox.currentNode(), self._row())
             self.showState()
 
     def undo(self) -> None:
         """Undo the last placing or removal."""
-        with slicer.util.tryWithErrorDisplay(_("Nothing was undone.")):
+        with showErrors(_("Nothing was undone.")):
             self._logic.points.undo()
             self.showState()
 
     def send(self) -> None:
         """Show the plan in the simulator and ask whether the robot can carry it out."""
-        with slicer.util.tryWithErrorDisplay(_("The plan was not sent.")):
+        with showErrors(_("The plan was not sent.")):
             self._logic.send(self._ui.planComboBox.currentNode(), self._row())
 
     def save(self) -> None:
         """Copy the scenario chosen above with this plan and use the copy."""
-        with slicer.util.tryWithErrorDisplay(_("The plan was not saved.")):
+        with showErrors(_("The plan was not saved.")):
             ui = self._ui
             scenario = self._keeping.run(
                 lambda report: self._session.scenarioFiles.savePlan(

@@ -11,6 +11,7 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.panels.application import CALIBRATION, CURVE, askWhereToSave, showChart
 from rastrainer.panels.plain_text import toolTip
+from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
     CancelableWork,
     chosenData,
@@ -41,7 +42,7 @@ class TraineesPanel:
         self._ui = ui
         self._session = session
         self._logic = session.trainees
-        self._isProblemShown = False
+        self._isStateShown = False
         self._isErasing = False
         self._deletion = CancelableWork(
             lambda sentence: self._showMessage("{text}", text=sentence),
@@ -76,19 +77,45 @@ class TraineesPanel:
     def chooseStudy(self, path: str) -> None:
         """Continue with the study of another file, once its name is complete."""
         isFile = isinstance(self._session.studyPlace, Path)
-        if not isFile or not path.endswith(".db") or Path(path) == self._session.studyFile:
+        if not isFile or Path(path) == self._session.studyFile:
             return
-        with slicer.util.tryWithErrorDisplay(_("The study cannot be used.")):
+        if not path.endswith(".db"):
+            self._showNoStudy(Path(path))
+            return
+        folder = Path(path).parent
+        question = _("There is no folder {folder}. Make it, for a new study?").format(folder=folder)
+        if not folder.is_dir() and not slicer.util.confirmYesNoDisplay(
+            toolTip(question), _("Choose a study")
+        ):
+            self._showPlace()
+            return
+        with showErrors(_("The study cannot be used.")):
             try:
                 self._session.chooseStudy(Path(path))
             finally:
                 self._showPlace()
             self._session.settings.set(STUDY, path)
 
+    def _showNoStudy(self, path: Path) -> None:
+        """Say why what was chosen is no study; the beginning of a path is none either, yet."""
+        sentence = ""
+        if path.is_dir():
+            sentence = _(
+                "{path} is a folder: choose the file of a study in it, or enter the name of a new "
+                "one, such as {example}. Until then, {study} stays open."
+            )
+        elif path.is_file():
+            sentence = _(
+                "{path} is no study, whose name ends with .db. Until one is chosen, {study} stays "
+                "open."
+            )
+        example, study = path / "study.db", self._session.studyFile
+        self._showMessage(sentence, isState=True, path=path, example=example, study=study)
+
     def chooseStudyAddress(self) -> None:
         """Continue with the study at another address; without one, with that of the file."""
         session, text = self._session, self._ui.studyAddressLineEdit.text.strip()
-        with slicer.util.tryWithErrorDisplay(_("The study cannot be used.")):
+        with showErrors(_("The study cannot be used.")):
             try:
                 place = study_place(text or session.studyFile)
                 if text and isinstance(place, Path):
@@ -115,14 +142,14 @@ class TraineesPanel:
     def createTrainee(self) -> None:
         """Add a trainee and choose them."""
         ui = self._ui
-        with slicer.util.tryWithErrorDisplay(_("The trainee was not created.")):
+        with showErrors(_("The trainee was not created.")):
             self._logic.create(ui.pseudonymLineEdit.text, ui.newConsentCheckBox.checked)
             ui.pseudonymLineEdit.text = ""
             ui.newConsentCheckBox.checked = False
 
     def setConsent(self, consent: bool) -> None:
         """Note whether the chosen trainee consents to research."""
-        with slicer.util.tryWithErrorDisplay(_("The consent was not saved.")):
+        with showErrors(_("The consent was not saved.")):
             try:
                 self._logic.setConsent(consent)
             except InputError:
@@ -131,13 +158,13 @@ class TraineesPanel:
 
     def archive(self) -> None:
         """Archive the chosen trainee, who stays in view."""
-        with slicer.util.tryWithErrorDisplay(_("The trainee was not archived.")):
+        with showErrors(_("The trainee was not archived.")):
             self._ui.archivedCheckBox.checked = True
             self._logic.setArchived(True)
 
     def unarchive(self) -> None:
         """Show the chosen trainee in the list again, who was archived."""
-        with slicer.util.tryWithErrorDisplay(_("The trainee was not restored.")):
+        with showErrors(_("The trainee was not restored.")):
             self._logic.setArchived(False)
 
     def exportTrainee(self) -> None:
@@ -145,7 +172,7 @@ class TraineesPanel:
         name = f"{self._logic.chosen}.json"
         path = askWhereToSave(_("Export the trainee"), name, "JSON (*.json)")
         if path is not None:
-            with slicer.util.tryWithErrorDisplay(_("The trainee was not exported.")):
+            with showErrors(_("The trainee was not exported.")):
                 count = self._logic.export(path)
                 self._showMessage(
                     _("{count} trials were written to {path}."), count=count, path=path
@@ -156,7 +183,7 @@ class TraineesPanel:
         name = f"{self._logic.chosen}.csv"
         path = askWhereToSave(_("Export the history"), name, "CSV (*.csv)")
         if path is not None:
-            with slicer.util.tryWithErrorDisplay(_("The history was not exported.")):
+            with showErrors(_("The history was not exported.")):
                 count = self._logic.exportHistory(path)
                 self._showMessage(
                     _("{count} trials were written to {path}."), count=count, path=path
@@ -164,7 +191,7 @@ class TraineesPanel:
 
     def deleteTrainee(self) -> None:
         """Delete the chosen trainee for good, after asking."""
-        with slicer.util.tryWithErrorDisplay(_("The trainee was not deleted.")):
+        with showErrors(_("The trainee was not deleted.")):
             name, trials = self._logic.chosen, len(self._logic.history())
             question = _(
                 "Delete {name} with {trials} trials from the study and from the journals on this "
@@ -211,7 +238,7 @@ class TraineesPanel:
         if not self._ui.learningCurveButton.checked:
             self._session.layout.giveBack(CURVE)
             return
-        with slicer.util.tryWithErrorDisplay(_("The learning curve cannot be shown.")):
+        with showErrors(_("The learning curve cannot be shown.")):
             trials = self._logic.history()
             chart = showLearningCurve(slicer.mrmlScene, self._logic.chosen, trials)
             showChart(self._session.layout, chart)
@@ -221,7 +248,7 @@ class TraineesPanel:
         if not self._ui.calibrationButton.checked:
             self._session.layout.giveBack(CALIBRATION)
             return
-        with slicer.util.tryWithErrorDisplay(_("The target errors cannot be shown.")):
+        with showErrors(_("The target errors cannot be shown.")):
             found = self._logic.calibration()
             chart = showCalibration(slicer.mrmlScene, found)
             showChart(self._session.layout, chart, CALIBRATION)
@@ -248,11 +275,8 @@ class TraineesPanel:
             trainee, history = self._logic.chosenTrainee(), self._logic.history()
             aborted = self._logic.aborted()
         except InputError as error:
-            self._showMessage("{error}", error=error)
-            self._isProblemShown = True
+            self._showMessage("{error}", isState=True, error=error)
             return
-        if self._isProblemShown:
-            self._showMessage("")
         entries = [(_("Choose a trainee"), ""), *((_entry(t), t.pseudonym) for t in trainees)]
         ui.pseudonymLineEdit.placeholderText = self._logic.study.next_pseudonym()
         fillComboBox(ui.traineeComboBox, entries, trainee.pseudonym if trainee else "")
@@ -277,21 +301,24 @@ class TraineesPanel:
         if trainee is not None:
             self._showMessage(
                 _("{name}, since {day}. Trials: {count}. {aborted}"),
+                isState=True,
                 name=trainee.pseudonym,
                 count=len(history),
                 day=day_of(trainee.created_utc),
                 aborted=_aborted(aborted),
             )
-        elif not ui.traineeText.text:
-            self._showMessage(_("Choose who is training, or create a new trainee."))
+        elif self._isStateShown or not ui.traineeText.text:
+            sentence = _("Choose who is training, or create a new trainee.")
+            self._showMessage(sentence, isState=True)
         fillTable(
             ui.historyTable,
             (_historyRow(number, trial) for number, trial in enumerate(history, start=1)),
             [trial.record.started_utc for trial in history],
         )
 
-    def _showMessage(self, sentence: str, **values: Any) -> None:
-        self._isProblemShown = False
+    def _showMessage(self, sentence: str, isState: bool = False, **values: Any) -> None:
+        """Show a sentence; one about the present state, until there is another state."""
+        self._isStateShown = isState
         setText(self._ui.traineeText, sentence.format(**values).rstrip())
 
 

@@ -8,6 +8,7 @@ import slicer
 
 from rastrainer.number_text import fixed
 from rastrainer.panels.plain_text import buttonTitle, shortName, toolTip
+from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
     GRAY,
     GREEN,
@@ -119,17 +120,17 @@ class TrainingPanel:
 
     def pause(self) -> None:
         """Pause the trial."""
-        with slicer.util.tryWithErrorDisplay(_("The trial was not paused.")):
+        with showErrors(_("The trial was not paused.")):
             self._logic.pause()
 
     def resume(self) -> None:
         """Resume the trial."""
-        with slicer.util.tryWithErrorDisplay(_("The trial was not resumed.")):
+        with showErrors(_("The trial was not resumed.")):
             self._logic.resume()
 
     def abort(self) -> None:
         """End the trial without registering it, after asking."""
-        with slicer.util.tryWithErrorDisplay(_("The trial was not aborted.")):
+        with showErrors(_("The trial was not aborted.")):
             trial = self._logic.progress
             question = _("Abort the trial of {name}? Its touches will not be registered.").format(
                 name=shortName(trial.trainee)
@@ -200,7 +201,7 @@ class TrainingPanel:
             setText(self._ui.elapsedText, _clock(self._logic.progress.elapsedS))
 
     def _start(self, task: str, procedure: str = "", method: str = "") -> None:
-        with slicer.util.tryWithErrorDisplay(_("The trial was not started.")):
+        with showErrors(_("The trial was not started.")):
             mode = chosenData(self._ui.modeComboBox)
             isTutorialFirst = self._ui.tutorialCheckBox.checked
             self._session.study.startTrial(task, mode, isTutorialFirst, procedure, method)

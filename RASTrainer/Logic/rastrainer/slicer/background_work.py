@@ -26,6 +26,15 @@ from rastrainer.work_progress import Progress
 
 T = TypeVar("T")
 
+CallLater = Callable[[Callable[[], object]], None]
+"""Takes functions, each to be called in a later turn; see `BackgroundWork.later`."""
+
+
+def callNow(function: Callable[[], object]) -> None:
+    """Call a function at once, where there are no turns."""
+    function()
+
+
 TIME_S = 0.02
 """How long the main thread waits for a worker at a time."""
 PERIOD_MS = 40
@@ -133,7 +142,7 @@ class BackgroundWork:
     def __init__(self) -> None:
         self.began = Signal()
         self._waiting: deque[_Waiting] = deque()
-        self._slices: deque[Callable[[], None]] = deque()
+        self._slices: deque[Callable[[], object]] = deque()
         self._underWay: tuple[Job[Any], _Waiting] | None = None
         self._isClosed = False
         self._isLeft = threading.Event()
@@ -165,7 +174,7 @@ class BackgroundWork:
         if not wasBusy:
             self.began.emit()
 
-    def later(self, slice_: Callable[[], None]) -> None:
+    def later(self, slice_: Callable[[], object]) -> None:
         """Have a later `process` call a function on the main thread, one each time."""
         if self._isClosed:
             return

@@ -135,10 +135,9 @@ def _add_series(chart: Any, series: Any) -> None:
     table = series.GetTableNode().GetTable() if series and series.GetTableNode() else None
     if table is None or table.GetNumberOfRows() < 1:
         return
+    # As Slicer does, also for a series without a line: VTK logs an error where it has one point.
     isBar = series.GetPlotType() == series.PlotTypeScatterBar
-    # VTK complains about a line of one point.
-    curve = vtk.vtkChart.LINE if table.GetNumberOfRows() > 1 else vtk.vtkChart.POINTS
-    plot = chart.AddPlot(vtk.vtkChart.BAR if isBar else curve)
+    plot = chart.AddPlot(vtk.vtkChart.BAR if isBar else vtk.vtkChart.LINE)
     # A column by its name: VTK raises nothing for a missing one, and draws nothing.
     names = [table.GetColumnName(column) for column in range(table.GetNumberOfColumns())]
     horizontal, vertical = series.GetXColumnName(), series.GetYColumnName()

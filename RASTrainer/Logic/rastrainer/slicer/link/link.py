@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from rastrainer.command_arguments import check_arguments
@@ -100,6 +100,7 @@ class Link:
         self._pending = PendingCommands(self._guard, clock, self._processSoon)
         self._posesAreWanted = False
         self._preparedConnector: Any | None = None
+        self._preparation: Iterator[Any] = iter(())
         self._status = self._connection.status
 
     @property
@@ -210,8 +211,9 @@ class Link:
             self._sendHello(isFirst=True)
         if self.connector is not self._preparedConnector:
             self._preparedConnector = self.connector
-            if self.connector is not None:
-                prepareNodes(self._scene)
+            self._preparation = iter(() if self.connector is None else prepareNodes(self._scene))
+        # Each new node takes the panels and trees of Slicer long.
+        next(self._preparation, None)
         self._emitStatus()
         self._pending.poll(self.isOpen, self._transmit)
         if self.connector is not None:

@@ -19,6 +19,7 @@ class Peer(str, Enum):
     SIMULATOR = "simulator"
     NOBODY = "nobody"
     UNKNOWN_HOST = "unknown host"
+    WITHOUT_IPV4 = "host without IPv4 address"
     SILENT = "silent"
     WEB_PAGE = "web page"
     ENCRYPTED = "encrypted"
@@ -47,6 +48,10 @@ def sentenceOf(peer: Peer, address: str) -> str:
         return _("No simulator answers at {address}.").format(address=address)
     if peer is Peer.UNKNOWN_HOST:
         return _("There is no computer by that name: {address}.").format(address=address)
+    if peer is Peer.WITHOUT_IPV4:
+        return _("Slicer connects by IPv4 only, and {address} is an IPv6 address.").format(
+            address=address
+        )
     if peer is Peer.SIMULATOR:
         return _("A RASTrainer simulator answers at {address}.").format(address=address)
     if peer is Peer.SILENT:
@@ -65,6 +70,8 @@ def remedyOf(peer: Peer) -> str:
         return _("Start the simulator, or correct the host and port.")
     if peer is Peer.UNKNOWN_HOST:
         return _("Correct the host, or enter its IPv4 address, such as 127.0.0.1.")
+    if peer is Peer.WITHOUT_IPV4:
+        return _("Enter its IPv4 address; this computer's own is 127.0.0.1.")
     if peer is Peer.SIMULATOR:
         return ""
     return _(
@@ -169,7 +176,7 @@ def notInstalled() -> LinkStatus:
 def judgeFinding(finding: ProbeResult, address: str) -> LinkStatus:
     """Return in words who answers at an address where no connection is wanted."""
     if finding.peer is not Peer.SIMULATOR:
-        isAbsent = finding.peer in (Peer.NOBODY, Peer.UNKNOWN_HOST)
+        isAbsent = finding.peer in (Peer.NOBODY, Peer.UNKNOWN_HOST, Peer.WITHOUT_IPV4)
         return LinkStatus(
             LinkState.ABSENT if isAbsent else LinkState.OTHER_PROGRAM,
             sentenceOf(finding.peer, address),

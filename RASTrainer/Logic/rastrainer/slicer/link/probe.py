@@ -99,11 +99,15 @@ class AddressLookup:
     """One look-up; only names need one, and a thread for it.
 
     OpenIGTLink's client speaks IPv4 alone, so other addresses are useless.
+
+    Attributes:
+        isOnlyIpv6: whether the host has none but IPv6 addresses.
     """
 
     def __init__(self, host: str) -> None:
         self._host = host
         self._ip: str | None = _numericAddress(host)
+        self.isOnlyIpv6 = self._ip == ""
         self._thread: threading.Thread | None = None
         if self._ip is None:
             self._thread = threading.Thread(target=self._lookUp, daemon=True)
@@ -116,11 +120,9 @@ class AddressLookup:
         return self._ip
 
     def _lookUp(self) -> None:
-        try:
-            found = socket.getaddrinfo(self._host, None, socket.AF_INET, socket.SOCK_STREAM)
-            self._ip = str(found[0][4][0])
-        except (OSError, UnicodeError):
-            self._ip = ""
+        ip = _findAddress(self._host, socket.AF_INET)
+        self.isOnlyIpv6 = not ip and bool(_findAddress(self._host, socket.AF_INET6))
+        self._ip = ip
 
 
 def lookUp(host: str) -> AddressLookup:
@@ -131,15 +133,26 @@ def lookUp(host: str) -> AddressLookup:
     return lookup
 
 
+def _findAddress(host: str, family: socket.AddressFamily) -> str:
+    """Return an address of a host, empty where it has none of this family."""
+    try:
+        return str(socket.getaddrinfo(host, None, family, socket.SOCK_STREAM)[0][4][0])
+    except (OSError, UnicodeError):
+        return ""
+
+
 def _numericAddress(host: str) -> str | None:
     """Return the IPv4 address that needs no look-up, empty for an IPv6 one, else None."""
     if host.lower() == "localhost":
         return "127.0.0.1"
     try:
-        address = ipaddress.ip_address(host)
+        # As in `[::1]`, which separates an address of IPv6 from a port.
+        address = ipaddress.ip_address(host.removeprefix("[").removesuffix("]"))
     except ValueError:
         return None
-    return str(address) if address.version == 4 else ""
+    if isinstance(address, ipaddress.IPv6Address):
+        return str(address.ipv4_mapped or "")
+    return str(address)
 
 
 LOOKUP_S = 5.0
@@ -241,7 +254,9 @@ class Probe:
     def _findAddress(self) -> Peer | None:
         ip = self._lookup.process()
         self._ip = ip or ""
-        return Peer.UNKNOWN_HOST if ip == "" else None
+        if ip != "":
+            return None
+        return Peer.WITHOUT_IPV4 if self._lookup.isOnlyIpv6 else Peer.UNKNOWN_HOST
 
     def _connect(self) -> Peer | None:
         self._deadline = self._clock() + ANSWER_S

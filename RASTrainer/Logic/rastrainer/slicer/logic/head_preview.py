@@ -8,7 +8,7 @@ from rastrainer.errors import InputError
 from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.program.child_process import Run
 from rastrainer.slicer.scene.nodes import Role, findNode, findOrAddNode
-from rastrainer.slicer.scene.scenario_nodes import SKIN_COLOR, trianglesPolyData
+from rastrainer.slicer.scene.scenario_nodes import SKIN_COLOR, meshPolyData
 from rastrainer.slicer.translation import _
 from rastrainer.work_progress import Progress
 
@@ -79,7 +79,7 @@ class HeadPreview:
         node.SetAttribute(PREVIEWED_ATTRIBUTE, volumeNode.GetID())
         node.SetAttribute(SETTINGS_ATTRIBUTE, repr(settings))
         model = self._node("vtkMRMLModelNode", Role.HEAD_PREVIEW, "Head as found")
-        model.SetAndObservePolyData(trianglesPolyData(skin.vertices, skin.triangles))
+        model.SetAndObservePolyData(meshPolyData(skin))
         model.GetDisplayNode().SetColor(SKIN_COLOR)
         self._setVisible(True)
         return warnings

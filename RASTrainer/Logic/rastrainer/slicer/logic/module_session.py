@@ -37,7 +37,7 @@ from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.slicer.logic.views import BorrowedLayout, SliceFollower
 from rastrainer.slicer.program.child_process import OwnProcess
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
-from rastrainer.slicer.scene.scenario_nodes import VolumeLoader
+from rastrainer.slicer.scene.scenario_nodes import scenarioLoader
 from rastrainer.slicer.scene.scene_watch import SceneWatch
 from rastrainer.slicer.scene.trial_scene import followPlacement
 from rastrainer.slicer.settings import Settings
@@ -63,7 +63,7 @@ class ModuleSession:
         simulator: its set-up and process.
         trainees: who trains.
         scenario: head, tasks and robot in the scene.
-        images: loads the images of the displayed scenario.
+        files: loads meshes and images of the displayed scenario.
         scenarioMaker: makes scenarios of volumes.
         scenarioFiles: takes and gives scenarios as files, and keeps plans in them.
         training: running trials.
@@ -133,12 +133,12 @@ class ModuleSession:
         setup = SimulatorSetup(places.python, places.simulator, places.package)
         self.simulator = SimulatorLogic(self.link, setup, places.records, self.settings)
         self.trainees = TraineeLogic(self.openStudy, places.records, self.openStudyPatiently)
-        self.scenario = ScenarioLogic(scene, cache, places.assets / ROBOT, run)
-        self.images = VolumeLoader(scene, self.work)
+        self.scenario = ScenarioLogic(scene, cache, places.assets / ROBOT, run, self.work)
+        self.files = scenarioLoader(scene, self.work)
         self.scenarioMaker = ScenarioMaker(scene, self.simulator, cache, places.library, run)
         self.scenarioFiles = ScenarioFiles(self.simulator, cache, places.library)
         self.training = TrainingLogic(scene, self.link, cache.find)
-        self.slices = SliceFollower(scene, self.training)
+        self.slices = SliceFollower(scene, self.training, later=self.work.later)
         self.study = StudyLogic(self.trainees, self.training, self.link)
         self.curriculum = CurriculumLogic(self.trainees, self.link)
         self.trials = TrialLogic(
@@ -269,7 +269,7 @@ class ModuleSession:
         self.registration.process()
         self.traces.process()
         self.replay.process()
-        self.images.process()
+        self.files.process()
         followPlacement(self._scene)
         self.slices.process()
         self.layout.process()
@@ -297,6 +297,7 @@ class ModuleSession:
         self.landmarks.points.forget()
         self.replay.forgetScene()
         self.slices.forgetScene()
+        self.scenario.forgetScene()
         self.registration.forgetScene()
         self.traces.forgetScene()
         self.training.forgetScene()

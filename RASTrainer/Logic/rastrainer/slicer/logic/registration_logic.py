@@ -2,33 +2,35 @@
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
+import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.registration.fits import RIGID
-from rastrainer.registration.localization_error import LocalizationError
-from rastrainer.registration.registration import Registration, register_all_kinds
-from rastrainer.registration.target_error import TargetError, target_error
+from rastrainer.registration.registration import Registration
+from rastrainer.registration.target_error import TargetError
 from rastrainer.slicer.background_work import BackgroundWork
+from rastrainer.slicer.logic.registration_comparison import (
+    Comparison,
+    ComparisonRequest,
+    compareFits,
+)
 from rastrainer.slicer.scene.error_colors import (
     clearResidualArrows,
     colorHead,
     removeHeadColors,
     showResidualArrows,
 )
-from rastrainer.slicer.scene.nodes import Role, findNode, localPoints, worldPoints
+from rastrainer.slicer.scene.nodes import Role, findNode, localPoints, surfaceOf, worldPoints
 from rastrainer.slicer.scene.registration_input import (
     Choices,
     Pairs,
-    Remedy,
-    SkinNormals,
+    SkinReader,
     readPairs,
-    remedies,
     snapshot,
 )
 from rastrainer.slicer.scene.scenario_nodes import TASK_ATTRIBUTE
@@ -37,34 +39,15 @@ from rastrainer.slicer.scene.trial_scene import checkSameTask, showRegistration
 from rastrainer.slicer.signal import Signal
 
 
-@dataclass(frozen=True)
-class Comparison:
-    """The fits of the same pairs side by side.
-
-    Attributes:
-        pairs: what was registered.
-        fits: by kind; those that the pairs allow, rigid always.
-        errors: by kind, what to expect at the target; those that are known.
-        remedies: the warnings, each with what one click can do.
-    """
-
-    pairs: Pairs
-    fits: Mapping[str, Registration]
-    errors: Mapping[str, TargetError]
-    remedies: tuple[Remedy, ...]
-
-
 class RegistrationLogic:
     """Registers two lists of the scene whenever one of them changes.
 
     Nodes are searched in every turn: any of them may be deleted at any time.
 
     Attributes:
-        changed: emits nothing, whenever `comparison` or `problem` has changed.
+        changed: emits nothing, whenever another `comparison` or `problem` is shown.
         comparison: the present fits; None where there are none.
         problem: why there are none, a sentence; empty otherwise.
-        leaveOneOut: of the shown fit, how far each touch lies from where the other pairs put it,
-            mm; None if they are too few.
         kind: of the fit that the transform and the arrows show.
         isHeadColored: the head shows the target error to expect.
     """
@@ -72,13 +55,12 @@ class RegistrationLogic:
     def __init__(self, scene: Any, work: BackgroundWork | None = None) -> None:
         """Without `work` everything is done at once.
 
-        With it, a head that is new is prepared in the background, and what follows from a changed
-        list is computed in one turn and shown in the next, as both take long.
+        With it, fits are computed in the background, and what they change in the scene is shown
+        in several turns, as each takes Slicer's views long.
         """
         self.changed = Signal()
         self.comparison: Comparison | None = None
         self.problem = ""
-        self.leaveOneOut: np.ndarray | None = None
         self.kind = RIGID
         self.isHeadColored = False
         self._scene = scene
@@ -88,8 +70,8 @@ class RegistrationLogic:
         self._targetId = ""
         self._history: list[Choices] = [Choices()]
         self._seen: tuple = ()
-        self._normals = SkinNormals(work)
-        self._normals.found.connect(self._compute)
+        self._skins = SkinReader()
+        self._request: ComparisonRequest | None = None
 
     @property
     def choices(self) -> Choices:
@@ -104,9 +86,17 @@ class RegistrationLogic:
     @property
     def shown(self) -> Registration | None:
         """The fit of the chosen kind; the rigid one where the pairs do not allow that kind."""
+        return None if self.comparison is None else self.comparison.fitOf(self.kind)
+
+    @property
+    def leaveOneOut(self) -> np.ndarray | None:
+        """How far each touch lies from where the other pairs put it in the shown fit, mm, or None.
+
+        None if they are too few.
+        """
         if self.comparison is None:
             return None
-        return self.comparison.fits.get(self.kind, self.comparison.fits[RIGID])
+        return self.comparison.leaveOneOut.get(self.comparison.fitOf(self.kind).kind)
 
     def moving(self) -> Any | None:
         """Return the chosen list of moving points; the touches where none is chosen."""
@@ -149,7 +139,10 @@ class RegistrationLogic:
     def setHeadColored(self, colored: bool) -> None:
         """Color the head by the target error to expect, or not."""
         self.isHeadColored = colored
-        self._colorHead()
+        if colored:
+            self._compute()
+        else:
+            self._colorHead(None)
 
     def change(self, choices: Choices) -> None:
         """Register the pairs with these changes; `undo` reverts them."""
@@ -183,81 +176,115 @@ class RegistrationLogic:
         self._compute()
 
     def process(self) -> None:
-        """Register again if a list or the target has changed."""
-        seen = self._snapshot()
-        if seen == self._seen:
-            return
-        work = self._work
-        if work is None:
+        """Register again if a list, the target or the head has changed."""
+        if self._snapshot() != self._seen:
             self._compute()
-            return
-        self._seen = seen
-        work.later(lambda: self._registerNow(work))
 
     def _snapshot(self) -> tuple:
         moving, fixed = self.moving(), self.fixed()
         tasks = [node and node.GetAttribute(TASK_ATTRIBUTE) for node in (moving, fixed)]
-        return snapshot(moving, localPoints), snapshot(fixed), snapshot(self.target()), *tasks
+        lists = snapshot(moving, localPoints), snapshot(fixed), snapshot(self.target())
+        return *lists, *tasks, surfaceOf(self._head())
 
     def _compute(self) -> None:
-        self._register()
-        self._show()
-
-    def _register(self) -> None:
-        self.comparison, self.problem, self.leaveOneOut = None, "", None
+        """Register the lists as they are now; what is being computed is outdated."""
         moving, fixed = self.moving(), self.fixed()
         if moving is None or moving.GetNumberOfControlPoints() == 0:
             self.reset()
         # The key of the present registration, so that lists that change back count as changed.
         self._seen = self._snapshot()
+        self._request = None
+        self._prepareSkin(fixed)
         try:
             checkSameTask(moving, fixed)
-            pairs = readPairs(moving, fixed, self.choices)
-            self.comparison = self._compare(pairs)
+            request = self._requestOf(readPairs(moving, fixed, self.choices))
         except InputError as error:
-            self.problem = str(error)
-        if self.shown is not None:
-            with contextlib.suppress(InputError):
-                self.leaveOneOut = self.shown.leave_one_out_mm()
+            self._refuse(error)
+            return
+        self._request = request
+        if self._work is not None:
+            self._work.do(
+                lambda: compareFits(request) if request is self._request else None,
+                lambda comparison: self._take(request, comparison),
+                lambda error: self._refuse(error) if request is self._request else None,
+            )
+            return
+        try:
+            self._take(request, compareFits(request))
+        except InputError as error:
+            self._refuse(error)
 
-    def _registerNow(self, work: BackgroundWork) -> None:
-        self._register()
-        comparison = self.comparison
-        work.later(lambda: self._showIfPresent(comparison))
+    def _prepareSkin(self, fixed: Any | None) -> None:
+        """Look for the normals at the fixed points before they are touched."""
+        skin = self._skins.read(self._head())
+        if self._work is None or skin is None or fixed is None:
+            return
+        points = worldPoints(fixed)
+        if not skin.knows(points):
+            self._work.do(lambda: skin.findNormals(points), lambda _none: None)
 
-    def _showIfPresent(self, comparison: Comparison | None) -> None:
-        """Show the result of the last turn, unless it is outdated or its lists were removed."""
-        if self.comparison is comparison:
-            areGone = comparison is not None and None in (self.moving(), self.fixed())
-            if not areGone:
-                self._show()
+    def _requestOf(self, pairs: Pairs) -> ComparisonRequest:
+        head = self._head()
+        skin = self._skins.read(head)
+        isColored = self.isHeadColored and skin is not None
+        headPoints = slicer.util.arrayFromModelPoints(head).astype(float) if isColored else None
+        return ComparisonRequest(
+            pairs, self.choices, self.kind, self.targetPosition(), skin, headPoints
+        )
 
-    def _compare(self, pairs: Pairs) -> Comparison:
-        weights = self.choices.weights(pairs.labels)
-        fits = register_all_kinds(pairs.moving, pairs.fixed, pairs.labels, weights)
-        errors = {}
-        position = self.targetPosition()
-        for kind, fit in fits.items():
-            with contextlib.suppress(InputError):
-                if position is not None:
-                    errors[kind] = self.targetError(fit, position)
-        return Comparison(pairs, fits, errors, remedies(fits[RIGID], self.choices))
+    def _refuse(self, error: Exception) -> None:
+        self.comparison, self.problem, self._request = None, str(error), None
+        clearResidualArrows(self._scene)
+        self._colorHead(None)
+        self.changed.emit()
 
-    def targetError(self, fit: Registration, position: np.ndarray) -> TargetError:
-        """Return the error to expect with a fit at a place, (3,) float, RAS mm.
+    def _take(self, request: ComparisonRequest, comparison: Comparison | None) -> None:
+        """Show a comparison, each part in a separate turn, unless it is outdated."""
+        if comparison is None:
+            return
+        for show in (self._showTransform, self._showTables, self._showOnHead, self._finish):
+            if self._work is None:
+                show(comparison)
+            else:
+                self._work.later(partial(self._showIfPresent, request, show, comparison))
+
+    def _showIfPresent(
+        self,
+        request: ComparisonRequest,
+        show: Callable[[Comparison], None],
+        comparison: Comparison,
+    ) -> None:
+        """Show a part, unless it is outdated or its lists were removed."""
+        if request is self._request and None not in (self.moving(), self.fixed()):
+            show(comparison)
+
+    def _showTransform(self, comparison: Comparison) -> None:
+        showRegistration(self._scene, comparison.fitOf(self.kind), self.moving(), self.fixed())
+
+    def _finish(self, comparison: Comparison) -> None:
+        self.comparison, self.problem = comparison, ""
+        self.changed.emit()
+
+    def _showTables(self, comparison: Comparison) -> None:
+        fits, shown = comparison.fits, comparison.fitOf(self.kind)
+        showResiduals(self._scene, shown, comparison.leaveOneOut.get(shown.kind))
+        showFits(self._scene, list(fits.values()), [comparison.errors.get(k) for k in fits])
+
+    def _showOnHead(self, comparison: Comparison) -> None:
+        showResidualArrows(self._scene, comparison.fitOf(self.kind))
+        self._colorHead(comparison.headErrors if self.isHeadColored else None)
+
+    def targetError(self, position: np.ndarray) -> TargetError | None:
+        """Return the error to expect with the shown fit at a place, (3,) float, RAS mm.
+
+        None where nothing is registered.
 
         Raises:
             InputError: the fit has too few points.
         """
-        return target_error(fit, position, self._errorOnSkin(fit))
-
-    def _errorOnSkin(self, fit: Registration) -> LocalizationError | None:
-        if fit.weights is not None:
-            # Errors stated for single points replace those estimated from the skin.
+        if self.comparison is None:
             return None
-        fixed = self.fixed()
-        expected = None if fixed is None else worldPoints(fixed)
-        return self._normals.errorOnSkin(self._head(), fit, expected)
+        return self.comparison.targetError(self.comparison.fitOf(self.kind), position)
 
     def targetPosition(self) -> np.ndarray | None:
         """Return the target, (3,) float, RAS mm; None where there is none."""
@@ -266,31 +293,15 @@ class RegistrationLogic:
             return None
         return np.array(target.GetNthControlPointPositionWorld(0))
 
-    def _show(self) -> None:
-        if self.comparison is None or self.shown is None:
-            clearResidualArrows(self._scene)
-        else:
-            self._showFits(self.comparison, self.shown)
-        self._colorHead()
-        self.changed.emit()
-
-    def _showFits(self, comparison: Comparison, shown: Registration) -> None:
-        showRegistration(self._scene, shown, self.moving(), self.fixed())
-        without = None if self.leaveOneOut is None else self.leaveOneOut.tolist()
-        showResiduals(self._scene, shown, without)
-        fits = comparison.fits
-        showFits(self._scene, list(fits.values()), [comparison.errors.get(k) for k in fits])
-        showResidualArrows(self._scene, shown)
-
-    def _colorHead(self) -> None:
+    def _colorHead(self, errors: np.ndarray | None) -> None:
+        """Color the head by errors at its points, or show its own color where there are none."""
         head = self._head()
-        if head is None or head.GetPolyData() is None:
+        if head is None:
             return
-        if self.isHeadColored and self.shown is not None:
-            with contextlib.suppress(InputError):
-                colorHead(head, self.shown, self._errorOnSkin(self.shown))
-                return
-        removeHeadColors(head)
+        if errors is None:
+            removeHeadColors(head)
+        else:
+            colorHead(head, errors)
 
     def _head(self) -> Any | None:
         return findNode(self._scene, "vtkMRMLModelNode", Role.HEAD_MODEL)

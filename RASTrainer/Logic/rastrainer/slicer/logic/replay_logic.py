@@ -15,7 +15,7 @@ from rastrainer.registration.fits import RIGID
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork, inBackground
 from rastrainer.slicer.program.child_process import Run, runHere
-from rastrainer.slicer.scene.robot import URDF, readArmChain
+from rastrainer.slicer.scene.robot_description import URDF, readArmChain
 from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
 from rastrainer.slicer.scene.trial_replay import (
     TRIAL_ATTRIBUTE,

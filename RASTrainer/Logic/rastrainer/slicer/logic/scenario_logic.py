@@ -5,6 +5,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer.scenario.library import ListedScenario, unpack
 from rastrainer.scenario.scenario import Scenario, load_scenario
-from rastrainer.slicer.background_work import inBackground
+from rastrainer.slicer.background_work import BackgroundWork, inBackground
 from rastrainer.slicer.logic.head_preview import findSkin
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
@@ -25,13 +26,14 @@ from rastrainer.slicer.scene.nodes import (
     labelsOf,
     worldPoints,
 )
-from rastrainer.slicer.scene.robot import robotNode, setRobotVisible, showRobot
+from rastrainer.slicer.scene.robot import addLink, missingLinks, robotNode, setRobotVisible
+from rastrainer.slicer.scene.robot_description import READ_LINKS, LinkMesh
 from rastrainer.slicer.scene.scenario_nodes import (
     SKIN_COLOR,
+    meshPolyData,
     showImages,
     showScenario,
     showTask,
-    trianglesPolyData,
 )
 from rastrainer.slicer.scene.trial_scene import (
     followPlacement,
@@ -39,19 +41,32 @@ from rastrainer.slicer.scene.trial_scene import (
     showOnlyTouchesOf,
     showPlannedPlace,
 )
+from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.work_progress import Progress, no_progress
 
 
 class ScenarioLogic:
-    """What the Scenario panel does."""
+    """What the Scenario panel does.
 
-    def __init__(self, scene: Any, cache: ScenarioCache, robotFolder: Path, run: Run) -> None:
-        """`run` runs the function that looks for heads."""
+    Attributes:
+        robotShown: emits nothing when the whole robot is in the scene.
+        problemFound: emits a sentence if the robot's files cannot be used.
+    """
+
+    def __init__(
+        self, scene: Any, cache: ScenarioCache, robotFolder: Path, run: Run, work: BackgroundWork
+    ) -> None:
+        """`run` runs the functions that look for heads and read the robot, the latter in `work`."""
+        self.robotShown = Signal()
+        self.problemFound = Signal()
         self._scene = scene
         self._cache = cache
         self._robotFolder = robotFolder
         self._run = run
+        self._work = work
+        self._links: tuple[LinkMesh, ...] = ()
+        self._isRobotComing = False
 
     def listed(self) -> tuple[ListedScenario, ...]:
         """Return the scenarios that come with the module and those of the user."""
@@ -107,7 +122,7 @@ class ScenarioLogic:
         _body, mesh, warnings = findSkin(self._run, volumeNode, None, progress)
         name = f"Head of {volumeNode.GetName()}"
         model = self._scene.AddNewNodeByClass("vtkMRMLModelNode", name)
-        model.SetAndObservePolyData(trianglesPolyData(mesh.vertices, mesh.triangles))
+        model.SetAndObservePolyData(meshPolyData(mesh))
         model.CreateDefaultDisplayNodes()
         model.GetDisplayNode().SetColor(SKIN_COLOR)
         return model, warnings
@@ -115,20 +130,57 @@ class ScenarioLogic:
     def setRobotShown(self, shown: bool) -> None:
         """Show the robot, which follows the link, or hide it.
 
-        Raises:
-            InputError: its files cannot be used.
+        The first time its links are read in the background; they come one after the other.
         """
-        if shown:
-            showRobot(self._scene, self._robotFolder)
-            # At once, so that the views can be moved to it.
-            followPlacement(self._scene)
         setRobotVisible(self._scene, shown)
+        self._isRobotComing = shown
+        if not shown:
+            return
+        if self._links or not missingLinks(self._scene):
+            self._addLinks()
+        else:
+            self._work.do(self._readLinks, self._takeLinks, self._refuseRobot)
+
+    def forgetScene(self) -> None:
+        """Stop showing the robot: the scene was cleared."""
+        self._isRobotComing = False
 
     @property
     def isRobotShown(self) -> bool:
-        """Whether the robot is in the scene and visible."""
+        """Whether the robot is in the scene and visible, or is going to be."""
         node = robotNode(self._scene, 0)
-        return node is not None and bool(node.GetDisplayVisibility())
+        return self._isRobotComing or (node is not None and bool(node.GetDisplayVisibility()))
+
+    def _readLinks(self) -> tuple[LinkMesh, ...]:
+        """Return the links' meshes; called in the background."""
+        links: tuple[LinkMesh, ...] = self._run(
+            READ_LINKS, self._work.checkWanted, self._robotFolder
+        )
+        return links
+
+    def _takeLinks(self, links: tuple[LinkMesh, ...]) -> None:
+        self._links = links
+        self._addLinks()
+
+    def _refuseRobot(self, error: Exception) -> None:
+        self._isRobotComing = False
+        self.problemFound.emit(_("The robot cannot be shown. {problem}").format(problem=error))
+
+    def _addLinks(self) -> None:
+        for number in missingLinks(self._scene):
+            self._work.later(partial(self._addLink, number))
+        self._work.later(self._finishRobot)
+
+    def _addLink(self, number: int) -> None:
+        if self._isRobotComing and number in missingLinks(self._scene):
+            addLink(self._scene, number, self._links[number])
+            # At once, so that the views can be moved to it.
+            followPlacement(self._scene)
+
+    def _finishRobot(self) -> None:
+        if self._isRobotComing:
+            self._isRobotComing = False
+            self.robotShown.emit()
 
 
 class ScenarioFiles:

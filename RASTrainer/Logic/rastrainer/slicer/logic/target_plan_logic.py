@@ -11,7 +11,6 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
 from rastrainer.protocol import CommandName
-from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
@@ -115,7 +114,7 @@ class PlanLogic:
             entry=entry,
             targetWorld=transforms.apply(toWorld, target[None])[0],
             entryWorld=None if entry is None else transforms.apply(toWorld, entry[None])[0],
-            expected=self._expected(shown, target),
+            expected=self._expected(target),
         )
 
     def send(self, node: Any | None, row: int = -1) -> None:
@@ -175,9 +174,9 @@ class PlanLogic:
             self.trueErrorMm = float(np.linalg.norm(self._sent.targetWorld - there))
         self.changed.emit()
 
-    def _expected(self, shown: Registration, target: np.ndarray) -> TargetError | None:
+    def _expected(self, target: np.ndarray) -> TargetError | None:
         try:
-            return self._registration.targetError(shown, target)
+            return self._registration.targetError(target)
         except InputError:
             return None
 

@@ -27,7 +27,9 @@ from rastrainer.slicer.scene.nodes import (
     pointCloud,
     removeNode,
     setPoints,
+    surfaceOf,
 )
+from rastrainer.slicer.scene.requested_files import requestedFile
 from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 from rastrainer.trial.touch_registration import FollowedTrace, GivenPoints, TraceFollower
@@ -95,6 +97,9 @@ class TraceLogic:
         if wanted is None or wanted == self._shown or self._isAsking or not isDue:
             return
         if self._scenario is None or not self._link.isOpen:
+            return
+        if requestedFile(findNode(self._scene, MODEL, Role.HEAD_MODEL)):
+            # The head that is to be colored is still being read.
             return
         self._isAsking, self._asked = True, self._clock()
         self._link.send(
@@ -182,14 +187,18 @@ def forgetTrace(scene: Any) -> None:
     removeNode(scene, MODEL, Role.TRACED_POINTS)
     removeNode(scene, MARKUPS, Role.NEXT_PLACE)
     head = findNode(scene, MODEL, Role.HEAD_MODEL)
-    if head is not None and head.GetPolyData() is not None:
+    if head is not None and surfaceOf(head):
         removeHeadColors(head, DISTANCE_SCALARS)
         head.GetPolyData().GetPointData().RemoveArray(DISTANCE_SCALARS)
 
 
 def _colorHead(head: Any | None, away_mm: np.ndarray) -> None:
     # Between the trial's scene and this trace another head may have been shown.
-    if head is not None and head.GetPolyData().GetNumberOfPoints() == len(away_mm):
+    if (
+        head is not None
+        and surfaceOf(head)
+        and head.GetPolyData().GetNumberOfPoints() == len(away_mm)
+    ):
         near = np.minimum(away_mm, FARTHEST_MM)
         colorSkin(head, DISTANCE_SCALARS, near, (0.0, FARTHEST_MM), _("To trace (mm)"))
 

@@ -6,6 +6,7 @@ import contextlib
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import CommandName
@@ -21,10 +22,11 @@ from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborte
 from rastrainer.study.database.database import StudyBusyError
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial, Trainee
-from rastrainer.study.tidy_csv import write_histories, write_history
-from rastrainer.study.trainee_data import Erasure, erase_trainee, export_trainee
-from rastrainer.study.tre_calibration import TreCalibration, calibration_of
 from rastrainer.work_progress import Progress, no_progress
+
+if TYPE_CHECKING:
+    from rastrainer.study.trainee_data import Erasure
+    from rastrainer.study.tre_calibration import TreCalibration
 
 LOOK_EVERY_S = 1.0
 
@@ -157,6 +159,8 @@ class TraineeLogic:
         Raises:
             InputError: the trainee or a journal cannot be deleted.
         """
+        from rastrainer.study.trainee_data import erase_trainee
+
         name = self.chosen
         cancelable = CancelableUntilBegun(progress)
 
@@ -177,6 +181,8 @@ class TraineeLogic:
 
     def export(self, path: Path) -> int:
         """Write everything about the chosen trainee into a JSON file; return the trials' number."""
+        from rastrainer.study.trainee_data import export_trainee
+
         return export_trainee(self.study, self.chosen, path)
 
     def exportHistory(self, path: Path) -> int:
@@ -184,6 +190,8 @@ class TraineeLogic:
 
         Aborted ones go into a second file beside it, see `write_history`.
         """
+        from rastrainer.study.tidy_csv import write_history
+
         return write_history(self.study, [self.chosen], path)
 
     def exportHistories(self, path: Path, progress: Progress = no_progress) -> tuple[int, int]:
@@ -201,6 +209,8 @@ class TraineeLogic:
         """
 
         def write(_report: Progress) -> tuple[int, int]:
+            from rastrainer.study.tidy_csv import write_histories
+
             with self._openPatiently() as study:
                 return write_histories(study, path)
 
@@ -217,6 +227,8 @@ class TraineeLogic:
         """
 
         def read(_report: Progress) -> TreCalibration:
+            from rastrainer.study.tre_calibration import calibration_of
+
             with self._openPatiently() as study:
                 everyone = (*study.trainees(), *study.trainees(archived=True))
                 histories = (study.history(trainee.pseudonym) for trainee in everyone)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ import vtk
 from numpy.typing import ArrayLike
 
 from rastrainer.protocol import OPEN_PHASES, DeviceName, Phase
+from rastrainer.slicer.background_work import CallLater, callNow
 from rastrainer.slicer.logic.training_logic import TrainingLogic, TrialStatus
 from rastrainer.slicer.scene.nodes import (
     CONTENT_ATTRIBUTE,
@@ -29,10 +31,18 @@ WITH_TABLE = slicer.vtkMRMLLayoutNode.SlicerLayoutFourUpTableView
 WITH_PLOT = slicer.vtkMRMLLayoutNode.SlicerLayoutConventionalPlotView
 
 
-def jumpTo(scene: Any, position: Sequence[float]) -> None:
-    """Move all slice views to a point, (3,) float, RAS mm, without changing their orientation."""
+def jumpTo(scene: Any, position: Sequence[float], later: CallLater = callNow) -> None:
+    """Move all slice views to a point, one view after the other by `later`.
+
+    Their orientation stays.
+
+    Args:
+        scene: the scene.
+        position: (3,) float, RAS mm.
+        later: has each view moved; each cuts the images and all surfaces, the first time for long.
+    """
     for view in nodesOfClass(scene, "vtkMRMLSliceNode"):
-        view.JumpSliceByOffsetting(*position)
+        later(partial(view.JumpSliceByOffsetting, *position))
 
 
 PROBES_EYE, IN_LINE, ACROSS = "Red", "Green", "Yellow"
@@ -195,8 +205,13 @@ class SliceFollower:
     """
 
     def __init__(
-        self, scene: Any, training: TrainingLogic, clock: Callable[[], float] = time.monotonic
+        self,
+        scene: Any,
+        training: TrainingLogic,
+        clock: Callable[[], float] = time.monotonic,
+        later: CallLater = callNow,
     ) -> None:
+        """`later` has the views moved one after the other, where they need not follow the tool."""
         self.showsNextPoint = True
         self.followsTool = False
         self.liesAlong = True
@@ -205,15 +220,19 @@ class SliceFollower:
         self._scene = scene
         self._training = training
         self._clock = clock
+        self._later = later
         self._shownPoint: tuple[str, ...] = ()
         self._place: np.ndarray | None = None
         self._lastJump = -PERIOD_S
 
     def show(self, place: ArrayLike) -> None:
         """Show a point, (3,) float, RAS mm."""
+        self._jump(place, self._later)
+
+    def _jump(self, place: ArrayLike, later: CallLater = callNow) -> None:
         self._place = np.array(place, dtype=float)
         self._lastJump = self._clock()
-        jumpTo(self._scene, self._place.tolist())
+        jumpTo(self._scene, self._place.tolist(), later)
 
     def showAgain(self) -> None:
         """Show the last point again, after the views were moved."""
@@ -272,7 +291,7 @@ class SliceFollower:
             return
         tip = pose[:3, 3]
         if self._place is None or np.linalg.norm(tip - self._place) >= LEAST_MOVE_MM:
-            self.show(tip)
+            self._jump(tip)
 
     def _showNextPoint(self) -> None:
         status = self._training.progress

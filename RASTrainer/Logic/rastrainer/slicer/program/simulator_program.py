@@ -18,6 +18,8 @@ _NETWORK = re.compile(
     r"(?:.* fingerprint, (\S+))?$"
 )
 _KINEMATICS = re.compile(r"RASTrainer simulator computes the robot's kinematics by (.+)$")
+_LAUNCHER_CRASH = re.compile(r"error: \[.*\] exit abnormally")
+"""What the launcher of Slicer's Python writes when the real Python has been killed."""
 _NEW_CODE = re.compile(r"RASTrainer simulator has a new pairing code for views: (\d+)$")
 
 
@@ -152,6 +154,15 @@ class SimulatorProgram:
         elif status == 0:
             # For example because the trainee's window was closed.
             self._change(ProgramState.STOPPED, _("The simulator has ended."))
+        elif status is None or status < 0 or _LAUNCHER_CRASH.match(self._lastLine):
+            self._change(
+                ProgramState.FAILED,
+                _(
+                    "The simulator stopped unexpectedly: it crashed, or was ended from outside, "
+                    "for example by the task manager or for lack of memory. What it has recorded "
+                    "is kept: start it again to continue."
+                ),
+            )
         else:
             reason = self._lastLine or _("it wrote nothing")
             self._change(

@@ -8,12 +8,17 @@ from typing import Any
 import numpy as np
 import slicer
 import vtk
-from vtk.util.numpy_support import numpy_to_vtk
 
-from rastrainer.registration.localization_error import LocalizationError
 from rastrainer.registration.registration import Registration
-from rastrainer.registration.target_error import expected_tre
-from rastrainer.slicer.scene.nodes import Role, findNode, findOrAddNode, nodesOfClass
+from rastrainer.slicer.scene.nodes import (
+    Role,
+    changedOnce,
+    findNode,
+    findOrAddNode,
+    nodesOfClass,
+    surfaceOf,
+    vtkArray,
+)
 
 COLOR_TABLE_ID = "vtkMRMLColorTableNodeFileViridis.txt"
 """One of the color tables that every Slicer has; readable without color vision, too."""
@@ -32,11 +37,12 @@ OPACITY_ATTRIBUTE = "RASTrainer.opacity"
 def showScalars(model: Any, name: str, ends: tuple[float, float]) -> None:
     """Color a `vtkMRMLModelNode` by point data of that name, whose colors have these ends."""
     display = model.GetDisplayNode()
-    display.SetActiveScalar(name, vtk.vtkAssignAttribute.POINT_DATA)
-    display.SetAndObserveColorNodeID(COLOR_TABLE_ID)
-    display.SetScalarRangeFlag(display.UseManualScalarRange)
-    display.SetScalarRange(*ends)
-    display.SetScalarVisibility(True)
+    with changedOnce(display):
+        display.SetActiveScalar(name, vtk.vtkAssignAttribute.POINT_DATA)
+        display.SetAndObserveColorNodeID(COLOR_TABLE_ID)
+        display.SetScalarRangeFlag(display.UseManualScalarRange)
+        display.SetScalarRange(*ends)
+        display.SetScalarVisibility(True)
 
 
 def showLegend(node: Any, title: str, rank: int) -> Any | None:
@@ -50,10 +56,11 @@ def showLegend(node: Any, title: str, rank: int) -> Any | None:
     legend = slicer.vtkSlicerColorLogic.GetColorLegendDisplayNode(node)
     if legend is None:
         legend = slicer.vtkSlicerColorLogic.AddDefaultColorLegendDisplayNode(node)
-        legend.SetVisibility2D(False)
-        legend.SetSize(*SIZE)
-        legend.SetPosition(*PLACE)
-        legend.SetLabelFormat("%.2f")
+        with changedOnce(legend):
+            legend.SetVisibility2D(False)
+            legend.SetSize(*SIZE)
+            legend.SetPosition(*PLACE)
+            legend.SetLabelFormat("%.2f")
     legend.SetTitleText(title)
     legend.SetAttribute(RANK_ATTRIBUTE, str(rank))
     _showHighest(node.GetScene())
@@ -83,34 +90,23 @@ def _isSeen(node: Any | None) -> bool:
     return node is not None and bool(node.GetDisplayVisibility())
 
 
-def colorHead(
-    model: Any, registration: Registration, localization: LocalizationError | None = None
-) -> tuple[float, float]:
-    """Color a `vtkMRMLModelNode` by the expected TRE, and return least and largest of it, mm.
-
-    Args:
-        model: the head.
-        registration: whose error is shown.
-        localization: of the touches; equal in all directions if omitted.
-
-    Raises:
-        InputError: the registration has too few points.
-    """
-    points = slicer.util.arrayFromModelPoints(model).astype(float)
-    errors = expected_tre(registration, points, localization)
-    low, high = float(errors.min()), float(errors.max())
-    colorSkin(model, TRE_SCALARS, errors, colorRange(low, high), "TRE (mm)")
-    return low, high
+def colorHead(model: Any, errors: np.ndarray) -> None:
+    """Color a `vtkMRMLModelNode`, the head, by the expected TRE (v,) at each of its points, mm."""
+    ends = colorRange(float(errors.min()), float(errors.max()))
+    colorSkin(model, TRE_SCALARS, errors, ends, "TRE (mm)")
 
 
 def colorSkin(
     model: Any, name: str, values: np.ndarray, ends: tuple[float, float], title: str
 ) -> None:
-    """Color a head by a value (v,) at each of its vertices, whose colors have these ends."""
+    """Color a head by a value (v,) at each of its vertices, whose colors have these ends.
+
+    A head with other vertices, which may have come since the values were requested, stays as it is.
+    """
+    if not surfaceOf(model) or model.GetPolyData().GetNumberOfPoints() != len(values):
+        return
     display = model.GetDisplayNode()
-    scalars = numpy_to_vtk(values, deep=True)
-    scalars.SetName(name)
-    model.GetPolyData().GetPointData().AddArray(scalars)
+    model.GetPolyData().GetPointData().AddArray(vtkArray(values, name))
     model.GetPolyData().Modified()
     if model.GetAttribute(OPACITY_ATTRIBUTE) is None:
         model.SetAttribute(OPACITY_ATTRIBUTE, str(display.GetOpacity()))
@@ -179,9 +175,10 @@ def glyphsPolyData(
 def showResidualArrows(scene: Any, registration: Registration) -> Any:
     """Show the arrows in a `vtkMRMLModelNode` and return it."""
     node = findOrAddNode(scene, "vtkMRMLModelNode", Role.RESIDUAL_ARROWS, "Residual arrows")
-    node.SetAndObservePolyData(glyphsPolyData(registration))
-    node.SetDescription(f"Residuals, {magnification(registration):g} times as long")
-    showScalars(node, RESIDUAL_SCALARS, residualRange(registration))
+    with changedOnce(node):
+        node.SetDescription(f"Residuals, {magnification(registration):g} times as long")
+        showScalars(node, RESIDUAL_SCALARS, residualRange(registration))
+        node.SetAndObservePolyData(glyphsPolyData(registration))
     showLegend(node, "Residual (mm)", ARROWS_RANK)
     return node
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import contextlib
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import slicer
 import vtk
-from vtk.util.numpy_support import numpy_to_vtk
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import DeviceName
@@ -56,6 +56,16 @@ class Role:
     LANDMARKS = "landmarks"
     TRACED_POINTS = "traced points"
     NEXT_PLACE = "next place of the trace"
+
+
+@contextlib.contextmanager
+def changedOnce(node: Any) -> Iterator[None]:
+    """Have a node tell of all changes together: at each event every view would draw it again."""
+    wasModifying = node.StartModify()
+    try:
+        yield
+    finally:
+        node.EndModify(wasModifying)
 
 
 def findNode(scene: Any, className: str, role: str) -> Any | None:
@@ -119,6 +129,13 @@ def stampOf(path: Path) -> str:
     return f"{status.st_mtime_ns} {status.st_size}"
 
 
+def surfaceOf(model: Any | None) -> tuple:
+    """Return a value that changes with the surface of a model; empty where there is none."""
+    if model is None or model.GetPolyData() is None or model.GetPolyData().GetPoints() is None:
+        return ()
+    return model.GetID(), model.GetPolyData().GetPoints().GetMTime()
+
+
 def labelsOf(node: Any) -> tuple[str, ...]:
     """Return the labels of a `vtkMRMLMarkupsNode`."""
     return tuple(labelOf(node, i) for i in range(node.GetNumberOfControlPoints()))
@@ -147,12 +164,11 @@ def setPoints(node: Any, labels: Sequence[str], points: np.ndarray) -> None:
         labels: one for each point.
         points: (n, 3) float, mm, in the node's own frame.
     """
-    wasModifying = node.StartModify()
-    node.RemoveAllControlPoints()
-    slicer.util.updateMarkupsControlPointsFromArray(node, np.asarray(points, dtype=float))
-    for index, label in enumerate(labels):
-        node.SetNthControlPointLabel(index, label)
-    node.EndModify(wasModifying)
+    with changedOnce(node):
+        node.RemoveAllControlPoints()
+        slicer.util.updateMarkupsControlPointsFromArray(node, np.asarray(points, dtype=float))
+        for index, label in enumerate(labels):
+            node.SetNthControlPointLabel(index, label)
 
 
 ORIGINAL_NAME = "OriginalNodeName"
@@ -162,13 +178,23 @@ TOUCH_COLOR = (0.95, 0.55, 0.1)
 POINT_PIXELS = 5.0
 
 
-def prepareNodes(scene: Any) -> None:
-    """Make the nodes that are missing; the connector adopts nodes of that name and class."""
-    capturedPointsNode(scene)
-    simStateNode(scene)
+def prepareNodes(scene: Any) -> Iterator[Any]:
+    """Make the nodes that are missing, one at each step, and yield all.
+
+    The connector adopts nodes of that name and class; what it has made itself meanwhile is adopted.
+    """
+    yield capturedPointsNode(scene)
+    yield simStateNode(scene)
     tips = (DeviceName.TOOL_TIP_TO_WORLD, DeviceName.INSTRUMENT_TIP_TO_WORLD)
-    for name in (*tips, *DeviceName.LINK_TO_WORLD):
-        _node(scene, "vtkMRMLLinearTransformNode", name, name).SetSaveWithScene(False)
+    for device in (*tips, *DeviceName.LINK_TO_WORLD):
+        yield poseNode(scene, device)
+
+
+def poseNode(scene: Any, device: str) -> Any:
+    """Return the transform that the connector fills for a device, or a new one; never saved."""
+    node = _node(scene, "vtkMRMLLinearTransformNode", device, device)
+    node.SetSaveWithScene(False)
+    return node
 
 
 def capturedPointsNode(scene: Any) -> Any:
@@ -180,10 +206,11 @@ def capturedPointsNode(scene: Any) -> Any:
         node.SetLocked(True)
         node.CreateDefaultDisplayNodes()
         display = node.GetDisplayNode()
-        display.SetSelectedColor(TOUCH_COLOR)
-        display.SetGlyphScale(2.5)
-        display.SetTextScale(3.5)
-        display.SetOccludedVisibility(True)
+        with changedOnce(display):
+            display.SetSelectedColor(TOUCH_COLOR)
+            display.SetGlyphScale(2.5)
+            display.SetTextScale(3.5)
+            display.SetOccludedVisibility(True)
     return node
 
 
@@ -198,20 +225,57 @@ def drawAsPoints(node: Any) -> None:
     """Draw a model as the points of a trace."""
     node.SetSelectable(False)
     display = node.GetDisplayNode()
-    display.SetRepresentation(display.PointsRepresentation)
-    display.SetPointSize(POINT_PIXELS)
-    display.SetColor(TOUCH_COLOR)
-    display.SetLighting(False)
+    with changedOnce(display):
+        display.SetRepresentation(display.PointsRepresentation)
+        display.SetPointSize(POINT_PIXELS)
+        display.SetColor(TOUCH_COLOR)
+        display.SetLighting(False)
+
+
+def trianglesPolyData(
+    points: np.ndarray, triangles: np.ndarray, normals: np.ndarray
+) -> vtk.vtkPolyData:
+    """Return a surface.
+
+    Args:
+        points: (n, 3) float.
+        triangles: (m, 3) int, counterclockwise seen from outside.
+        normals: (n, 3) float, outward unit normals.
+    """
+    from vtk.util.numpy_support import numpy_to_vtkIdTypeArray
+
+    corners = np.ascontiguousarray(triangles, dtype=np.int64).ravel()
+    cells = vtk.vtkCellArray()
+    cells.SetData(3, numpy_to_vtkIdTypeArray(corners, deep=True))
+    surface = vtk.vtkPolyData()
+    surface.SetPoints(_vtkPoints(points))
+    surface.SetPolys(cells)
+    surface.GetPointData().SetNormals(vtkArray(normals.astype(np.float32), "Normals"))
+    return surface
+
+
+def vtkArray(values: np.ndarray, name: str = "") -> Any:
+    """Return a copy of numbers (n,) or (n, k) as an array of VTK's."""
+    from vtk.util.numpy_support import numpy_to_vtk
+
+    array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
+    array.SetName(name)
+    return array
+
+
+def _vtkPoints(places: np.ndarray) -> vtk.vtkPoints:
+    points = vtk.vtkPoints()
+    points.SetData(vtkArray(places.astype(np.float32)))
+    return points
 
 
 def pointCloud(places: np.ndarray) -> vtk.vtkPolyData:
     """Return places (n, 3) as points, each of them a vertex cell."""
-    points, cells = vtk.vtkPoints(), vtk.vtkCellArray()
-    points.SetData(numpy_to_vtk(np.ascontiguousarray(places, dtype=np.float32), deep=True))
+    cells = vtk.vtkCellArray()
     for number in range(len(places)):
         cells.InsertNextCell(1, (number,))
     cloud = vtk.vtkPolyData()
-    cloud.SetPoints(points)
+    cloud.SetPoints(_vtkPoints(places))
     cloud.SetVerts(cells)
     return cloud
 

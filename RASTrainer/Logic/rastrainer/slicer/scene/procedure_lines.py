@@ -35,7 +35,7 @@ from rastrainer.slicer.scene.nodes import (
     worldPoints,
 )
 from rastrainer.slicer.scene.plan_points import ENDS, LINE, LIST, TARGET_COLOR, placedRows
-from rastrainer.slicer.scene.scenario_nodes import trianglesPolyData
+from rastrainer.slicer.scene.scenario_nodes import meshPolyData
 from rastrainer.slicer.scene.tables import Column, showTable
 from rastrainer.slicer.translation import _
 
@@ -149,7 +149,7 @@ def showPlan(
     for name, mesh in noGo.items():
         model = scene.AddNewNodeByClass(MODEL, name)
         model.SetAttribute(ROLE_ATTRIBUTE, Role.NO_GO)
-        model.SetAndObservePolyData(trianglesPolyData(mesh.vertices, mesh.triangles))
+        model.SetAndObservePolyData(meshPolyData(mesh))
         model.CreateDefaultDisplayNodes()
         model.GetDisplayNode().SetColor(NO_GO_COLOR)
         model.GetDisplayNode().SetVisibility2D(True)

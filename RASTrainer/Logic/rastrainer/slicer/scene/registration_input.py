@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import slicer
-from vtk.util.numpy_support import vtk_to_numpy
 
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, pair
@@ -20,9 +19,7 @@ from rastrainer.registration.fits import extents
 from rastrainer.registration.localization_error import LocalizationError, error_along_surface
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.warnings import SAME_PLACE, RegistrationWarning, find_order
-from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.scene.nodes import labelsOf, localPoints, worldPoints
-from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.scene.nodes import labelsOf, localPoints, surfaceOf, worldPoints
 from rastrainer.slicer.translation import _
 
 USUAL_FLE_MM = 1.0
@@ -192,43 +189,30 @@ SAME_HEAD_MM = 3.0
 
 
 class SkinNormals:
-    """Finds and remembers normals on a head model of the scene.
+    """A head's surface and its normals at points, each found once; for one thread at a time."""
 
-    Attributes:
-        found: emits nothing when a search in the background has found normals.
-    """
-
-    def __init__(self, work: BackgroundWork | None = None) -> None:
-        """`work` looks for the normals on a head that is new; at once if omitted."""
-        self.found = Signal()
-        self._work = work
-        self._surface: tuple = ()
-        self._mesh: HeadMesh | None = None
+    def __init__(self, mesh: HeadMesh | None) -> None:
+        """`mesh` is None where the surface has other cells than triangles."""
+        self._mesh = mesh
         self._known: dict[bytes, np.ndarray | None] = {}
-        self._isLooking = False
 
-    def errorOnSkin(
-        self, model: Any | None, registration: Registration, expected: np.ndarray | None = None
-    ) -> LocalizationError | None:
+    def knows(self, points: np.ndarray) -> bool:
+        """Return whether the normals at points (n, 3) were looked for."""
+        return all(point.tobytes() in self._known for point in points)
+
+    def findNormals(self, points: np.ndarray) -> None:
+        """Look for the normals at points (n, 3), RAS mm: seconds for the first on a head."""
+        for point in points:
+            if point.tobytes() not in self._known:
+                self._known[point.tobytes()] = self._normalAt(point)
+
+    def localizationError(self, registration: Registration) -> LocalizationError | None:
         """Return the localization error of touches on the skin, separately along and across it.
 
-        None where the fixed points do not all lie on the surface of the model, or are too few:
-        then nothing is known but an error that is alike in all directions. None, too, until the
-        normals on a new head are found.
-
-        Args:
-            model: a `vtkMRMLModelNode`, or None.
-            registration: whose fixed points are touched.
-            expected: (n, 3) float, RAS mm, points that will be; they are looked for as well.
+        None where the fixed points do not all lie on the surface, or are too few: then nothing is
+        known but an error that is alike in all directions.
         """
-        if model is None or model.GetPolyData() is None:
-            return None
-        self._read(model)
-        missing = [point for point in registration.fixed_mm if point.tobytes() not in self._known]
-        if missing:
-            points = missing if expected is None else [*missing, *expected]
-            if not self._look(points):
-                return None
+        self.findNormals(registration.fixed_mm)
         normals = [self._known[point.tobytes()] for point in registration.fixed_mm]
         if any(normal is None for normal in normals):
             return None
@@ -237,43 +221,34 @@ class SkinNormals:
         except InputError:
             return None
 
-    def _read(self, model: Any) -> None:
-        data = model.GetPolyData()
-        surface = (model.GetID(), data.GetPoints() and data.GetPoints().GetMTime())
-        if surface == self._surface:
-            return
-        self._surface, self._known, self._mesh = surface, {}, None
-        self._isLooking = False
-        if data.GetNumberOfPolys() and data.GetPolys().IsHomogeneous() == 3:
-            vertices = slicer.util.arrayFromModelPoints(model).astype(float)
-            triangles = vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-            self._mesh = HeadMesh(vertices, triangles.copy())
-
-    def _look(self, points: list[np.ndarray]) -> bool:
-        """Look for the normals at points, and return whether they are known at once."""
-        mesh, surface = self._mesh, self._surface
-        # The first search on a head takes some seconds, a further point a moment.
-        if self._work is None or self._known or mesh is None:
-            self._known |= _normalsOn(mesh, points)
-            return True
-
-        def take(normals: dict[bytes, np.ndarray | None]) -> None:
-            if surface == self._surface:
-                self._known |= normals
-                self._isLooking = False
-                self.found.emit()
-
-        if not self._isLooking:
-            self._isLooking = True
-            self._work.do(lambda: _normalsOn(mesh, points), take)
-        return False
+    def _normalAt(self, point: np.ndarray) -> np.ndarray | None:
+        if self._mesh is None:
+            return None
+        nearest = nearest_on_mesh(self._mesh, point)
+        return normal_at(self._mesh, nearest) if nearest.distance <= SAME_HEAD_MM else None
 
 
-def _normalsOn(mesh: HeadMesh | None, points: list[np.ndarray]) -> dict[bytes, np.ndarray | None]:
-    """Return the normal at each point; None at one that does not lie on the mesh."""
-    return {point.tobytes(): None if mesh is None else _normalOn(mesh, point) for point in points}
+class SkinReader:
+    """Reads the surface of the scene's head, once for as long as it stays the same."""
+
+    def __init__(self) -> None:
+        self._surface: tuple = ()
+        self._skin: SkinNormals | None = None
+
+    def read(self, model: Any | None) -> SkinNormals | None:
+        """Return the skin of a `vtkMRMLModelNode`; None where there is no surface yet."""
+        surface = surfaceOf(model)
+        if surface != self._surface:
+            self._surface = surface
+            self._skin = SkinNormals(_meshOf(model)) if surface else None
+        return self._skin
 
 
-def _normalOn(mesh: HeadMesh, point: np.ndarray) -> np.ndarray | None:
-    nearest = nearest_on_mesh(mesh, point)
-    return normal_at(mesh, nearest) if nearest.distance <= SAME_HEAD_MM else None
+def _meshOf(model: Any) -> HeadMesh | None:
+    from vtk.util.numpy_support import vtk_to_numpy
+
+    cells = model.GetPolyData().GetPolys()
+    if not cells.GetNumberOfCells() or cells.IsHomogeneous() != 3:
+        return None
+    triangles = vtk_to_numpy(cells.GetConnectivityArray()).reshape(-1, 3)
+    return HeadMesh(slicer.util.arrayFromModelPoints(model).astype(float), triangles.copy())

@@ -1,12 +1,11 @@
 """Shows a scenario in the scene: head, images, what is planned, and the fiducials of a task.
 
-The node of the images is requested at once, and filled when they have been read. It holds them
-itself, so that a saved scene carries them. It has no file of its own: Slicer's *Save* would offer
-to write over the scenario's.
+Meshes and images are requested at once, and shown when they have been read.
 """
 
 from __future__ import annotations
 
+from functools import partial
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -14,20 +13,17 @@ from typing import Any
 import numpy as np
 import slicer
 import vtk
-from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
-from rastrainer.errors import InputError
-from rastrainer.head.mesh import read_head_mesh
+from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.volume import read_nrrd
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario, task_by_method
-from rastrainer.slicer.background_work import BackgroundWork
+from rastrainer.slicer.background_work import BackgroundWork, CallLater, callNow
 from rastrainer.slicer.scene.nodes import (
-    CONTENT_ATTRIBUTE,
-    SCENARIO_ATTRIBUTE,
     TASK_ATTRIBUTE,
     Role,
+    changedOnce,
     findNode,
     findOrAddNode,
     isShown,
@@ -35,33 +31,25 @@ from rastrainer.slicer.scene.nodes import (
     noteShown,
     removeNode,
     setPoints,
-    stampOf,
+    trianglesPolyData,
+    vtkArray,
 )
-from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.scene.requested_files import (
+    FileContent,
+    FileLoader,
+    isFileShown,
+    requestedFile,
+    requestFile,
+)
 from rastrainer.slicer.translation import _
 
 
-def trianglesPolyData(vertices: np.ndarray, triangles: np.ndarray) -> vtk.vtkPolyData:
-    """Return a surface with smooth normals.
-
-    Args:
-        vertices: (n, 3) float.
-        triangles: (m, 3) int, counterclockwise seen from outside.
-    """
-    points = vtk.vtkPoints()
-    points.SetData(numpy_to_vtk(np.ascontiguousarray(vertices, dtype=np.float32), deep=True))
-    corners = np.ascontiguousarray(triangles, dtype=np.int64).ravel()
-    cells = vtk.vtkCellArray()
-    cells.SetData(3, numpy_to_vtkIdTypeArray(corners, deep=True))
-    surface = vtk.vtkPolyData()
-    surface.SetPoints(points)
-    surface.SetPolys(cells)
-    normals = vtk.vtkTriangleMeshPointNormals()
-    normals.SetInputData(surface)
-    normals.Update()
-    return normals.GetOutput()
+def meshPolyData(mesh: HeadMesh) -> vtk.vtkPolyData:
+    """Return a surface with smooth normals."""
+    return trianglesPolyData(mesh.vertices, mesh.triangles, mesh.vertex_normals)
 
 
+MODEL, VOLUME = "vtkMRMLModelNode", "vtkMRMLScalarVolumeNode"
 SKIN_COLOR = (0.87, 0.72, 0.62)
 SKULL_COLOR = (0.95, 0.92, 0.82)
 SKIN_OPACITY_OVER_SKULL = 0.5
@@ -75,11 +63,8 @@ TARGET_COLOR = (0.2, 0.75, 0.35)
 def showScenario(scene: Any, scenario: Scenario) -> None:
     """Show head, skull, targets and trajectory; called again, nothing is made twice.
 
-    The images come later, by a `VolumeLoader`. The first point of the list of targets is the
-    scenario's own, at which the target error is reported.
-
-    Raises:
-        InputError: a mesh of the scenario cannot be used.
+    Meshes and images come later, by a `scenarioLoader`. The first point of the list of targets is
+    the scenario's own, at which the target error is reported.
     """
     _showHead(scene, scenario)
     _showSkull(scene, scenario)
@@ -118,50 +103,48 @@ def taskKey(scenarioName: str, taskName: str) -> str:
 
 
 def _fillFiducials(node: Any, task: Task) -> None:
-    node.SetName(f"{task.title} fiducials")
-    setPoints(node, task.labels, task.fiducials)
-    node.SetLocked(True)
     display = node.GetDisplayNode()
-    display.SetSelectedColor(FIDUCIAL_COLOR)
-    display.SetGlyphScale(2.0)
-    display.SetTextScale(3.5)
+    with changedOnce(node), changedOnce(display):
+        node.SetName(f"{task.title} fiducials")
+        setPoints(node, task.labels, task.fiducials)
+        node.SetLocked(True)
+        display.SetSelectedColor(FIDUCIAL_COLOR)
+        display.SetGlyphScale(2.0)
+        display.SetTextScale(3.5)
 
 
 def _showHead(scene: Any, scenario: Scenario) -> None:
-    node = findOrAddNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL, "Head")
+    node = findOrAddNode(scene, MODEL, Role.HEAD_MODEL, "Head")
     opacity = 1.0 if scenario.skull_mesh is None else SKIN_OPACITY_OVER_SKULL
-    _fill(node, scenario, scenario.head_mesh, SKIN_COLOR, opacity)
+    _requestMesh(node, scenario, scenario.head_mesh, SKIN_COLOR, opacity)
 
 
 def _showSkull(scene: Any, scenario: Scenario) -> None:
     if scenario.skull_mesh is None:
-        removeNode(scene, "vtkMRMLModelNode", Role.SKULL)
+        removeNode(scene, MODEL, Role.SKULL)
         return
-    node = findOrAddNode(scene, "vtkMRMLModelNode", Role.SKULL, "Skull")
-    if _fill(node, scenario, scenario.skull_mesh, SKULL_COLOR, 1.0):
+    node = findOrAddNode(scene, MODEL, Role.SKULL, "Skull")
+    if _requestMesh(node, scenario, scenario.skull_mesh, SKULL_COLOR, 1.0):
         node.SetName("Skull (approximation)" if scenario.is_skull_approximate else "Skull")
 
 
-def _fill(
+def _requestMesh(
     node: Any, scenario: Scenario, path: Path, color: tuple[float, float, float], opacity: float
 ) -> bool:
-    """Show a mesh of a scenario; return whether it was not shown before."""
+    """Have a node show a mesh of a scenario; return whether it was not shown before."""
     # Called before every trial: the file is read only if it is not shown yet.
-    stamp = stampOf(path)
-    if isShown(node, SCENARIO_ATTRIBUTE, scenario.name, stamp):
+    if isFileShown(node, scenario.name, path):
         return False
-    mesh = read_head_mesh(path)
-    surface, display = trianglesPolyData(mesh.vertices, mesh.triangles), node.GetDisplayNode()
-    # All at once: at each change every view would cut or redraw the surface.
-    wasNodeModifying, wasDisplayModifying = node.StartModify(), display.StartModify()
-    display.SetColor(color)
-    display.SetOpacity(opacity)
-    display.SetVisibility2D(True)
-    display.SetSliceIntersectionThickness(OUTLINE_PIXELS)
-    node.SetAndObservePolyData(surface)
-    display.EndModify(wasDisplayModifying)
-    node.EndModify(wasNodeModifying)
-    noteShown(node, SCENARIO_ATTRIBUTE, scenario.name, stamp)
+    requestFile(node, scenario.name, path)
+    # Another scenario's head does not belong to these points.
+    node.SetAndObservePolyData(None)
+    display = node.GetDisplayNode()
+    # All at once, and before the surface comes: at each change every view would cut or redraw it.
+    with changedOnce(display):
+        display.SetColor(color)
+        display.SetOpacity(opacity)
+        display.SetVisibility2D(True)
+        display.SetSliceIntersectionThickness(OUTLINE_PIXELS)
     return True
 
 
@@ -190,27 +173,19 @@ def showAsPlanned(node: Any) -> None:
     node.GetDisplayNode().SetSelectedColor(TARGET_COLOR)
 
 
-VOLUME = "vtkMRMLScalarVolumeNode"
-FILE_ATTRIBUTE = "RASTrainer.volumeFile"
-"""Of a node that is not filled yet: the file with its images."""
-
-
 def requestVolume(scene: Any, scenario: Scenario) -> None:
     """Add a node for the images of a scenario, or remove it if the scenario has none.
 
     Called again, nothing is read twice: window, level and what the views show stay as they are.
     """
     node, file = findNode(scene, VOLUME, Role.HEAD_VOLUME), scenario.volume
-    stamp = "" if file is None else stampOf(file.path)
-    isThere = node is not None and isShown(node, SCENARIO_ATTRIBUTE, scenario.name, stamp)
-    if isThere and file is not None:
+    if file is not None and isFileShown(node, scenario.name, file.path):
         return
     removeNode(scene, VOLUME, Role.HEAD_VOLUME)
     if file is None:
         return
     node = findOrAddNode(scene, VOLUME, Role.HEAD_VOLUME, scenario.title)
-    noteShown(node, SCENARIO_ATTRIBUTE, scenario.name, stamp)
-    node.SetAttribute(FILE_ATTRIBUTE, str(file.path))
+    requestFile(node, scenario.name, file.path)
     display = node.GetDisplayNode()
     display.SetAutoWindowLevel(False)
     display.SetWindowLevel(file.window, file.level)
@@ -219,79 +194,55 @@ def requestVolume(scene: Any, scenario: Scenario) -> None:
 def showImages(scene: Any) -> None:
     """Show the images of the scenario behind all else again, where others are."""
     node = findNode(scene, VOLUME, Role.HEAD_VOLUME)
-    if node is not None and not _requested(node):
+    if node is not None and not requestedFile(node):
         showAsBackground(scene, node)
 
 
-def showAsBackground(scene: Any, volume: Any) -> None:
-    """Show a volume behind all else in each slice view."""
+def showAsBackground(scene: Any, volume: Any, later: CallLater = callNow) -> None:
+    """Show a volume behind all else in each slice view, one view after the other by `later`."""
     for composite in nodesOfClass(scene, "vtkMRMLSliceCompositeNode"):
-        composite.SetBackgroundVolumeID(volume.GetID())
+        later(partial(composite.SetBackgroundVolumeID, volume.GetID()))
 
 
-class VolumeLoader:
-    """Fills the node of `requestVolume`, and shows it behind all else in the slice views.
+def scenarioLoader(scene: Any, work: BackgroundWork) -> FileLoader:
+    """Return what fills the nodes of `showScenario`, in the background of `work`."""
+    contents = (
+        FileContent(
+            MODEL, Role.HEAD_MODEL, _readMesh, _fillModel, _("No head is shown: {problem}")
+        ),
+        FileContent(MODEL, Role.SKULL, _readMesh, _fillModel, _("No skull is shown: {problem}")),
+        FileContent(
+            VOLUME,
+            Role.HEAD_VOLUME,
+            read_nrrd,
+            _fillVolume,
+            _("There are no images in the slice views: {problem}"),
+        ),
+    )
+    loader = FileLoader(scene, work, contents)
 
-    Attributes:
-        shown: emits the node when it has been filled.
-        problemFound: emits a sentence if the images cannot be used; the node is removed.
-    """
+    def showIfImages(node: Any) -> None:
+        if node.IsA(VOLUME):
+            showAsBackground(scene, node, work.later)
 
-    def __init__(self, scene: Any, work: BackgroundWork) -> None:
-        """Read in the background of `work`."""
-        self.shown = Signal()
-        self.problemFound = Signal()
-        self._scene = scene
-        self._work = work
-        self._requested: tuple[str, ...] = ()
-
-    def process(self) -> None:
-        """Start reading requested images."""
-        node = findNode(self._scene, VOLUME, Role.HEAD_VOLUME)
-        requested = _requested(node)
-        if requested == self._requested:
-            return
-        self._requested = requested
-        if not requested:
-            return
-        self._work.do(
-            lambda: read_nrrd(Path(requested[-1])),
-            lambda image: self._take(requested, *image),
-            lambda error: self._refuse(requested, error),
-        )
-
-    def _take(self, requested: tuple[str, ...], values: np.ndarray, ijkToRas: np.ndarray) -> None:
-        # In a cleared scene the next node has the same ID, and may request the same at once.
-        self._requested = ()
-        node = self._scene.GetNodeByID(requested[0])
-        if _requested(node) == requested:
-            node.RemoveAttribute(FILE_ATTRIBUTE)
-            _fillVolume(node, values, ijkToRas)
-            showAsBackground(self._scene, node)
-            self.shown.emit(node)
-
-    def _refuse(self, requested: tuple[str, ...], error: Exception) -> None:
-        self._requested = ()
-        node = self._scene.GetNodeByID(requested[0])
-        if _requested(node) == requested:
-            self._scene.RemoveNode(node)
-            if isinstance(error, InputError):
-                sentence = _("There are no images in the slice views: {problem}")
-                self.problemFound.emit(sentence.format(problem=error))
+    loader.shown.connect(showIfImages)
+    return loader
 
 
-def _requested(node: Any | None) -> tuple[str, ...]:
-    """Return which images a node is to be filled with, empty where it is filled or not there."""
-    if node is None or not node.GetAttribute(FILE_ATTRIBUTE):
-        return ()
-    attributes = (node.GetAttribute(name) or "" for name in (CONTENT_ATTRIBUTE, FILE_ATTRIBUTE))
-    return (node.GetID(), *attributes)
+def _readMesh(path: Path) -> HeadMesh:
+    mesh = read_head_mesh(path)
+    mesh.vertex_normals  # noqa: B018 (computed here, in the background, and kept)
+    return mesh
 
 
-def _fillVolume(node: Any, values: np.ndarray, ijkToRas: np.ndarray) -> None:
-    image = vtk.vtkImageData()
-    image.SetDimensions(values.shape)
-    scalars = numpy_to_vtk(values.ravel(order="F"), deep=True)
-    image.GetPointData().SetScalars(scalars)
+def _fillModel(node: Any, mesh: HeadMesh) -> None:
+    node.SetAndObservePolyData(meshPolyData(mesh))
+
+
+def _fillVolume(node: Any, image: tuple[np.ndarray, np.ndarray]) -> None:
+    values, ijkToRas = image
+    data = vtk.vtkImageData()
+    data.SetDimensions(values.shape)
+    data.GetPointData().SetScalars(vtkArray(values.ravel(order="F")))
     node.SetIJKToRASMatrix(slicer.util.vtkMatrixFromArray(ijkToRas))
-    node.SetAndObserveImageData(image)
+    node.SetAndObserveImageData(data)

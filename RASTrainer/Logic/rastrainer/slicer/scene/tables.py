@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import vtk
@@ -13,10 +13,12 @@ import vtk
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
-from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, Role, findNode, findOrAddNode
+from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, Role, changedOnce, findNode, findOrAddNode
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.values import StoredTrial
-from rastrainer.study.tre_calibration import TreCalibration, share_text
+
+if TYPE_CHECKING:
+    from rastrainer.study.tre_calibration import TreCalibration
 
 
 @dataclass(frozen=True)
@@ -31,14 +33,28 @@ class Column:
 def showTable(scene: Any, role: str, name: str, columns: Sequence[Column]) -> Any:
     """Put columns into the `vtkMRMLTableNode` of a role and return it."""
     node = findOrAddNode(scene, "vtkMRMLTableNode", role, name)
-    wasModifying = node.StartModify()
-    node.RemoveAllColumns()
-    node.SetUseColumnTitleAsColumnHeader(True)
-    for column in columns:
-        node.AddColumn(_array(column))
-    node.SetLocked(True)
-    node.EndModify(wasModifying)
+    with changedOnce(node):
+        node.RemoveAllColumns()
+        node.SetUseColumnTitleAsColumnHeader(True)
+        for column in columns:
+            node.AddColumn(_array(column))
+        node.SetLocked(True)
     return node
+
+
+FEWEST_ROWS = 2
+"""Of a table that is plotted: VTK logs an error for each painted line with fewer points, with or
+without a pen, and Slicer plots all series as lines."""
+
+
+def showPlotTable(scene: Any, role: str, name: str, columns: Sequence[Column]) -> Any:
+    """Put columns that are plotted into a `vtkMRMLTableNode`; rows without values may follow."""
+    missing = FEWEST_ROWS - min(len(column.values) for column in columns)
+    padded = [
+        Column(each.name, [*each.values, *[("" if each.isText else None)] * missing], each.isText)
+        for each in columns
+    ]
+    return showTable(scene, role, name, padded)
 
 
 def _array(column: Column) -> vtk.vtkAbstractArray:
@@ -108,10 +124,11 @@ FEWEST_SHOWN = 5.0
 """Trials for which there is room in the plot from the first one on."""
 TRIAL_COLUMN = "trial"
 SCORE_COLUMN = "score"
+TIME_COLUMN = "completion time (s)"
 _SERIES = {
     # Column, its title in the plot, color.
     SCORE_COLUMN: ("Score (0 to 100)", (0.15, 0.4, 0.75)),
-    "completion time (s)": ("Completion time (s)", (0.85, 0.45, 0.1)),
+    TIME_COLUMN: ("Completion time (s)", (0.85, 0.45, 0.1)),
 }
 
 
@@ -128,7 +145,7 @@ def showHistory(scene: Any, pseudonym: str, trials: Sequence[StoredTrial]) -> An
             Column("started (UTC)", [record.started_utc[:19] for record in records], isText=True),
             Column("task", [record.task for record in records], isText=True),
             Column("mode", [record.mode for record in records], isText=True),
-            Column("completion time (s)", [record.completion_time_s for record in records]),
+            Column(TIME_COLUMN, [record.completion_time_s for record in records]),
             Column("FRE (mm)", [fit.fre_mm if fit else None for fit in rigid]),
             Column("expected TRE (mm)", [fit.expected_tre_mm if fit else None for fit in rigid]),
             Column("true TRE (mm)", [trial.true_tre_mm for trial in trials]),
@@ -140,7 +157,17 @@ def showHistory(scene: Any, pseudonym: str, trials: Sequence[StoredTrial]) -> An
 
 def showLearningCurve(scene: Any, pseudonym: str, trials: Sequence[StoredTrial]) -> Any:
     """Plot score and time over the trials in a `vtkMRMLPlotChartNode` and return it."""
-    table = showHistory(scene, pseudonym, trials)
+    showHistory(scene, pseudonym, trials)
+    table = showPlotTable(
+        scene,
+        Role.LEARNING_CURVE,
+        f"Learning curve of {pseudonym}",
+        [
+            Column(TRIAL_COLUMN, range(1, len(trials) + 1)),
+            Column(SCORE_COLUMN, [t.score.score if t.score else None for t in trials]),
+            Column(TIME_COLUMN, [trial.record.completion_time_s for trial in trials]),
+        ],
+    )
     chart = findOrAddNode(
         scene, "vtkMRMLPlotChartNode", Role.LEARNING_CURVE, f"Learning curve of {pseudonym}"
     )
@@ -250,7 +277,7 @@ def showCalibration(scene: Any, found: TreCalibration) -> Any:
 
 def _showCalibrationTable(scene: Any, found: TreCalibration) -> Any:
     points = found.points
-    return showTable(
+    return showPlotTable(
         scene,
         Role.CALIBRATION,
         "True and expected TRE",
@@ -274,6 +301,8 @@ def _showIdentity(scene: Any, end: float) -> Any:
 
 
 def _calibrationTitle(found: TreCalibration) -> str:
+    from rastrainer.study.tre_calibration import share_text
+
     if found.inside is None:
         return _("True against expected TRE")
     return _("True against expected TRE: {count} of {total} inside, {share}").format(

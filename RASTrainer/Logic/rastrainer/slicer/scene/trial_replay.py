@@ -24,7 +24,7 @@ from rastrainer.slicer.scene.nodes import (
     nodesOfClass,
     pointCloud,
 )
-from rastrainer.slicer.scene.robot import ArmChain
+from rastrainer.slicer.scene.robot_description import ArmChain
 
 SAMPLE_HZ = 10.0
 """Of what is shown; the journal has 50 samples a second."""

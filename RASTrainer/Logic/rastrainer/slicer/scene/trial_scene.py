@@ -18,6 +18,7 @@ from rastrainer.slicer.scene.error_colors import showResidualArrows
 from rastrainer.slicer.scene.nodes import (
     Role,
     capturedPointsNode,
+    changedOnce,
     findNode,
     findOrAddNode,
     labelsOf,
@@ -118,10 +119,12 @@ def showRegistration(scene: Any, registration: Registration, moving: Any, fixed:
     """
     node = findOrAddNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD, "WorldToHead")
     isFirst = movingNode(node) is None
-    node.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(registration.matrix))
-    rememberLists(node, moving, fixed)
-    node.SetAttribute(KIND_ATTRIBUTE, registration.kind)
-    node.SetAttribute(FRE_ATTRIBUTE, f"{registration.fre_mm:.6f}")
+    # Touches and robot follow it.
+    with changedOnce(node):
+        node.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(registration.matrix))
+        rememberLists(node, moving, fixed)
+        node.SetAttribute(KIND_ATTRIBUTE, registration.kind)
+        node.SetAttribute(FRE_ATTRIBUTE, f"{registration.fre_mm:.6f}")
     if isFirst:
         setApplied(node, True)
     return node

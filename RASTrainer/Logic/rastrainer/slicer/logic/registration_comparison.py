@@ -1,0 +1,106 @@
+"""The fits of the same pairs side by side, computed from plain data, in any thread."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.registration.fits import RIGID
+from rastrainer.registration.localization_error import LocalizationError
+from rastrainer.registration.registration import Registration, register_all_kinds
+from rastrainer.registration.target_error import TargetError, expected_tre, target_error
+from rastrainer.slicer.scene.registration_input import Choices, Pairs, Remedy, SkinNormals, remedies
+
+
+@dataclass(frozen=True, eq=False)
+class ComparisonRequest:
+    """What is to be registered.
+
+    Attributes:
+        pairs: the pairs.
+        choices: by which they were chosen.
+        kind: of the fit that is shown.
+        target: (3,) float, RAS mm, where errors are reported; None where there is no target.
+        skin: of the head; None where there is no head.
+        headPoints: (v, 3) float, RAS mm, the points of a head that is to be colored, else None.
+    """
+
+    pairs: Pairs
+    choices: Choices
+    kind: str
+    target: np.ndarray | None
+    skin: SkinNormals | None
+    headPoints: np.ndarray | None
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """The fits of the same pairs side by side.
+
+    Attributes:
+        pairs: what was registered.
+        fits: by kind; those that the pairs allow, rigid always.
+        localizations: by kind, the error of the touches along and across the skin; None where
+            nothing but an error that is alike in all directions is known.
+        errors: by kind, what to expect at the target; those that are known.
+        leaveOneOut: by kind, (n,) float, mm, how far each touch lies from where the other pairs
+            put it; those for which the pairs are enough.
+        remedies: the warnings, each with what one click can do.
+        headErrors: (v,) float, mm, what to expect at each point of the head with the shown fit;
+            None where the head is not colored, or nothing is known.
+    """
+
+    pairs: Pairs
+    fits: Mapping[str, Registration]
+    localizations: Mapping[str, LocalizationError | None]
+    errors: Mapping[str, TargetError]
+    leaveOneOut: Mapping[str, np.ndarray]
+    remedies: tuple[Remedy, ...]
+    headErrors: np.ndarray | None
+
+    def fitOf(self, kind: str) -> Registration:
+        """Return the fit of a kind; the rigid one where the pairs do not allow that kind."""
+        return self.fits.get(kind, self.fits[RIGID])
+
+    def targetError(self, fit: Registration, place: np.ndarray) -> TargetError:
+        """Return the error to expect with one of the fits at a place, (3,) float, RAS mm.
+
+        Raises:
+            InputError: the fit has too few points.
+        """
+        return target_error(fit, place, self.localizations[fit.kind])
+
+
+def compareFits(request: ComparisonRequest) -> Comparison:
+    """Register the pairs of a request in all ways.
+
+    Raises:
+        InputError: the pairs allow no rigid registration.
+    """
+    pairs, choices = request.pairs, request.choices
+    weights = choices.weights(pairs.labels)
+    fits = register_all_kinds(pairs.moving, pairs.fixed, pairs.labels, weights)
+    localizations = {kind: _localization(request.skin, fit) for kind, fit in fits.items()}
+    errors, leaveOneOut = {}, {}
+    for kind, fit in fits.items():
+        with contextlib.suppress(InputError):
+            if request.target is not None:
+                errors[kind] = target_error(fit, request.target, localizations[kind])
+        with contextlib.suppress(InputError):
+            leaveOneOut[kind] = fit.leave_one_out_mm()
+    shown = fits.get(request.kind, fits[RIGID])
+    headErrors = None
+    if request.headPoints is not None:
+        with contextlib.suppress(InputError):
+            headErrors = expected_tre(shown, request.headPoints, localizations[shown.kind])
+    found = remedies(fits[RIGID], choices)
+    return Comparison(pairs, fits, localizations, errors, leaveOneOut, found, headErrors)
+
+
+def _localization(skin: SkinNormals | None, fit: Registration) -> LocalizationError | None:
+    # Errors stated for single points replace those estimated from the skin.
+    return None if skin is None or fit.weights is not None else skin.localizationError(fit)

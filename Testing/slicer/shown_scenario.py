@@ -1,0 +1,23 @@
+"""A scenario in the scene with all its files, read at once."""
+
+from rastrainer.slicer.background_work import BackgroundWork
+from rastrainer.slicer.scene.scenario_nodes import scenarioLoader, showScenario
+
+
+def show_whole(scene, scenario):
+    """Show a scenario, and fill its nodes; return the sentences about files that are unusable."""
+    showScenario(scene, scenario)
+    return load_files(scene)
+
+
+def load_files(scene):
+    """Fill all nodes of the scene that wait for their files; return as `show_whole`."""
+    work, problems = BackgroundWork(), []
+    loader = scenarioLoader(scene, work)
+    loader.problemFound.connect(problems.append)
+    loader.process()
+    while work.isBusy:
+        work.yieldTime()
+        work.process()
+    work.close()
+    return problems

@@ -1,0 +1,98 @@
+"""What the module hands to the scene comes in parts, between which Slicer's window answers."""
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.scenario.points import LABELS
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
+from rastrainer.slicer.scene.robot import robotNode
+from rastrainer_simulator.assets import asset_path
+from Testing.slicer.host.scene_load import SceneLoad
+from Testing.slicer.simulator_double import SimulatorDouble
+
+
+@pytest.fixture
+def colin():
+    return load_scenario(asset_path("scenarios", "colin27"))
+
+
+@pytest.fixture
+def opened(host):
+    host.open()
+    host.unfold("robotCheckBox")
+    return host
+
+
+def shown(host, *actions):
+    """Return what the scene was handed until all that the actions have begun was shown."""
+    with SceneLoad(host.scene) as load:
+        for action in actions:
+            action()
+            host.idle_for(0.3)
+            host.finish_work()
+    return load
+
+
+def triangles(path):
+    return len(read_head_mesh(path).triangles)
+
+
+def test_a_scenario_comes_one_surface_and_one_view_at_a_time(opened, colin):
+    load = shown(opened, lambda: opened.press("showScenarioButton"))
+    largest = max(triangles(colin.head_mesh), triangles(colin.skull_mesh))
+    assert load.most.cells == largest
+    assert load.total.cells == triangles(colin.head_mesh) + triangles(colin.skull_mesh)
+    assert load.most.views == 1
+    assert load.total.views > 1
+
+
+def test_the_robot_comes_one_link_at_a_time_and_is_told_of_once(opened):
+    load = shown(opened, lambda: opened.check("robotCheckBox"))
+    cells = [robotNode(opened.scene, n).GetPolyData().GetNumberOfCells() for n in range(8)]
+    assert load.most.cells == max(cells)
+    assert load.total.cells == sum(cells)
+    # A model, its display and its pose, which are set before the scene is told of them.
+    assert load.most.nodes <= 3
+    assert load.most.events < 20
+
+
+def test_touches_are_shown_in_parts_and_each_once(opened, colin):
+    opened.press("showScenarioButton")
+    opened.finish_work()
+    touched = transforms.apply(
+        colin.perturbed_head_to_world(3), colin.task("task-1").fiducials + 0.3
+    )
+    points = capturedPointsNode(opened.scene)
+    load = shown(
+        opened,
+        lambda: setPoints(points, LABELS[:14], touched[:14]),
+        lambda: setPoints(points, LABELS, touched),
+    )
+    assert opened.find("residualsTable").rowCount == 15
+    # The arrows of both; the head is not handed over again.
+    assert 0 < load.most.cells < load.total.cells < triangles(colin.head_mesh)
+    assert load.most.events < 50
+
+
+def test_the_views_jump_to_a_chosen_point_one_after_the_other(opened):
+    opened.press("showScenarioButton")
+    opened.finish_work()
+    load = shown(opened, lambda: opened.widget.logic.session.slices.show(np.ones(3)))
+    assert (load.most.views, load.total.views) == (1, 3)
+
+
+def test_connecting_makes_one_node_at_a_time(opened):
+    def connect():
+        opened.press("connectButton")
+        name = "Link7ToWorld"
+        opened.wait_until(lambda: opened.scene.GetFirstNodeByName(name), "all nodes are there")
+
+    with SimulatorDouble() as simulator:
+        opened.type("portSpinBox", str(simulator.port))
+        load = shown(opened, connect)
+    # The list of touches and its display come with the module's own node and that of the state.
+    assert load.most.nodes <= 4
+    assert load.total.nodes > 12
