@@ -23,10 +23,12 @@ class Volume:
     Attributes:
         values: (i, j, k) float.
         ijkToRas: (4, 4) float, maps voxel indices to patient coordinates, mm.
+        warnings: what its file leaves open, one sentence each.
     """
 
     values: np.ndarray
     ijkToRas: np.ndarray
+    warnings: tuple[str, ...] = ()
 
 
 def volumeFromNode(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
@@ -56,7 +58,7 @@ def imageOfNode(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
 
 def asFloat(volume: Volume) -> Volume:
     """Return a copy of a volume with values of type float32."""
-    return Volume(volume.values.astype(np.float32), volume.ijkToRas)
+    return replace(volume, values=volume.values.astype(np.float32))
 
 
 def toWorld(node: slicer.vtkMRMLTransformableNode) -> np.ndarray:
