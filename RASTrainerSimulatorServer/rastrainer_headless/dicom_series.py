@@ -30,6 +30,9 @@ FEWEST_SLICES = 8
 EVEN_WITHIN = 0.1
 """Share of a step by which steps may differ; more means that a slice is missing."""
 
+IN_LINE_WITHIN = 0.5
+"""Share of a step by which a slice may lie beside the line of the others."""
+
 _SAME_AXES, _SAME_PLACE_MM = 1e-3, 0.01
 _MAGIC_AT, _MAGIC = 128, b"DICM"
 _FIRST_GROUPS = (b"\x08\x00", b"\x02\x00", b"\x00\x08")
@@ -229,7 +232,7 @@ def _stacked(folder: Path, slices: list[_Slice], notes: tuple[str, ...]) -> Volu
     matrix[:3, 2] = (places[-1] - places[0]) / (len(places) - 1)
     matrix[:3, 3] = places[0]
     line = places[0] + np.arange(len(places))[:, None] * matrix[:3, 2]
-    if np.abs(places - line).max() > EVEN_WITHIN * max(step, 1.0) * 5:
+    if np.abs(places - line).max() > IN_LINE_WITHIN * step:
         raise InputError(f"The slices of the DICOM series in {folder} do not lie in one line.")
     return Volume(np.stack(values, axis=2), matrix, notes)
 

@@ -76,4 +76,4 @@ def _middle(volume: HeadVolume, head: HeadMesh) -> np.ndarray:
     values = np.full((SIDE, SIDE), float(volume.values.min()))
     values[is_within] = volume.values[tuple(voxels[is_within].T)]
     share = np.clip((values - volume.level) / volume.window + 0.5, 0.0, 1.0)
-    return np.repeat(np.uint8(255 * share)[:, :, None], 3, axis=2)
+    return np.repeat((255 * share).astype(np.uint8)[:, :, None], 3, axis=2)
