@@ -1,7 +1,7 @@
 """Make the draft of a head from a volume.
 
-    python -m rastrainer_headless.make_head VOLUME -o DIR [--threshold T] [--cut S] [--no-skull]
-        [--no-volume]
+    python -m rastrainer_headless.make_head VOLUME -o DIR [--threshold T] [--cut S]
+        [--orientation LAS] [--no-skull] [--no-volume]
 
 Standard output has a line such as ` 30%  Filling cavities` a step, and `Warning: …` lines. At the
 line `The head is made.` DIR holds the draft without its skull, which is put there at the end. Exit
@@ -29,12 +29,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         from rastrainer_headless.volume_files import readAnyVolume
     except ImportError as error:
         print(
-            f"A head cannot be made here, {error.name} is missing: pip install slicer-core scipy",
+            f"A head cannot be made here, {error.name} is missing: pip install slicer-core scipy "
+            "pydicom",
             file=sys.stderr,
         )
         return 2
     try:
-        volume = readAnyVolume(arguments.volume)
+        volume = readAnyVolume(arguments.volume, arguments.orientation)
         settings = HeadSettings(threshold=arguments.threshold, baseMm=arguments.cut)
 
         def headMade(head: HeadDraft, warnings: list[str]) -> None:
@@ -68,6 +69,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR")
     parser.add_argument("--threshold", type=float, help="value that parts air from skin")
     parser.add_argument("--cut", type=float, metavar="S", help="height of the base, mm superior")
+    parser.add_argument("--orientation", help="of a file that states none, such as LAS")
     parser.add_argument("--no-skull", action="store_true")
     parser.add_argument("--no-volume", action="store_true")
     return parser

@@ -74,6 +74,6 @@ def test_a_volume_is_built_loaded_and_trained_on_by_the_command_line(environment
         assert "my-head" in listed.stdout
         trains_on(simulator.port, "my-head", "My head")
         package = tmp_path / "my-head.zip"
-        words = ["pack", str(folder), str(package)]
+        words = ["pack", str(folder), str(package), "--yes"]
         subprocess.run([*RASTRAINER, *words], check=True, env=environment)
         assert package.stat().st_size < 10_000_000

@@ -23,8 +23,10 @@ from rastrainer.procedure.plan import read_all_no_go
 from rastrainer.scenario.library import checked_scenario, pack
 from rastrainer.scenario.scenario import PREVIEW_NAME, Scenario
 from rastrainer.scenario.writer import scenario_name, write_scenario
+from rastrainer_simulator.authoring.face_picture import draw_removal
 from rastrainer_simulator.authoring.face_removal import (
     RADIUS_MM,
+    check_front,
     face_vertices,
     nose_tip,
     without_face,
@@ -170,6 +172,22 @@ FACELESS = " The face was taken off."
 NO_SOURCE = "Removed before the scenario was shared."
 
 
+def draw_face_removal(folder: Path, picture: Path) -> str:
+    """Draw a scenario's head before and after its face is removed, and return a sentence on it.
+
+    Raises:
+        InputError: the scenario cannot be used, has fiducials on the face, or looks backward.
+    """
+    scenario = checked_scenario(folder)
+    head = read_head_mesh(scenario.head_mesh)
+    warning = check_front(head)
+    volume = read_head_volume(scenario.volume) if scenario.volume else None
+    _, shield = _faceless(scenario, head)
+    volumes = (volume, without_face_in(volume, head)) if volume else None
+    draw_removal(picture, (head, shield), volumes)
+    return f"The picture shows the head before (above) and after. {warning}".rstrip()
+
+
 def pack_for_sharing(
     folder: Path, package: Path, keeps_face: bool = False, keeps_names: bool = False
 ) -> str:
@@ -185,13 +203,14 @@ def pack_for_sharing(
             its head's surface.
 
     Raises:
-        InputError: the scenario cannot be used, or has fiducials on the face.
+        InputError: the scenario cannot be used, has fiducials on the face, or looks backward.
     """
     scenario, taken = checked_scenario(folder), []
     head = read_head_mesh(scenario.head_mesh)
     skull = read_head_mesh(scenario.skull_mesh) if scenario.skull_mesh else None
     volume = read_head_volume(scenario.volume) if scenario.volume else None
     preview = scenario.preview
+    warning = "" if keeps_face else check_front(head)
     if not keeps_face:
         volume = without_face_in(volume, head) if volume else None
         scenario, head, skull = *_faceless(scenario, head), None
@@ -215,7 +234,7 @@ def pack_for_sharing(
         pack(clean, package)
     if not taken:
         return "Nothing was removed."
-    return f"Removed: {', '.join(taken)}. It is called {scenario.title} now."
+    return f"Removed: {', '.join(taken)}. It is called {scenario.title} now. {warning}".rstrip()
 
 
 def _faceless(scenario: Scenario, head: HeadMesh) -> tuple[Scenario, HeadMesh]:

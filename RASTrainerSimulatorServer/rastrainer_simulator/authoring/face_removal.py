@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rastrainer.errors import InputError
 from rastrainer.head.mesh import FLAT_MM, HeadMesh
 
 RADIUS_MM = 72.0
@@ -17,6 +18,11 @@ RADIUS_MM = 72.0
 
 MIDLINE_MM = 25.0
 NOSE_BELOW_TOP_SHARE = (0.45, 0.95)
+BESIDE_MM, BESIDE_WITHIN_MM = 18.0, 4.0
+LEAST_NOSE_MM = 5.0
+"""In front of the cheeks beside it: noses have 7 mm and more, the back of a head 1 to 3."""
+
+NOT_BEHIND = 0.5
 _ITERATIONS = 4000
 _TOLERANCE = 1e-4
 
@@ -43,6 +49,32 @@ def nose_tip(mesh: HeadMesh) -> np.ndarray:
     candidates = (np.abs(vertices[:, 0] - middle) < MIDLINE_MM) & (below > low) & (below < high)
     places = vertices[candidates] if candidates.any() else vertices
     return places[places[:, 1].argmax()]
+
+
+def check_front(mesh: HeadMesh) -> str:
+    """Return a warning if no nose is found in front of a head; empty if there is one.
+
+    Raises:
+        InputError: the nose is behind.
+    """
+    behind = HeadMesh(mesh.vertices * np.array([-1.0, -1.0, 1.0]), mesh.triangles)
+    front, back = _nose_height(mesh), _nose_height(behind)
+    if back > LEAST_NOSE_MM and front < NOT_BEHIND * back:
+        raise InputError(
+            "This head looks backward: its nose is where its back should be (posterior), so the "
+            "face would be kept. Make the scenario again with the right orientation of the images."
+        )
+    if front > LEAST_NOSE_MM:
+        return ""
+    return "No nose was found in front: the face may be gone already, or be elsewhere."
+
+
+def _nose_height(mesh: HeadMesh) -> float:
+    """Return how far the tip of the nose is in front of what is beside it, mm."""
+    tip, vertices = nose_tip(mesh), mesh.vertices
+    aside = np.abs(np.abs(vertices[:, 0] - tip[0]) - BESIDE_MM)
+    is_beside = (aside < BESIDE_WITHIN_MM) & (np.abs(vertices[:, 2] - tip[2]) < BESIDE_WITHIN_MM)
+    return float(tip[1] - vertices[is_beside, 1].max(initial=vertices[:, 1].min()))
 
 
 def without_face(mesh: HeadMesh) -> HeadMesh:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import signal
 import sys
+import tempfile
 from pathlib import Path
 
 from rastrainer.errors import InputError
@@ -87,6 +88,13 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     packing.add_argument("folder", type=Path, metavar="DIR")
     packing.add_argument("package", type=Path, metavar="ZIP")
+    packing.add_argument(
+        "--picture",
+        type=Path,
+        metavar="PNG",
+        help="only draw the head before and after; write no zip file",
+    )
+    packing.add_argument("--yes", action="store_true", help="the picture was looked at")
     packing.add_argument(
         "--keep-face", action="store_true", help="the patient can then be recognized"
     )
@@ -211,13 +219,37 @@ def _landmarks(arguments: argparse.Namespace) -> int:
 
 
 def _pack(arguments: argparse.Namespace) -> int:
-    from rastrainer_simulator.authoring.export import pack_for_sharing
+    from rastrainer_simulator.authoring.export import draw_face_removal, pack_for_sharing
 
     package = arguments.package
+    if arguments.picture is not None:
+        sentence = draw_face_removal(arguments.folder, arguments.picture)
+        print(f"{arguments.picture}\n{sentence}")
+        return 0
+    if not (arguments.keep_face or arguments.yes):
+        _ask_about_face(arguments.folder)
     taken = pack_for_sharing(arguments.folder, package, arguments.keep_face, arguments.keep_names)
     print(f"{package} ({package.stat().st_size / 1e6:.1f} MB)")
     print(taken)
     return 0
+
+
+def _ask_about_face(folder: Path) -> None:
+    """Ask on the terminal whether the picture shows that the face would be gone."""
+    from rastrainer_simulator.authoring.export import draw_face_removal
+
+    if not sys.stdin.isatty():
+        raise InputError(
+            "Whether the face is gone is for you to judge: draw the head before and after with "
+            "--picture PNG, look at it, and repeat with --yes."
+        )
+    with tempfile.TemporaryDirectory() as temporary:
+        picture = Path(temporary) / "before-and-after.png"
+        sentence = draw_face_removal(folder, picture)
+        print(f"{picture}\n{sentence}")
+        answer = input("Is the face gone? Only then write the zip file. [y/N] ")
+    if answer.strip().lower() not in ("y", "yes"):
+        raise InputError("Nothing was written.")
 
 
 def _unpack(arguments: argparse.Namespace) -> int:

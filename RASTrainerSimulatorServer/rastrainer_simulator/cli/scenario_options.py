@@ -31,6 +31,11 @@ def add_head_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--cut", type=float, metavar="S", help="height of the flat base, mm superior"
     )
+    parser.add_argument(
+        "--orientation",
+        metavar="LAS",
+        help="how the axes of a file run that states none: to the left, anterior, superior",
+    )
 
 
 def add_library(parser: argparse.ArgumentParser) -> None:
@@ -150,8 +155,9 @@ def trajectory_of(arguments: argparse.Namespace) -> PlannedTrajectory | None:
 
 def head_arguments(arguments: argparse.Namespace) -> list[str]:
     """Return how the head is found, for the process that finds it."""
-    named = (("--threshold", arguments.threshold), ("--cut", arguments.cut))
-    return [f"{name}={value!r}" for name, value in named if value is not None]
+    named = ("threshold", "cut", "orientation")
+    given = ((name, getattr(arguments, name)) for name in named)
+    return [f"--{name}={value}" for name, value in given if value is not None]
 
 
 def procedure_of(arguments: argparse.Namespace) -> Procedure | None:

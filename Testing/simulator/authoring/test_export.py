@@ -1,15 +1,19 @@
 """Exported scenarios: without face and names unless they are to be kept."""
 
+import io
 import json
 import re
 import zipfile
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from rastrainer import transforms
-from rastrainer.head.mesh import nearest_on_mesh, read_head_mesh
+from rastrainer.errors import InputError
+from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, read_head_mesh, write_head_mesh
 from rastrainer.head.volume import KEPT_MM, HeadVolume, read_head_volume
 from rastrainer.scenario.library import unpack
 from rastrainer.scenario.scenario import load_scenario
@@ -19,8 +23,10 @@ from rastrainer.slicer.head.mask import squaredDistances
 from rastrainer.slicer.head.volume import HeadSettings, Volume
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.export import Grid, without_face_in
+from rastrainer_simulator.authoring.face_picture import SIDE
 from rastrainer_simulator.authoring.face_removal import (
     RADIUS_MM,
+    check_front,
     face_vertices,
     nose_tip,
     without_face,
@@ -33,6 +39,7 @@ from Testing.domain.procedure.made_up_procedure import (
     vessel,
 )
 from Testing.domain.scenario.made_up_scenario import ball_head, ball_volume, made_up_scenario, png
+from Testing.simulator.authoring import heads
 from Testing.simulator.authoring.heads import egg
 from Testing.simulator.authoring.test_face_removal import head as ball_with_a_face
 
@@ -58,7 +65,7 @@ def folder(tmp_path):
 def test_by_default_the_face_is_removed_from_mesh_and_picture_and_the_skull_is_left_out(
     folder, tmp_path, capsys
 ):
-    assert main(["scenario", "pack", str(folder), str(tmp_path / "out.zip")]) == 0
+    assert main(["scenario", "pack", str(folder), str(tmp_path / "out.zip"), "--yes"]) == 0
     assert "Removed: the face, the skull, its title, its name, its source." in (
         capsys.readouterr().out
     )
@@ -115,9 +122,83 @@ def test_fiducials_on_the_face_are_reported_and_nothing_is_written(tmp_path, cap
     spots = np.argsort(-head.vertices[:, 2])[:300:20]
     spots[3] = head.vertices[:, 1].argmax()
     folder = written(tmp_path / "egg", spots)
-    assert main(["scenario", "pack", str(folder), str(tmp_path / "out.zip")]) == 2
+    assert main(["scenario", "pack", str(folder), str(tmp_path / "out.zip"), "--yes"]) == 2
     assert "has fiducials on the face (4)" in capsys.readouterr().err
     assert not (tmp_path / "out.zip").exists()
+
+
+class Terminal:
+    """A user at a terminal."""
+
+    def isatty(self):
+        return True
+
+
+def pixels(path):
+    """Return a picture as (height, width, 3) uint8."""
+    return np.asarray(Image.open(path).convert("RGB"))
+
+
+@pytest.mark.usefixtures("unrendered")
+@pytest.mark.parametrize(("answer", "status"), [("y", 0), ("", 2), ("no", 2)])
+def test_a_user_at_a_terminal_sees_before_and_after_and_is_asked(
+    folder, tmp_path, capsys, monkeypatch, answer, status
+):
+    shown = []
+
+    def look(question):
+        path = Path(capsys.readouterr().out.splitlines()[0])
+        shown.append((question, pixels(path)))
+        return answer
+
+    monkeypatch.setattr("sys.stdin", Terminal())
+    monkeypatch.setattr("builtins.input", look)
+    package = tmp_path / "out.zip"
+    assert main(["scenario", "pack", str(folder), str(package)]) == status
+    ((question, picture),) = shown
+    assert "Is the face gone?" in question
+    assert package.exists() == (status == 0)
+    before, after = np.split(picture[:, : 3 * SIDE].astype(int), 2)
+    front, right, behind = (
+        np.abs(before - after)[:, k * SIDE : (k + 1) * SIDE].max(axis=-1) > 40 for k in range(3)
+    )
+    assert front.mean() > 0.005
+    assert right.mean() > 0.01
+    assert behind.mean() < 0.001
+
+
+def test_without_a_terminal_the_picture_must_be_confirmed(folder, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("sys.stdin", io.StringIO("y\n"))
+    package, picture = tmp_path / "out.zip", tmp_path / "look.png"
+    assert main(["scenario", "pack", str(folder), str(package)]) == 2
+    assert "--picture PNG, look at it, and repeat with --yes" in capsys.readouterr().err
+    assert main(["scenario", "pack", str(folder), str(package), "--picture", str(picture)]) == 0
+    assert pixels(picture).shape[0] == 2 * SIDE
+    assert not package.exists()
+
+
+@pytest.mark.usefixtures("unrendered")
+@pytest.mark.parametrize("words", [["--yes"], ["--picture", "look.png"]])
+def test_the_face_of_a_head_that_looks_backward_is_not_looked_for_in_its_back(
+    folder, tmp_path, capsys, words
+):
+    head = egg()
+    write_head_mesh(
+        folder / "head.ply", HeadMesh(head.vertices * [-1.0, -1.0, 1.0], head.triangles)
+    )
+    assert main(["scenario", "pack", str(folder), str(tmp_path / "out.zip"), *words]) == 2
+    assert "looks backward" in capsys.readouterr().err
+    assert not (tmp_path / "out.zip").exists()
+
+
+@pytest.mark.parametrize("name", ["colin27", "deformed", "small", "egg"])
+def test_a_nose_in_front_raises_no_doubt_and_a_head_without_one_does(name):
+    head = getattr(heads, name)()
+    assert check_front(head) == ""
+    assert "No nose was found in front" in check_front(without_face(head))
+    behind = HeadMesh(head.vertices * np.array([-1.0, -1.0, 1.0]), head.triangles)
+    with pytest.raises(InputError, match="looks backward"):
+        check_front(behind)
 
 
 REACH_MM = 6
@@ -257,7 +338,7 @@ def test_by_default_landmarks_are_left_out_with_the_face_and_procedures_with_the
     nasion = [{"name": "Nasion", "positionRas": [0.0, 90.0, -40.0]}]
     path.write_text(json.dumps(json.loads(path.read_text()) | {"landmarks": nasion}))
     package = tmp_path / "out.zip"
-    assert main(["scenario", "pack", str(planned), str(package)]) == 0
+    assert main(["scenario", "pack", str(planned), str(package), "--yes"]) == 0
     assert (
         "Removed: the face, the skull, the landmarks, most of which were on the face, the "
         "procedures, which need the skull, its title"

@@ -1,70 +1,104 @@
-"""Write a DICOM series, for tests: the least that a reader of CT slices needs (PS3.5, PS3.10)."""
+"""Write DICOM files for tests: series of slices, and an enhanced file of many frames."""
 
-import struct
+from __future__ import annotations
+
+import io
 
 import numpy as np
+import pydicom
+from pydicom.dataset import FileMetaDataset
+from pydicom.uid import (
+    CTImageStorage,
+    EnhancedMRImageStorage,
+    ExplicitVRLittleEndian,
+    generate_uid,
+)
 
-EXPLICIT_LITTLE_ENDIAN = "1.2.840.10008.1.2.1"
-CT_IMAGE_STORAGE = "1.2.840.10008.5.1.4.1.1.2"
-LONG = {"OB", "OW", "SQ", "UN", "UT"}
+LPS_TO_RAS = np.diag([-1.0, -1.0, 1.0, 1.0])
 
 
 def write_series(folder, values, spacing, series="1.2.3.4", first=(0.0, 0.0, 0.0)):
     """Write (i, j, k) int16 values, axial, one file a slice from below; `first` is LPS mm."""
-    folder.mkdir(exist_ok=True)
-    for k in range(values.shape[2]):
-        position = (first[0], first[1], first[2] + k * spacing[2])
-        name = f"{series}-{(k * 7) % values.shape[2]:03d}.dcm"
-        (folder / name).write_bytes(slice_file(values[:, :, k], spacing, position, series, k))
+    matrix = np.diag([*spacing, 1.0])
+    matrix[:3, 3] = first
+    write_slices(folder, slices(values, matrix, series), series)
+
+
+def write_slices(folder, datasets, prefix="IM"):
+    """Write each data set into its own file, in another order than that of their places."""
+    folder.mkdir(exist_ok=True, parents=True)
+    for k, each in enumerate(datasets):
+        path = folder / f"{prefix}-{(k * 7) % len(datasets):03d}-{k}.dcm"
+        each.save_as(path, enforce_file_format=True)
+
+
+def slices(values, matrix, series="1.2.3.4", **tags):
+    """Return the data sets of (i, j, k) int16 values whose indices `matrix` (4, 4) takes to LPS."""
+    return [_slice(values[:, :, k], matrix, series, k, tags) for k in range(values.shape[2])]
 
 
 def slice_file(values, spacing, position, series, number):
-    uid = f"{series}.{number + 1}"
-    pixels = np.ascontiguousarray(values.T.astype("<i2")).tobytes()
-    meta = b"".join(
-        [
-            element(0x0002, 0x0001, "OB", b"\0\1"),
-            element(0x0002, 0x0002, "UI", CT_IMAGE_STORAGE),
-            element(0x0002, 0x0003, "UI", uid),
-            element(0x0002, 0x0010, "UI", EXPLICIT_LITTLE_ENDIAN),
-            element(0x0002, 0x0012, "UI", "1.2.3"),
-        ]
-    )
-    data = b"".join(
-        [
-            element(0x0008, 0x0016, "UI", CT_IMAGE_STORAGE),
-            element(0x0008, 0x0018, "UI", uid),
-            element(0x0008, 0x0060, "CS", "CT"),
-            element(0x0018, 0x0050, "DS", f"{spacing[2]:g}"),
-            element(0x0020, 0x000D, "UI", "1.2.3.9"),
-            element(0x0020, 0x000E, "UI", series),
-            element(0x0020, 0x0013, "IS", str(number + 1)),
-            element(0x0020, 0x0032, "DS", "\\".join(f"{x:g}" for x in position)),
-            element(0x0020, 0x0037, "DS", "1\\0\\0\\0\\1\\0"),
-            element(0x0028, 0x0002, "US", 1),
-            element(0x0028, 0x0004, "CS", "MONOCHROME2"),
-            element(0x0028, 0x0010, "US", values.shape[1]),
-            element(0x0028, 0x0011, "US", values.shape[0]),
-            element(0x0028, 0x0030, "DS", f"{spacing[1]:g}\\{spacing[0]:g}"),
-            element(0x0028, 0x0100, "US", 16),
-            element(0x0028, 0x0101, "US", 16),
-            element(0x0028, 0x0102, "US", 15),
-            element(0x0028, 0x0103, "US", 1),
-            element(0x0028, 0x1052, "DS", "0"),
-            element(0x0028, 0x1053, "DS", "1"),
-            element(0x7FE0, 0x0010, "OW", pixels),
-        ]
-    )
-    return bytes(128) + b"DICM" + element(0x0002, 0x0000, "UL", len(meta)) + meta + data
+    """Return the bytes of one slice, (i, j) int16."""
+    matrix = np.diag([*spacing, 1.0])
+    matrix[:3, 3] = np.array(position) - [0.0, 0.0, number * spacing[2]]
+    content = io.BytesIO()
+    _slice(values, matrix, series, number, {}).save_as(content, enforce_file_format=True)
+    return content.getvalue()
 
 
-def element(group, number, kind, value):
-    if kind in ("US", "UL"):
-        value = struct.pack("<H" if kind == "US" else "<I", value)
-    elif isinstance(value, str):
-        value = value.encode()
-    if len(value) % 2:
-        value += b"\0" if kind == "UI" else b" "
-    head = struct.pack("<HH", group, number) + kind.encode()
-    length = struct.pack("<HI", 0, len(value)) if kind in LONG else struct.pack("<H", len(value))
-    return head + length + value
+def enhanced(values, matrix):
+    """Return the data set of an enhanced MRI: all slices as frames of one file, from above."""
+    image = _pixels(values[:, :, 0], EnhancedMRImageStorage)
+    image.SeriesInstanceUID, image.Modality = "1.2.3.5", "MR"
+    image.NumberOfFrames = values.shape[2]
+    shared, measures, orientation = (pydicom.Dataset() for _ in range(3))
+    spacing = np.linalg.norm(matrix[:3, :3], axis=0)
+    measures.PixelSpacing = [spacing[1], spacing[0]]
+    orientation.ImageOrientationPatient = _direction(matrix, spacing)
+    shared.PixelMeasuresSequence, shared.PlaneOrientationSequence = [measures], [orientation]
+    image.SharedFunctionalGroupsSequence = [shared]
+    order = range(values.shape[2])[::-1]
+    frames = []
+    for k in order:
+        frame, place = pydicom.Dataset(), pydicom.Dataset()
+        place.ImagePositionPatient = _numbers((matrix @ [0, 0, k, 1])[:3])
+        frame.PlanePositionSequence = [place]
+        frames.append(frame)
+    image.PerFrameFunctionalGroupsSequence = frames
+    image.PixelData = b"".join(values[:, :, k].T.astype("<i2").tobytes() for k in order)
+    return image
+
+
+def _slice(values, matrix, series, number, tags):
+    image = _pixels(values, CTImageStorage)
+    image.SOPInstanceUID = f"{series}.{number + 1}"
+    image.Modality, image.SeriesInstanceUID, image.InstanceNumber = "CT", series, number + 1
+    spacing = np.linalg.norm(matrix[:3, :3], axis=0)
+    image.PixelSpacing = _numbers([spacing[1], spacing[0]])
+    image.ImageOrientationPatient = _direction(matrix, spacing)
+    image.ImagePositionPatient = _numbers((matrix @ [0, 0, number, 1])[:3])
+    image.RescaleIntercept, image.RescaleSlope = "0", "1"
+    for name, value in tags.items():
+        setattr(image, name, value)
+    return image
+
+
+def _pixels(values, kind):
+    image = pydicom.Dataset()
+    image.file_meta = FileMetaDataset()
+    image.file_meta.TransferSyntaxUID = ExplicitVRLittleEndian
+    image.SOPClassUID, image.SOPInstanceUID = kind, generate_uid(entropy_srcs=["a head"])
+    image.Columns, image.Rows = values.shape
+    image.SamplesPerPixel, image.PhotometricInterpretation = 1, "MONOCHROME2"
+    image.BitsAllocated, image.BitsStored, image.HighBit = 16, 16, 15
+    image.PixelRepresentation = 1
+    image.PixelData = np.ascontiguousarray(values.T.astype("<i2")).tobytes()
+    return image
+
+
+def _direction(matrix, spacing):
+    return _numbers((matrix[:3, :2] / spacing[:2]).T.ravel())
+
+
+def _numbers(values):
+    return [f"{value:.10g}"[:16] for value in values]

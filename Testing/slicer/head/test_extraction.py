@@ -3,12 +3,14 @@
 import numpy as np
 import pytest
 from scipy import ndimage
+from scipy.spatial.transform import Rotation
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.head.extraction import findHead, skinOf
+from rastrainer.slicer.head.surface import cutFlat, decimated, meshOf, smoothed, surfaceOf
 from rastrainer.slicer.head.volume import HeadSettings, Volume, onRasGrid
 from rastrainer.work_progress import no_progress
-from Testing.slicer.head.phantoms import DOUBLE_OBLIQUE, SAGITTAL
+from Testing.slicer.head.phantoms import DOUBLE_OBLIQUE, SAGITTAL, depth_mm
 
 SEMI_AXES = np.array([33.0, 38.0, 36.0])
 CENTER = np.array([4.0, -7.0, 12.0])
@@ -116,6 +118,26 @@ def test_the_skin_is_found_however_the_scan_is_oriented_and_stored(directions, s
     assert mesh.is_closed
     assert mesh.euler_characteristic == 2
     assert mesh.vertices[:, 2].min() == pytest.approx(LOWEST + 1.0, abs=0.5)
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_a_head_turned_by_up_to_15_degrees_is_cut_flat_and_closed_at_any_height(seed):
+    chance = np.random.default_rng(seed)
+    turn = Rotation.from_euler("xyz", chance.uniform(-15.0, 15.0, 3), degrees=True).as_matrix()
+    ras = (np.indices((41, 51, 44)).reshape(3, -1).T * 5.0 - [100.0, 125.0, 90.0]) @ turn
+    level = np.clip(depth_mm(ras).reshape(41, 51, 44) / 5.0, -1.0, 1.0)
+    skin = meshOf(decimated(smoothed(surfaceOf(level, np.zeros(3), 5.0)), 3000, 0.0))
+    lowest, top = skin.vertices[:, 2].min(), skin.vertices[:, 2].max()
+    for height in chance.uniform(lowest + 1.0, top - 5.0, 8):
+        cut = cutFlat(skin, height)
+        assert cut.is_closed
+        assert cut.euler_characteristic == 2
+        assert cut.vertices[:, 2].min() == pytest.approx(height, abs=1e-4)
+        base = cut.vertices[cut.triangles][
+            (cut.vertices[cut.triangles][:, :, 2] < height + 1e-3).all(axis=1)
+        ]
+        crosses = np.cross(base[:, 1] - base[:, 0], base[:, 2] - base[:, 0])
+        assert (crosses[:, 2] <= 1e-3).all()
 
 
 def test_a_nose_cut_off_by_the_image_ends_rounded_a_few_millimeters_beyond_it():

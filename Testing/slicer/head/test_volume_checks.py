@@ -5,7 +5,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.head.head_draft import checkVolume, makeDraft
-from rastrainer_headless.volume_files import readDicomFolder
+from rastrainer_headless.dicom_series import readDicom
 from Testing.slicer.head.broken_volumes import HEADLESS, UNUSABLE, block
 from Testing.slicer.head.dicom_series import write_series
 
@@ -46,7 +46,7 @@ def test_a_dicom_series_is_read_by_position_whatever_its_files_are_called(tmp_pa
     write_series(tmp_path, values, (2.0, 3.0, 4.0), first=(-10.0, -20.0, -30.0))
     write_series(tmp_path, values[:, :, :9] + 7, (2.0, 3.0, 4.0), series="1.2.3.5")
     (tmp_path / "notes.txt").write_text("no image")
-    read = readDicomFolder(tmp_path)
+    read = readDicom(tmp_path)
     assert np.array_equal(read.values, values)
     # DICOM is LPS, the volume RAS: x and y change their signs.
     assert np.allclose(read.ijkToRas[:3, :3], np.diag([-2, -3, 4]))
@@ -58,11 +58,11 @@ def test_a_series_with_a_missing_slice_is_refused(tmp_path):
     write_series(tmp_path, values, (1.0, 1.0, 2.0))
     sorted(tmp_path.iterdir())[4].unlink()
     with pytest.raises(InputError, match="not evenly spaced"):
-        readDicomFolder(tmp_path)
+        readDicom(tmp_path)
 
 
 @pytest.mark.parametrize("content", [b"", bytes(128) + b"DICM" + b"\x02\x00garbage" * 40])
 def test_a_folder_without_readable_dicom_is_refused(tmp_path, content):
     (tmp_path / "a.dcm").write_bytes(content)
     with pytest.raises(InputError, match="DICOM"):
-        readDicomFolder(tmp_path)
+        readDicom(tmp_path)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -133,7 +134,7 @@ class ScenarioPanel:
             # A file named after the patient would reveal the name, too.
             proposed = f"{name}.zip" if keepsNames else "head.zip"
             path = askWhereToSave(_("Save the scenario"), proposed, "Zip (*.zip)")
-            if path is not None:
+            if path is not None and (keepsFace or self._isFaceGone(name)):
                 taken = self._writing.run(
                     lambda report: self._session.scenarioFiles.exportScenario(
                         name, path, keepsFace, keepsNames, report
@@ -141,6 +142,20 @@ class ScenarioPanel:
                 )
                 if taken is not None:
                     self._showMessage(_("{path} was written.").format(path=path) + f" {taken}")
+
+    def _isFaceGone(self, name: str) -> bool:
+        """Show a scenario's head before and after its face is removed, and ask the user."""
+        with tempfile.TemporaryDirectory() as temporary:
+            picture = Path(temporary) / "before-and-after.png"
+            files = self._session.scenarioFiles
+            drawn = self._writing.run(lambda report: files.drawFaceRemoval(name, picture, report))
+            if drawn is None:
+                return False
+            return slicer.util.confirmYesNoDisplay(
+                toolTip(f"{drawn} " + _("Is the face gone?")),
+                _("Save the scenario without its face"),
+                iconPixmap=qt.QPixmap(str(picture)),
+            )
 
     def continueWith(self, name: str) -> None:
         """Choose a scenario that has just been made, show it, and have the simulator take it."""

@@ -9,19 +9,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import vtk
 from scipy import ndimage
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.slicer.head import mask, surface
+from rastrainer.slicer.head.intensities import CT_AIR, isHounsfield
 from rastrainer.slicer.head.volume import SPACING_MM, HeadBody, HeadSettings, Volume, onRasGrid
 from rastrainer.work_progress import Progress
 
-CT_AIR, CT_SKIN = -1000.0, -475.0
+CT_SKIN = -475.0
 """Hounsfield units; the skin's surface is half-way between air and what lies under it."""
 
-CT_LOW_QUANTILE, CT_LOW = 0.02, -500.0
+AIR_QUANTILE = 0.01
 TAIL_QUANTILE, TAIL_FACTOR = 0.999, 1.5
 """Values above that multiple of the quantile are few and bright (vessels, metal). They are clipped;
 otherwise they alone would count as tissue."""
@@ -54,9 +54,9 @@ def findTissue(values: np.ndarray, threshold: float | None, noise: float) -> Tis
         InputError: nothing is above the threshold, or everything is.
     """
     isCt = isHounsfield(values)
-    air = CT_AIR if isCt else 0.0
-    aboveAir = np.clip(values, CT_AIR, None) - CT_AIR if isCt else values
-    smooth = ndimage.gaussian_filter(aboveAir, noise, mode="nearest")
+    # Normalized values of an MRI begin below 0.
+    air = CT_AIR if isCt else min(0.0, float(np.quantile(values[::2, ::2, ::2], AIR_QUANTILE)))
+    smooth = ndimage.gaussian_filter(np.maximum(values, air) - air, noise, mode="nearest")
     if threshold is None:
         found = CT_SKIN - CT_AIR if isCt else mask.otsuThreshold(_withoutTail(smooth))
     else:
@@ -70,11 +70,6 @@ def findTissue(values: np.ndarray, threshold: float | None, noise: float) -> Tis
     head = mask.largestBody(mask.withoutCavities(level > 0))
     level = np.where(head | (level <= 0), level, -1.0).astype(np.float32)
     return Tissue(level, found + air, isCt)
-
-
-def isHounsfield(values: np.ndarray) -> bool:
-    """Return whether an image has a CT's values: much of it is air at about −1000."""
-    return bool(np.quantile(values[::2, ::2, ::2], CT_LOW_QUANTILE) < CT_LOW)
 
 
 def _withoutTail(values: np.ndarray) -> np.ndarray:
@@ -140,7 +135,6 @@ MARGIN = 14
 
 MAX_TRIANGLES = 60_000
 MAX_DECIMATIONS, BASE_RESERVE = 3, 500
-HAIRS_MM = (0.0, 0.2, 0.4)
 LONGEST_HEAD_MM = 200.0
 """From the crown down: what a scan shows below of neck and shoulders is cut off."""
 
@@ -190,13 +184,15 @@ def skinOf(head: HeadBody, settings: HeadSettings, progress: Progress) -> HeadMe
     skin = surface.surfaceOf(_agreeing(head.level, head.body), head.origin, SPACING_MM)
     skin, wanted = surface.smoothed(skin), settings.triangles
     for _ in range(MAX_DECIMATIONS):
-        fewer = surface.decimated(skin, wanted, head.baseMm)
-        mesh = _cut(fewer, head.baseMm)
+        mesh = surface.meshOf(surface.decimated(skin, wanted, head.baseMm))
+        if mesh.is_closed:
+            mesh = surface.cutFlat(mesh, head.baseMm)
         # The base is not decimated with the rest; how many it adds shows only afterward.
         over = len(mesh.triangles) - MAX_TRIANGLES
-        if over <= 0:
+        if over <= 0 and _isSound(mesh):
             break
-        wanted -= over + BASE_RESERVE
+        # Another number of triangles also avoids what decimation has torn.
+        wanted -= max(0, over) + BASE_RESERVE
     _check(mesh)
     progress("Done", 1.0)
     return mesh
@@ -238,15 +234,6 @@ def _ballLike(wanted: np.ndarray, settings: HeadSettings) -> np.ndarray:
 def _agreeing(level: np.ndarray, body: np.ndarray) -> np.ndarray:
     """Return the level set, changed only where it disagrees with the body."""
     return np.where(body, np.maximum(level, 0.05), np.minimum(level, -0.05))
-
-
-def _cut(skin: vtk.vtkPolyData, baseMm: float) -> HeadMesh:
-    """Return the skin cut flat, slightly higher if triangles in the plane itself keep it open."""
-    for hair in HAIRS_MM:
-        mesh = surface.meshOf(surface.cutFlat(skin, baseMm + hair))
-        if _isSound(mesh):
-            break
-    return mesh
 
 
 def _isSound(mesh: HeadMesh) -> bool:

@@ -13,7 +13,14 @@ from rastrainer.head.mesh import HeadMesh
 from rastrainer.head.volume import KEPT_MM, HeadVolume
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer.slicer.head import mask, surface
-from rastrainer.slicer.head.extraction import CT_AIR, findHead, isHounsfield, skinOf
+from rastrainer.slicer.head.extraction import findHead, skinOf
+from rastrainer.slicer.head.intensities import (
+    CT_AIR,
+    CT_BONE,
+    cleaned,
+    isHounsfield,
+    skullWarnings,
+)
 from rastrainer.slicer.head.volume import (
     SPACING_MM,
     HeadBody,
@@ -52,10 +59,11 @@ def makeDraft(
     Raises:
         InputError: the volume cannot be used, or there is no head in it or no bone in a CT.
     """
-    volume = asFloat(volume)
-    found, mesh, warnings = findSkin(
+    volume, settings, warnings = _usable(volume, settings or HeadSettings())
+    found, mesh, more = _findSkin(
         volume, settings, lambda step, share: progress(step, 0.8 * share), segment
     )
+    warnings += more
     draft = HeadDraft(mesh, _headMethod(found, segment is not None))
     if hasVolume:
         progress("Preparing the images", 0.8)
@@ -78,9 +86,24 @@ def findSkin(
     segment: SegmentImage | None = None,
 ) -> tuple[HeadBody, HeadMesh, list[str]]:
     """Return a head as voxels and as a surface, and warnings; otherwise as `makeDraft`."""
-    settings = settings or HeadSettings()
+    volume, settings, warnings = _usable(volume, settings or HeadSettings())
+    found, mesh, more = _findSkin(volume, settings, progress, segment)
+    return found, mesh, warnings + more
+
+
+def _usable(volume: Volume, settings: HeadSettings) -> tuple[Volume, HeadSettings, list[str]]:
+    """Return a copy of a volume with measured values alone, settings for these, and warnings."""
     volume = asFloat(volume)
-    warnings = checkVolume(volume)
+    warnings = [*volume.warnings, *checkVolume(volume)]
+    volume, offset, more = cleaned(volume)
+    if settings.threshold is not None:
+        settings = replace(settings, threshold=settings.threshold + offset)
+    return volume, settings, warnings + more
+
+
+def _findSkin(
+    volume: Volume, settings: HeadSettings, progress: Progress, segment: SegmentImage | None
+) -> tuple[HeadBody, HeadMesh, list[str]]:
     if segment is not None:
         settings = forSegment(settings)
     searched = volume if segment is None else volumeOfSegment(segment)
@@ -89,7 +112,7 @@ def findSkin(
         found = replace(found, isCt=isHounsfield(volume.values))
     mesh = skinOf(found, settings, progress)
     checkHead(mesh)
-    return found, mesh, warnings
+    return found, mesh, skullWarnings(volume, found)
 
 
 def _headMethod(found: HeadBody, isSegment: bool) -> str:
@@ -233,9 +256,6 @@ def _grays(values: np.ndarray, source: np.ndarray, body: np.ndarray) -> tuple[np
     method = f"Images: MRI, 1 mm, values from {low:.6g} to {high:.6g} as 0 to 255."
     return np.rint(scaled).astype(np.uint8), method
 
-
-CT_BONE = 300.0
-"""Hounsfield units; cortical bone has more, contrast in vessels may too."""
 
 CT_NOISE_MM = 0.7
 SCALP_MM = 7.0

@@ -44,11 +44,11 @@ def largestBody(mask: np.ndarray) -> np.ndarray:
 def withoutCavities(mask: np.ndarray) -> np.ndarray:
     """Fill every hole that does not reach the image's border; the neck's cut counts as closed."""
     filled = mask.copy()
-    filled[:, :, 0] = _filled(filled[:, :, 0])
-    return _filled(filled)
+    filled[:, :, 0] = withoutHoles(filled[:, :, 0])
+    return withoutHoles(filled)
 
 
-def _filled(mask: np.ndarray) -> np.ndarray:
+def withoutHoles(mask: np.ndarray) -> np.ndarray:
     """Fill every hole that does not reach the border, as slow `ndimage.binary_fill_holes` does."""
     labels, count = ndimage.label(~mask)
     reaches = np.zeros(count + 1, dtype=bool)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from rastrainer.errors import InputError
+from rastrainer.slicer.head.volume_header import missingOrientation
 
 if TYPE_CHECKING:
     import slicer
@@ -23,10 +25,12 @@ class Volume:
     Attributes:
         values: (i, j, k) float.
         ijkToRas: (4, 4) float, maps voxel indices to patient coordinates, mm.
+        warnings: what its file leaves open, one sentence each.
     """
 
     values: np.ndarray
     ijkToRas: np.ndarray
+    warnings: tuple[str, ...] = ()
 
 
 def volumeFromNode(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
@@ -40,8 +44,10 @@ def imageOfNode(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
     Its values are of the node's own type; `asFloat` copies them, in any thread.
 
     Raises:
-        InputError: it has none, or one with colors, or its transform is not linear.
+        InputError: it has none, or one with colors, its transform is not linear, or its file states
+            no orientation.
     """
+    _checkOrientation(node)
     image = node.GetImageData()
     if image is None:
         raise InputError(f"The volume {node.GetName()} holds no image.")
@@ -54,9 +60,21 @@ def imageOfNode(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
     return Volume(values, toWorld(node) @ matrixOf(matrix))
 
 
+def _checkOrientation(node: slicer.vtkMRMLScalarVolumeNode) -> None:
+    storage = node.GetStorageNode()
+    path = storage.GetFullNameFromFileName() if storage is not None else ""
+    missing = missingOrientation(Path(path)) if path else ""
+    if missing:
+        raise InputError(
+            f"The file of the volume {node.GetName()} does not state the patient's orientation "
+            f"({missing}): left and right, front and back are unknown. Make sure that the slice "
+            "views show them as they are, then save the volume as NRRD, which states it."
+        )
+
+
 def asFloat(volume: Volume) -> Volume:
     """Return a copy of a volume with values of type float32."""
-    return Volume(volume.values.astype(np.float32), volume.ijkToRas)
+    return replace(volume, values=volume.values.astype(np.float32))
 
 
 def toWorld(node: slicer.vtkMRMLTransformableNode) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -209,6 +210,16 @@ class ScenarioFiles:
         self._cache.refresh()
         return load_scenario(folder)
 
+    def drawFaceRemoval(self, name: str, picture: Path, progress: Progress = no_progress) -> str:
+        """Draw a head before and after its face is removed, and return a sentence on the picture.
+
+        Raises:
+            InputError: the face cannot be removed.
+        """
+        folder = str(self._cache.find(name).folder)
+        words = ["pack", folder, os.devnull, "--picture", str(picture)]
+        return self.run(words, progress)
+
     def exportScenario(
         self,
         name: str,
@@ -222,7 +233,8 @@ class ScenarioFiles:
         Args:
             name: of the scenario.
             package: the new file.
-            keepsFace: whether the head keeps its face and skull.
+            keepsFace: whether the head keeps its face and skull; otherwise the user has seen what
+                `drawFaceRemoval` has drawn.
             keepsNames: whether title, name and source stay, which may be the patient's name.
             progress: see the class.
 
@@ -230,7 +242,7 @@ class ScenarioFiles:
             InputError: it cannot be written.
         """
         words = ["pack", str(self._cache.find(name).folder), str(package)]
-        words += ["--keep-face"] if keepsFace else []
+        words += ["--keep-face"] if keepsFace else ["--yes"]
         words += ["--keep-names"] if keepsNames else []
         return self.run(words, progress)
 
