@@ -33,6 +33,10 @@ NEAR_VIEW_M = 0.08
 PATIENCE_S = 60.0
 
 
+class NotTouchedError(AssertionError):
+    """The trainee has given up a point."""
+
+
 class TrainedHands(Protocol):
     """What the trainee steers with."""
 
@@ -95,7 +99,8 @@ class LookingTrainee:
         self._find()
         while self._kept == kept:
             now = self._trainee.state.sim_time
-            assert now < give_up, f"{self._label}: not touched in {PATIENCE_S:g} s"
+            if now > give_up:
+                raise NotTouchedError(f"{self._label}: not touched in {PATIENCE_S:g} s")
             if self._travel() and self._lower():
                 self._press()
 

@@ -9,7 +9,7 @@ import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -29,7 +29,7 @@ from Testing.sdl_virtual_gamepad import VirtualGamepad
 from Testing.simulator.at_once import at_once
 from Testing.simulator.flow.trainee import Trainee
 from Testing.simulator.virtual.drawn_pictures import DrawnPictures
-from Testing.simulator.virtual.looking_trainee import LookingTrainee
+from Testing.simulator.virtual.looking_trainee import LookingTrainee, NotTouchedError
 from Testing.simulator.virtual.reading_trainee import ReadingTrainee
 from Testing.simulator.virtual.trained_hands import HANDS, TrainedMouse, TrainedPad
 from Testing.without_tutorial import skip_tutorial
@@ -149,7 +149,8 @@ def play(
             trainee.hands.show_sticks()
         if model == "looks":
             pictures = DrawnPictures(setup, seed)
-            LookingTrainee(trainee, trainee.hands, pictures, late_looks).play(limit_s)
+            with suppress(NotTouchedError):
+                LookingTrainee(trainee, trainee.hands, pictures, late_looks).play(limit_s)
         else:
             ReadingTrainee(trainee, trainee.hands).play(limit_s)
         state, truth = trainee.state, trainee.loop.truth
@@ -244,17 +245,20 @@ def play_devices(count: int, *devices: str) -> None:
     tasks = [task.name for task in setup.scenario.tasks]
     for device in devices or tuple(HANDS):
         landings: list[Landing] = []
+        given_up = 0
         for number, task in enumerate(tasks):
             if len(landings) < count:
                 played = play(setup, "looks", task, 11 + number, LIMIT_S, device, LATE_LOOKS)
                 landings.extend(played.landings)
+                given_up += played.touches < POINTS
         kept = landings[:count]
         green, red = (sum(getattr(one, what) for one in kept) for what in ("is_green", "was_red"))
         each = (
             mean_and_interval([getattr(one, name) for one in kept])
             for name in ("time_s", "error_mm", "deepest_mm")
         )
-        print(device, f"{green} of {len(kept)} green at first, {red} red", *each, sep=" | ")
+        shares = f"{green} of {len(kept)} green at first, {red} red, {given_up} given up"
+        print(device, shares, *each, sep=" | ", flush=True)
 
 
 def main(*arguments: str) -> None:
