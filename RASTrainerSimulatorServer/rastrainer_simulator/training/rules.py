@@ -252,7 +252,7 @@ def refused_touch(
     return None
 
 
-TOLD_MM, TOLD_RADII = 20.0, 2.0
+TOLD_MM, TOLD_RADII = 15.0, 1.5
 """A refusal tells how far away the point is up to here, or to so many times the distance at which
 touches count: told from anywhere, three would lead to the point without a look at the head."""
 UNMARKED_STEP_MM = 10

@@ -170,9 +170,9 @@ def test_under_the_papers_rule_a_touch_counts_at_any_height_within_the_radius(sc
     [
         (0.0102, "11 mm"),
         (0.014, "14 mm"),
-        (0.0203, "20 mm"),
-        (0.0206, "more than 20 mm"),
-        (0.2, "more than 20 mm"),
+        (0.0153, "15 mm"),
+        (0.0156, "more than 15 mm"),
+        (0.2, "more than 15 mm"),
     ],
 )
 def test_a_touch_too_far_away_is_refused_with_the_distance_where_it_does_not_lead_there(
