@@ -82,7 +82,8 @@ class EventKind(str, Enum):
 class TouchStage(str, Enum):
     """The state of the next touch; the last four are errors, which views show in red.
 
-    `ON_SKIN`: the tip is on the skin where a touch counts. `TOO_DEEP`: it is pressed in.
+    `ON_SKIN`: the tip is on the skin where a touch counts. `PRESSED`: it is pressed in a little
+    there, and a touch counts. `TOO_DEEP`: it is pressed in.
     `ELSEWHERE`: it is on the skin away from the next point. `SHAFT`: the tool touches the head
     behind its tip. `ARM`: the arm is stopped by the head, the table or itself.
     """
@@ -90,6 +91,7 @@ class TouchStage(str, Enum):
     FAR = "far"
     NEAR = "near"
     ON_SKIN = "on skin"
+    PRESSED = "pressed"
     TOO_DEEP = "too deep"
     ELSEWHERE = "elsewhere"
     SHAFT = "shaft"

@@ -18,6 +18,7 @@ POSE = [0.5, 0.0, 1.2, 0.5, 0.5, 0.5, 0.5]
 MESSAGES = (
     HELLO,
     {"type": "key", "code": "KeyW", "isDown": True, "text": "w"},
+    {"type": "layout", "keys": {"KeyW": "z"}},
     {"type": "pad", "axes": [0.0, 0.5, 0, 0], "buttons": [0] * 17},
     {"type": "sticks", "translation": [0, 1, 0], "rotation": [0, 0], "fine": False, "yawDeg": 0},
     {"type": "orbit", "aroundDeg": 10, "higherDeg": -5, "zoom": 1.1},

@@ -17,6 +17,7 @@ from rastrainer_simulator.presentation.screen import (
     Tone,
 )
 from rastrainer_simulator.texts.texts import LANGUAGES
+from Testing.end_to_end.window_process import wait_until
 from Testing.simulator.flow.every_page import every_screen, names_of_pages
 from Testing.simulator.flow.scored_journals import task_menu
 from Testing.web.chromium import open_page, resize, show, wait_for
@@ -116,6 +117,33 @@ def test_the_plot_is_beside_the_tasks_and_every_score_is_in_its_text(
     place, beside = plot.bounding_box(), tasks.bounding_box()
     assert place["width"] > 200
     assert place["x"] + place["width"] <= beside["x"]
+
+
+HAS_AZERTY = """
+const map = new Map([["KeyQ", "a"], ["KeyA", "q"], ["Enter", "Enter"], ["KeyX", "Dead"]]);
+const value = { getLayoutMap: async () => map };
+Object.defineProperty(navigator, "keyboard", { value, configurable: true });
+page.keyboard.tellNames();
+"""
+PRESS_Z = """
+window.dispatchEvent(new KeyboardEvent("keydown", { code: "KeyW", key: "Z", shiftKey: true }));
+window.dispatchEvent(new KeyboardEvent("keyup", { code: "KeyW", key: "Z" }));
+"""
+
+
+def test_the_page_names_the_keys_as_the_browser_or_a_press_tells(page, served):
+    def told():
+        return [call[2] for call in served.presenter.calls if call[0] == "on_layout"]
+
+    page.evaluate(HAS_AZERTY)
+    wait_until(lambda: any(keys.get("KeyA") == "q" for keys in told()), "the browser's names")
+    assert "Enter" not in told()[-1]
+    page.evaluate(PRESS_Z)
+    wait_until(lambda: told()[-1].get("KeyW") == "z", "the name of the pressed key")
+    served.tell(Screen(menu=Menu("controls", "Controls", picture="keyboard")))
+    page.wait_for_selector(PICTURE)
+    drawn = page.evaluate(f"decodeURIComponent(document.querySelector('{PICTURE}').src)")
+    assert re.findall(r">(\w)</text>", drawn)[10:13] == ["A", "Z", "E"]
 
 
 LEGEND = "Within 10\N{NO-BREAK SPACE}mm of traced points"

@@ -148,6 +148,7 @@ class Simulation:
             events.extend(self._move(dt, motion_request, sim_time))
             if motion_request.motion is Motion.STICK:
                 self._operator = operator_input.operator
+        self._training.end_refusal(sim_time)
         events.extend(self._training.trace(self._touch_moment(sim_time)))
         fed = self._procedure_motion.step(dt, self._training.state.phase, operator_input, sim_time)
         events.extend(fed.events)

@@ -25,6 +25,7 @@ from rastrainer_simulator.desktop.keyboard_and_mouse import (
     MouseSticks,
     OperatorKeys,
     ViewMouse,
+    key_names,
     without_late_repeats,
 )
 from rastrainer_simulator.desktop.picture import Picture
@@ -115,6 +116,7 @@ class DesktopWindow:
         self._screenshots: set[asyncio.Task[None]] = set()
         self._one_screenshot = asyncio.Lock()
         self._is_open = True
+        self._name_keys()
 
     async def run(self) -> None:
         """Draw and listen until the window is closed."""
@@ -177,8 +179,16 @@ class DesktopWindow:
             self._keys.tap("ArrowUp" if event.y > 0 else "ArrowDown")
         elif event.type in (pygame.WINDOWEXPOSED, pygame.WINDOWSIZECHANGED):
             self._picture.redraw()
+        elif event.type == pygame.KEYMAPCHANGED:
+            self._name_keys()
         self._view_mouse.take(event, self._window.size[1])
         self._keys.take(event)
+
+    def _name_keys(self) -> None:
+        """Name the keys as the keyboard in use has them, here and in the simulator's sentences."""
+        names = key_names()
+        self._connection.name_keys(names)
+        self._picture.name_keys(names)
 
     def _show_sticks(self) -> None:
         """Have the sticks drawn as deflected; those that are not shown are released."""

@@ -19,7 +19,7 @@ from rastrainer.json_checks import decode_finite_json
 from rastrainer_simulator.desktop.head_marks import ShownTrace
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, SoundEvent, Viewpoint, read_parts
 from rastrainer_simulator.desktop.panels.canvas import Thumbnail
-from rastrainer_simulator.net.views.incoming import HELLO, SUBPROTOCOL
+from rastrainer_simulator.net.views.incoming import HELLO, LAYOUT, SUBPROTOCOL
 from rastrainer_simulator.presentation.screen import (
     DepthRuler,
     ErrorArrow,
@@ -57,6 +57,7 @@ class ServerConnection:
         self._key = key
         self._inbox = inbox
         self._refresh_hz = refresh_hz
+        self._key_names: Mapping[str, str] = {}
         self._stream: aiohttp.ClientWebSocketResponse | None = None
         self._outgoing: asyncio.Queue[Mapping[str, Any]] = asyncio.Queue()
         self._last_event = 0
@@ -107,6 +108,12 @@ class ServerConnection:
         """Send the hello; messages may be sent from now on."""
         self._stream = stream
         self.send(HELLO, kind="desktop", device="", refreshHz=self._refresh_hz)
+        self.name_keys(self._key_names)
+
+    def name_keys(self, key_names: Mapping[str, str]) -> None:
+        """Tell what is written on the keys, by their W3C codes, now and to whom it joins later."""
+        self._key_names = key_names
+        self.send(LAYOUT, keys=dict(key_names))
 
     async def _send_all(self, stream: aiohttp.ClientWebSocketResponse) -> None:
         with contextlib.suppress(ConnectionError):

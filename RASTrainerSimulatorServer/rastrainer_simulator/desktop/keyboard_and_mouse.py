@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import re
 import time
 from collections.abc import Callable, Mapping, Sequence
+from typing import cast
 
 import pygame
 
@@ -32,6 +34,26 @@ CODES: Mapping[int, str] = {
     first + index: code for first, codes in _IN_ORDER for index, code in enumerate(codes.split())
 }
 """SDL scancode → W3C code."""
+
+
+_WRITING = re.compile(
+    r"Key\w|Digit\d|Minus|Equal|Bracket\w+|Back(slash|quote)|Semicolon|Quote|Comma|Period|Slash|Intl\w+"
+)
+_WRITTEN = (*range(0x21, 0x7F), *range(0xA1, 0x180), *range(0x370, 0x530))
+"""Keys that write, and what may be on them: Latin, Greek and Cyrillic letters, and signs."""
+
+
+def key_names() -> dict[str, str]:
+    """Return what is written on the keys of the keyboard in use, by their W3C codes.
+
+    SDL finds the place of a key by what is on it; a window must be open.
+    """
+    pressed = pygame.key.get_pressed()
+    # It is asked for what is written on a key, and answers with what stands at the key's scancode.
+    at_scancodes = cast(Callable[[range], Sequence[int]], type(pressed))
+    scancodes = at_scancodes(range(len(pressed)))
+    places = {CODES.get(scancodes[written], ""): chr(written) for written in reversed(_WRITTEN)}
+    return {code: name for code, name in places.items() if _WRITING.fullmatch(code)}
 
 
 def without_late_repeats(

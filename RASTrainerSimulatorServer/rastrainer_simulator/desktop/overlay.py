@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
 from itertools import zip_longest
 from typing import Any
@@ -42,6 +42,7 @@ from rastrainer_simulator.desktop.panels.tool_guidance import (
     target_arrow,
 )
 from rastrainer_simulator.presentation.screen import Screen
+from rastrainer_simulator.texts.texts import NO_NAMES
 
 MAX_WARNINGS = 3
 GLOW = 44
@@ -88,6 +89,11 @@ class Overlay:
         self._menu: MenuPicture | None = None
         self._menu_box: Box | None = None
         self._shown: Content | None = None
+        self._key_names: Mapping[str, str] = NO_NAMES
+
+    def name_keys(self, key_names: Mapping[str, str]) -> None:
+        """Draw keyboards from now on with what is written on the keys, by their W3C codes."""
+        self._key_names, self._shown = key_names, None
 
     def item_at(self, x: float, y: float) -> str:
         """Return the name of the menu's item or of the hint at a pixel, from the upper left."""
@@ -198,8 +204,9 @@ class Overlay:
         room = (self._size[0] - 2 * self._brush.px(theme.MARGIN), bottom - top)
         slot = self._slots["menu"]
         shown = (content.hovered, content.thumbnail)
-        if slot.needs_painting((menu, room, *shown, self._scale)):
-            self._menu = menu_panel(menu, self._scale, room, *shown)
+        names = tuple(self._key_names.items())
+        if slot.needs_painting((menu, room, *shown, names, self._scale)):
+            self._menu = menu_panel(menu, self._scale, room, *shown, self._key_names)
             slot.sprite.paint(self._menu.pixels)
         width, height = slot.sprite.size
         # To the left, so that the robot is seen beside it.

@@ -124,6 +124,10 @@ class Picture:
         is_free = screen is not None and screen.menu is None and screen.has_sticks
         return is_free and self._inbox.has_control and not self._inbox.problem
 
+    def name_keys(self, key_names: Mapping[str, str]) -> None:
+        """Draw keyboards with what is written on the keys, by their W3C codes."""
+        self._overlay.name_keys(key_names)
+
     def item_at_pointer(self, now: float) -> str:
         """Return the name of the menu's item under the mouse."""
         return self._overlay.item_at(*self.pointer.place(now))

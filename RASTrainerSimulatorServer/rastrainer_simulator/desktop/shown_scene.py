@@ -67,6 +67,7 @@ _TIPS = {
     TouchStage.FAR: TIP_FREE,
     TouchStage.NEAR: TIP_NEAR,
     TouchStage.ON_SKIN: TIP_ON_SKIN,
+    TouchStage.PRESSED: TIP_NEAR,
 }
 INSTRUMENTS: Mapping[str, tuple[str, ...]] = {
     "guide": ("guide", "axis"),

@@ -35,6 +35,8 @@ STEP_MM = 5.0
 """The distance to the target is shown in these steps: a constantly changing one is unreadable."""
 LOOKED_AT_MM = 20.0
 """Nearer than this, a point is found by looking at it."""
+PRACTICED_MM, PRACTICED_STEP_MM = 2.0, 1.0
+"""In tutorial and trial run the way is said up to here, and below `LOOKED_AT_MM` in these steps."""
 DEPTH_STEP_MM = 0.5
 """The same for the depth: a screen reader speaks each change of a warning."""
 _LEVEL = (
@@ -52,9 +54,12 @@ class ArmScreen:
         self._session = session
         self._obstacle = ""
         self._is_within_reach = True
+        self._refusal = ""
 
     def take(self, event: Event) -> None:
         """Process an event."""
+        if event.kind is EventKind.REJECTED:
+            self._refusal = event.data["message"]
         if event.kind is EventKind.REACH:
             self._is_within_reach = event.data["isWithinReach"]
             self._obstacle = event.data["obstacle"]
@@ -63,6 +68,11 @@ class ArmScreen:
     def _state(self) -> SimulationState:
         """The state that the trainee sees."""
         return self._session.state
+
+    @property
+    def _is_refused(self) -> bool:
+        """Whether the instruction still says why the last touch was refused."""
+        return self._refusal != "" and self._state.training.instruction == self._refusal
 
     @property
     def has_arrow(self) -> bool:
@@ -91,9 +101,10 @@ class ArmScreen:
         say = self._session.texts.say
         warnings = []
         state = self._state
-        if state.touch is TouchStage.TOO_DEEP:
+        if state.touch in (TouchStage.PRESSED, TouchStage.TOO_DEEP):
             depth_mm = DEPTH_STEP_MM * round(MM_PER_M * state.depth / DEPTH_STEP_MM)
-            warnings.append(ScreenMessage(say("warning.pressing", depth=depth_mm), Tone.ERROR))
+            tone = Tone.ERROR if state.touch is TouchStage.TOO_DEEP else Tone.WARNING
+            warnings.append(ScreenMessage(say("warning.pressing", depth=depth_mm), tone))
         elif state.touch is TouchStage.SHAFT:
             warnings.append(ScreenMessage(say("warning.shaft"), Tone.ERROR))
         elif state.touch is TouchStage.ELSEWHERE:
@@ -136,20 +147,22 @@ class ArmScreen:
             for control, key in names.items()
         )
 
-    def _toward(self, name: str, target: Vector) -> str:
+    def _toward(self, name: str, target: Vector, nearest_mm: float = PRACTICED_MM) -> str:
         """Return how far and in which directions a point is (World, m), in words, after its name.
 
-        Near the point nothing but that is said: words that lead onto it would replace looking.
+        Nearer than `nearest_mm` nothing but that is said: words that lead onto the point would
+        replace looking.
         """
         session = self._session
         away = MM_PER_M * distance(session.tip, target)
-        if away < LOOKED_AT_MM:
-            return session.texts.say("status.near", name=name, distance=f"{LOOKED_AT_MM:.0f}")
+        if away < nearest_mm:
+            return session.texts.say("status.near", name=name, distance=f"{nearest_mm:.0f}")
+        step_mm = STEP_MM if away >= LOOKED_AT_MM else PRACTICED_STEP_MM
         words = direction_words(session.tip, target, self._axes())
         return session.texts.say(
             "status.toward",
             name=name,
-            distance=f"{STEP_MM * round(away / STEP_MM):.0f}",
+            distance=f"{step_mm * round(away / step_mm):.0f}",
             direction=session.texts.listed(session.texts.say(f"way.{word}") for word in words),
         )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -172,6 +172,7 @@ class FlowPresenter:
     def view_left(self, view: int) -> None:
         """Forget a view; if it was the trainee's, no one sees the trial any more."""
         self._lose_sight(view, "unseen.left")
+        self._session.layouts.pop(view, None)
         self._choose_mode(self._views.leave(view))
         self._settle()
 
@@ -183,6 +184,11 @@ class FlowPresenter:
             return
         self.controls.set_key(source, code, is_down)
         self._settle()
+
+    def on_layout(self, view: int, keys: Mapping[str, str]) -> None:
+        """Name the keys of a view's operator as they are written."""
+        self._session.layouts[view] = keys
+        self._is_changed = True
 
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
         """Process the input of a gamepad that a browser reads."""

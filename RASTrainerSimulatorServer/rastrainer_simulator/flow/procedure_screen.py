@@ -43,7 +43,6 @@ class ProcedureScreen(ArmScreen):
         """`trial_screen` is that of the touches; the trial's menu is its own."""
         super().__init__(session)
         self._trial_screen = trial_screen
-        self._was_refused = False
         self._layer = ""
 
     @property
@@ -58,8 +57,6 @@ class ProcedureScreen(ArmScreen):
     def take(self, event: Event) -> None:
         """Process an event."""
         super().take(event)
-        if event.kind in (EventKind.CHECKPOINT, EventKind.REJECTED, EventKind.PHASE):
-            self._was_refused = event.kind is EventKind.REJECTED
         if event.kind is EventKind.FEED:
             self._layer = event.data["layer"]
         elif event.kind is EventKind.PHASE:
@@ -86,7 +83,7 @@ class ProcedureScreen(ArmScreen):
         """Return what to do now."""
         session = self._session
         text = session.texts.again(session.training.instruction)
-        return ScreenMessage(text, Tone.WARNING if self._was_refused else Tone.GOOD)
+        return ScreenMessage(text, Tone.WARNING if self._is_refused else Tone.GOOD)
 
     def warnings(self) -> tuple[ScreenMessage, ...]:
         """Return the warnings, and what is felt of the drill or the instrument."""

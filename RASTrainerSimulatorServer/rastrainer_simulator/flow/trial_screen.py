@@ -16,7 +16,14 @@ from rastrainer.protocol import (
     StepKind,
 )
 from rastrainer.study.protocol.steps import StudyStep
-from rastrainer_simulator.flow.arm_screen import BACK_WITHIN, FARTHEST, ArmScreen, PathArc
+from rastrainer_simulator.flow.arm_screen import (
+    BACK_WITHIN,
+    FARTHEST,
+    LOOKED_AT_MM,
+    PRACTICED_MM,
+    ArmScreen,
+    PathArc,
+)
 from rastrainer_simulator.flow.pages.session_page import stick_hints
 from rastrainer_simulator.flow.pages.start import StartPage
 from rastrainer_simulator.flow.pages.trial import CompletePage, TrialPage
@@ -50,7 +57,6 @@ class TrialScreen(ArmScreen):
         self._count = FIDUCIAL_COUNT
         self._center: Vector = (0.0, 0.0, 0.0)
         self._is_beside = False
-        self._was_refused = False
         self._refused_at: Vector = (0.0, 0.0, 0.0)
         self._has_requested_menu = False
         self._is_practice_end_shown = False
@@ -65,8 +71,7 @@ class TrialScreen(ArmScreen):
     def take(self, event: Event) -> None:
         """Process an event."""
         super().take(event)
-        if event.kind in (EventKind.TOUCH, EventKind.UNDO, EventKind.REJECTED, EventKind.PHASE):
-            self._was_refused = event.kind is EventKind.REJECTED
+        if event.kind is EventKind.REJECTED:
             self._refused_at = self._session.tip
 
     @property
@@ -104,7 +109,7 @@ class TrialScreen(ArmScreen):
         self._points = points if self._session.training.is_marked else {}
         self._count = len(points)
         self._center = center
-        self._is_beside = self._was_refused = self._is_practice_end_shown = False
+        self._is_beside = self._is_practice_end_shown = False
         self._forget_arm()
         self._practice_step, self._practice_end_s = None, None
         self.guidance = guidance_of(self._session)
@@ -160,7 +165,7 @@ class TrialScreen(ArmScreen):
         """Return what to do now."""
         session = self._session
         training = session.training
-        if training.is_tracing and not self._was_refused:
+        if training.is_tracing and not self._is_refused:
             tone = Tone.GOOD if training.phase is Phase.COMPLETE else Tone.PLAIN
             return ScreenMessage(session.texts.again(training.instruction), tone)
         if training.phase is Phase.COMPLETE:
@@ -171,7 +176,7 @@ class TrialScreen(ArmScreen):
             return ScreenMessage(text, Tone.GOOD)
         is_on_skin = session.state.touch is TouchStage.ON_SKIN
         has_gone_on = is_on_skin and distance(session.tip, self._refused_at) > ELSEWHERE_M
-        if self._was_refused and not has_gone_on:
+        if self._is_refused and not has_gone_on:
             return ScreenMessage(session.texts.again(training.instruction), Tone.WARNING)
         if is_on_skin:
             key = session.operator.label(ControlName.TOUCH)
@@ -198,7 +203,9 @@ class TrialScreen(ArmScreen):
         if training.is_tracing:
             target, name = session.places.in_world(), session.texts.say("status.next place")
         if target is not None and self.guidance is Guidance.WORDS:
-            facts.append(self._toward(name, target))
+            is_practice = training.task == TRIAL_RUN and not training.is_tracing
+            nearest_mm = PRACTICED_MM if is_practice else LOOKED_AT_MM
+            facts.append(self._toward(name, target, nearest_mm))
         return tuple(facts)
 
     def coverage(self) -> str:

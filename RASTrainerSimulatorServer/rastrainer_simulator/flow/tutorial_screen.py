@@ -13,7 +13,7 @@ from rastrainer_simulator.flow.pages.session_page import clickable_hint, stick_h
 from rastrainer_simulator.flow.pages.trial_review import error_arrow, error_tone
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.tutorial.steps import TutorialObservation, TutorialStep
-from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
+from rastrainer_simulator.flow.tutorial.tutorial import CENTERED_M, Tutorial
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_event
 from rastrainer_simulator.presentation.screen import ErrorArrow, Hint, ScreenMessage, Tone
@@ -22,6 +22,7 @@ from rastrainer_simulator.state import SimulationState, TouchStage
 from rastrainer_simulator.training.training import TrainingReply
 from rastrainer_simulator.vectors import Vector, distance, in_meters
 
+LIMIT_MM = f"{MM_PER_M * CENTERED_M:g}"
 STEP_MM, STEP_DEG = 5, 5
 """Progress is shown in these steps: a constantly changing figure is unreadable."""
 _CONTROLS: Mapping[TutorialStep, tuple[ControlName, ...]] = {
@@ -36,7 +37,7 @@ _CONTROLS: Mapping[TutorialStep, tuple[ControlName, ...]] = {
     TutorialStep.LOOK_AROUND: (ControlName.MOVE_FORWARD,),
     TutorialStep.BEST_VIEW: (ControlName.BEST_VIEW,),
     TutorialStep.LOWER: (ControlName.FINE, ControlName.BEST_VIEW),
-    TutorialStep.TOUCH: (ControlName.TOUCH,),
+    TutorialStep.TOUCH: (ControlName.TOUCH, ControlName.FINE, ControlName.BEST_VIEW),
     TutorialStep.UNDO: (ControlName.UNDO,),
     TutorialStep.PAUSE: (ControlName.MENU,),
     TutorialStep.GUIDED: (
@@ -47,7 +48,7 @@ _CONTROLS: Mapping[TutorialStep, tuple[ControlName, ...]] = {
     ),
 }
 """The controls of each step; its sentence names the first, or the first two as a pair."""
-_FREE = (TutorialStep.SLOW, TutorialStep.LOWER, TutorialStep.GUIDED)
+_FREE = (TutorialStep.SLOW, TutorialStep.LOWER, TutorialStep.TOUCH, TutorialStep.GUIDED)
 """Steps in which the tip may go anywhere: all that moves it is among the hints."""
 MOVES = tuple(TutorialStep)[:6]
 """Steps that move the tip in one direction."""
@@ -76,7 +77,6 @@ class TutorialScreen(ArmScreen):
         self._seen: Tutorial | None = None
         self._homing: Homing | None = None
         self._points: dict[str, Vector] = {}
-        self._was_refused = False
         self._has_paused = False
 
     @property
@@ -107,9 +107,10 @@ class TutorialScreen(ArmScreen):
             self._homing.advance(dt)
             return
         tutorial.use(session.operator.learned)
+        tutorial.practice.end_refusal(session.state.sim_time)
         done = tutorial.advance(dt, self._observation())
         if done is not None:
-            self._was_refused = self._has_paused = False
+            self._has_paused = False
             if done not in _HEARD_ANYWAY:
                 session.happened(FeedbackEvent.STEP)
 
@@ -138,7 +139,7 @@ class TutorialScreen(ArmScreen):
         say = session.texts.say
         if self._is_homing:
             return ScreenMessage(say("tutorial.homing"))
-        if self._was_refused:
+        if self._is_refused:
             sentence = session.texts.again(tutorial.practice.state.instruction)
             return ScreenMessage(sentence, Tone.WARNING)
         if tutorial.praised is not None:
@@ -146,12 +147,19 @@ class TutorialScreen(ArmScreen):
         if tutorial.may_touch and self._state.touch is TouchStage.ON_SKIN:
             key = session.operator.label(ControlName.TOUCH)
             return ScreenMessage(say("work.on skin", touch=key), Tone.GOOD)
+        off_mm = tutorial.practice.off_center_mm(session.state)
+        if tutorial.may_touch and off_mm is not None:
+            point = tutorial.practice.state.next_point
+            text = say("tutorial.center", point=point, distance=f"{off_mm:.0f}")
+            return ScreenMessage(text, Tone.WARNING)
         practice, errors = tutorial.practice.state, tutorial.practice.errors_mm()
         if tutorial.step is TutorialStep.GUIDED and errors:
             touched, point = practice.touches[-1].label, practice.next_point
             text = say("tutorial.touched", label=touched, error=errors[-1], point=point)
             return ScreenMessage(text, _banner(errors[-1]))
-        return ScreenMessage(self._sentence(tutorial.step))
+        is_on_point = self._state.touch in (TouchStage.ON_SKIN, TouchStage.PRESSED)
+        is_lifted = tutorial.step is TutorialStep.TOUCH and not is_on_point
+        return ScreenMessage(self._sentence(TutorialStep.LOWER if is_lifted else tutorial.step))
 
     def status(self) -> tuple[str, ...]:
         """Return the short facts at the edge."""
@@ -200,7 +208,7 @@ class TutorialScreen(ArmScreen):
     def _begin(self, tutorial: Tutorial) -> None:
         self._seen, self._homing = tutorial, Homing(self._session)
         self._points = {label: in_meters(point) for label, point in tutorial.fiducials.items()}
-        self._was_refused = self._has_paused = False
+        self._has_paused = False
 
     def _observation(self) -> TutorialObservation:
         session, state = self._session, self._state
@@ -221,8 +229,8 @@ class TutorialScreen(ArmScreen):
     def _take(self, reply: TrainingReply) -> None:
         """Play the sound of a touch's outcome, and show why it was refused."""
         session = self._session
-        self._was_refused = not reply.ok
         for event in reply.events:
+            self.take(event)
             felt = feedback_event(event, self._state.touch)
             if felt is not None:
                 session.happened(felt)
@@ -251,7 +259,9 @@ class TutorialScreen(ArmScreen):
             if f"{key}.{variant}" in session.texts:
                 key = f"{key}.{variant}"
         point = self._tutorial.practice.state.next_point
-        return session.texts.say(key, control=name, point=point, count=GUIDED_TOUCHES)
+        return session.texts.say(
+            key, control=name, point=point, count=GUIDED_TOUCHES, limit=LIMIT_MM
+        )
 
     def _is_there(self, control: ControlName) -> bool:
         """Return whether the device in use has a control."""

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import Protocol
 
 from rastrainer_simulator.input.bindings import Bindings, Table
+from rastrainer_simulator.input.gamepads import BUTTONS
 from rastrainer_simulator.input.inputs import (
     ROTATION,
     TRANSLATION,
@@ -174,7 +175,7 @@ class Controls:
             self.holder = None
 
     def advance(self, dt: float) -> None:
-        """Advance by `dt` seconds: ramps, repeated steps in menus, and idle time."""
+        """Advance by `dt` seconds: what is pressed, repeated steps in menus, and idle time."""
         for state in self._states.values():
             state.advance(dt)
         held = self._held_state
@@ -231,9 +232,12 @@ UP_BELOW = 0.4
 """An input counts as pressed from the first on, and as released below the second."""
 AT_REST_BELOW = 0.1
 
-RAMP_START = 0.25
-RAMP_S = 0.25
-"""A key is a stick that is pushed a little at once and fully after so long."""
+STEP_PUSH, FINE_STEP_PUSH = 0.22, 0.4
+"""How far a key or a button pushes its stick at first, and in slow motion: both mean 2 mm/s."""
+STEP_S = 0.1
+"""Every press lasts at least so long: a tap moves the tip by one step of 0.2 mm."""
+HOLD_AFTER_S, RAMP_S = 0.15, 0.6
+"""What is held for longer speeds up, from the first on until the second."""
 
 _UNUSED = OperatorInput()
 
@@ -241,9 +245,9 @@ _UNUSED = OperatorInput()
 class InputState:
     """What a source is doing.
 
-    Keys are ramped, so that a tap moves the tip a little; they stop at once, as a released stick
-    does. What is held while the situation changes does nothing until it is released: the arm must
-    not start because a menu closes.
+    Keys and buttons are pressed or not: a tap moves the tip by one small step, what is held speeds
+    up smoothly, and stops at once, as a released stick does. What is held while the situation
+    changes does nothing until it is released: the arm must not start because a menu closes.
 
     Attributes:
         device: whose bindings count.
@@ -252,6 +256,8 @@ class InputState:
     def __init__(self, device: InputDevice) -> None:
         self.device = device
         self._inputs: dict[str, float] = {}
+        # For how long keys and buttons have been pressed, s; a tap stays here until its step ends.
+        self._pressed_s: dict[str, float] = {}
         self._down: set[str] = set()
         self._again: set[str] = set()
         self._blocked: set[str] = set()
@@ -290,17 +296,14 @@ class InputState:
 
     def set_key(self, code: str, is_down: bool) -> list[str]:
         """Take a key; return it if it has just been pressed."""
-        if is_down:
-            self._inputs.setdefault(code, RAMP_START)
-            if code in self._down:
-                self._again.add(code)
-                return []
-            self._down.add(code)
-            return [code]
-        self._inputs.pop(code, None)
-        for those in (self._down, self._again, self._blocked):
-            those.discard(code)
-        return []
+        if is_down and code in self._down:
+            self._again.add(code)
+            return []
+        self._again.discard(code)
+        pressed = self.set_inputs({code: float(is_down)})
+        if not is_down:
+            del self._inputs[code]
+        return pressed
 
     def set_sticks(self, sticks: OperatorInput) -> None:
         """Take sticks that need no bindings, those of a headset."""
@@ -310,23 +313,25 @@ class InputState:
     def block(self) -> None:
         """Ignore what is held now until it is released."""
         self._blocked = {name for name, value in self._inputs.items() if _is_pushed(value)}
+        self._pressed_s.clear()
         self._sticks_blocked = _are_pushed(self._sticks)
 
     def advance(self, dt: float) -> None:
-        """Advance the ramps of the keys by `dt` seconds."""
-        if self.device is InputDevice.KEYBOARD:
-            for code, value in self._inputs.items():
-                self._inputs[code] = min(1.0, value + (1.0 - RAMP_START) * dt / RAMP_S)
+        """Advance what is pressed by `dt` seconds, and end the steps of taps."""
+        for name in self._pressed_s:
+            self._pressed_s[name] += dt
+        self._end_presses()
 
     def sticks(self, bindings: Bindings) -> OperatorInput:
         """Return what the sticks and keys command the arm to do."""
         table = bindings.table(self.device)
+        direct = _UNUSED if self._sticks_blocked else self._sticks
+        is_fine = direct.fine or any(self.is_down(name) for name in table[ControlName.FINE])
+        step = FINE_STEP_PUSH if is_fine else STEP_PUSH
 
         def deflection(below: ControlName, above: ControlName, direct: float) -> float:
-            return max(-1.0, min(1.0, self._deflection(table, below, above) + direct))
+            return max(-1.0, min(1.0, self._deflection(table, below, above, step) + direct))
 
-        is_fine = any(self.is_down(name) for name in table[ControlName.FINE])
-        direct = _UNUSED if self._sticks_blocked else self._sticks
         return OperatorInput(
             translation=(
                 deflection(*TRANSLATION[0], direct.translation[0]),
@@ -337,7 +342,7 @@ class InputState:
                 deflection(*ROTATION[0], direct.rotation[0]),
                 deflection(*ROTATION[1], direct.rotation[1]),
             ),
-            fine=is_fine or direct.fine,
+            fine=is_fine,
         )
 
     def view(self, bindings: Bindings) -> tuple[float, float, float]:
@@ -346,13 +351,34 @@ class InputState:
         around, higher, nearer = (self._deflection(table, below, above) for below, above in VIEW)
         return around, higher, nearer
 
-    def _deflection(self, table: Table, below: ControlName, above: ControlName) -> float:
-        return self._value(table[above]) - self._value(table[below])
+    def _deflection(
+        self, table: Table, below: ControlName, above: ControlName, step: float = 1.0
+    ) -> float:
+        """Return how far inputs push a stick, −1…1; `step` is how far keys and buttons do first."""
+        return self._value(table[above], step) - self._value(table[below], step)
 
-    def _value(self, names: tuple[str, ...]) -> float:
+    def _value(self, names: tuple[str, ...], step: float) -> float:
         """Return how far the farthest of some inputs is pushed that are not blocked."""
         free = (name for name in names if name not in self._blocked)
-        return max((self._inputs.get(name, 0.0) for name in free), default=0.0)
+        return max((self._push(name, step) for name in free), default=0.0)
+
+    def _push(self, name: str, step: float) -> float:
+        if not self._is_key_or_button(name):
+            return self._inputs.get(name, 0.0)
+        if name not in self._pressed_s:
+            return 0.0
+        share = (self._pressed_s[name] - HOLD_AFTER_S) / (RAMP_S - HOLD_AFTER_S)
+        # In steps that are not felt: every change is recorded.
+        return round(step + (1.0 - step) * min(1.0, max(0.0, share)), 2)
+
+    def _end_presses(self) -> None:
+        """End the presses of what is released, but the steps of taps."""
+        for name, seconds in tuple(self._pressed_s.items()):
+            if seconds >= STEP_S and name not in self._down:
+                del self._pressed_s[name]
+
+    def _is_key_or_button(self, name: str) -> bool:
+        return self.device is InputDevice.KEYBOARD or name in BUTTONS
 
     def _pressed(self) -> list[str]:
         pressed = []
@@ -362,8 +388,11 @@ class InputState:
             if value >= DOWN_FROM and name not in self._down:
                 self._down.add(name)
                 pressed.append(name)
+                if self._is_key_or_button(name):
+                    self._pressed_s[name] = 0.0
             elif value < UP_BELOW:
                 self._down.discard(name)
+        self._end_presses()
         return pressed
 
 

@@ -124,7 +124,8 @@ def touch_feedback(before: TouchStage, after: TouchStage) -> FeedbackEvent | Non
 
 def _of_proximity(before: Proximity, after: Proximity, touch: TouchStage) -> FeedbackEvent:
     if after is Proximity.CONTACT:
-        return FeedbackEvent.ON_SKIN if touch is TouchStage.ON_SKIN else FeedbackEvent.CONTACT
+        is_on_point = touch in (TouchStage.ON_SKIN, TouchStage.PRESSED)
+        return FeedbackEvent.ON_SKIN if is_on_point else FeedbackEvent.CONTACT
     if after is Proximity.FREE:
         return FeedbackEvent.PROXIMITY_OUT
     return FeedbackEvent.CONTACT_OUT if before is Proximity.CONTACT else FeedbackEvent.PROXIMITY_IN

@@ -194,6 +194,9 @@ class Presenter(Protocol):
         that leaves or falls silent releases each key that it held, with `is_down` False.
         """
 
+    def on_layout(self, view: int, keys: Mapping[str, str]) -> None:
+        """Process what is written on a view's keys, by their W3C codes: "q" on KeyA in France."""
+
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
         """Process a gamepad that a browser reads: the W3C standard gamepad, axes −1…1, buttons 0…1.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 
 from rastrainer.errors import InputError
@@ -164,6 +164,10 @@ class RatingPresenter:
                 self._replay.on_key(view, code, is_down, text)
         elif is_down and not is_again:
             self._do(lambda: self._page_pressed(InputDevice.KEYBOARD, code))
+
+    def on_layout(self, view: int, keys: Mapping[str, str]) -> None:
+        """Name the replay's keys as on the latest keyboard: the pages' own are no letters."""
+        self._replay.on_layout(view, keys)
 
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
         """Process a gamepad: what is newly pressed is for the open page, else for the replay."""

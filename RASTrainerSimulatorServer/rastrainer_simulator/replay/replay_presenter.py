@@ -199,6 +199,7 @@ class ReplayPresenter:
         self._wants_worst = False
         self._player = Player(playback, end, blinded)
         self._blinded = blinded
+        self._key_names: Mapping[str, str] = {}
         self.screen = self._make_screen()
         playback.changed = self._refresh
         playback.subscribe(self._feel)
@@ -245,6 +246,11 @@ class ReplayPresenter:
         """Process a key."""
         if is_down:
             self._do(_KEYS.get(code))
+
+    def on_layout(self, view: int, keys: Mapping[str, str]) -> None:  # noqa: ARG002
+        """Name the keys as on the latest keyboard."""
+        self._key_names = keys
+        self._refresh()
 
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:  # noqa: ARG002
         """Handle a gamepad's newly pressed buttons."""
@@ -333,6 +339,6 @@ class ReplayPresenter:
         return self._player.screen(self._texts, hints, self._language)
 
     def _hint(self, codes: tuple[str, ...], key: str) -> Hint:
-        labels = (input_label(self._texts, "keyboard", code) for code in codes)
+        labels = (input_label(self._texts, "keyboard", code, self._key_names) for code in codes)
         item = RATE if key == _OF_RATERS["hint.end"] else ""
         return Hint(reduce(pair_label, labels), self._texts.say(key), item)

@@ -19,7 +19,7 @@ from rastrainer_simulator.teleoperation.steering import (
     ToolDirection,
     ToolSteering,
 )
-from rastrainer_simulator.vectors import ZERO, Vector, accelerated, scale, vector
+from rastrainer_simulator.vectors import ZERO, Vector, accelerated, scale, shortened, vector
 
 
 @dataclass(frozen=True)
@@ -47,6 +47,8 @@ class StickResponse:
         return tuple(value * share / size for value in deflection)
 
 
+AT_SKIN_M, OFF_SKIN_M = 0.002, 0.01
+"""Up to the first clearance of the tip slow motion is limited most, from the second on not."""
 STRAIGHT = (0.0, 0.0)
 """The steering stick at rest."""
 
@@ -59,6 +61,8 @@ class TeleoperationSettings:
         response: dead zone and response curve of the sticks.
         coarse_speed: of the tip at full deflection, m/s.
         fine_speed: the same while the trigger for fine speed is held, m/s.
+        skin_speed: the fastest slow motion at the skin, m/s: that the tip has reached it is seen
+            late, and what it is pressed in by then counts.
         acceleration: of the tip at most, m/s²; a released stick stops it immediately.
         steering: how the tool's direction is chosen, and how fast it turns.
     """
@@ -66,6 +70,7 @@ class TeleoperationSettings:
     response: StickResponse = field(default_factory=StickResponse)
     coarse_speed: float = 0.15
     fine_speed: float = 0.02
+    skin_speed: float = 0.003
     acceleration: float = 2.0
     steering: SteeringSettings = field(default_factory=SteeringSettings)
 
@@ -188,6 +193,8 @@ class Teleoperation:
         settings = self._settings
         fastest = settings.fine_speed if fine else settings.coarse_speed
         wanted = axes.to_world(scale(push, fastest))
+        if fine and surface is not None:
+            wanted = shortened(wanted, self._slow_limit(surface.clearance))
         self._velocity = (
             ZERO
             if push == ZERO
@@ -195,6 +202,13 @@ class Teleoperation:
         )
         direction = self._steering.steer(dt, turn, fine, axes, tip.direction, surface)
         return self._toward(Motion.STICK, scale(self._velocity, dt), direction, tip, ended)
+
+    def _slow_limit(self, clearance: float) -> float:
+        """Return the fastest slow motion of a tip with this clearance (m), m/s."""
+        fine_speed = self._settings.fine_speed
+        slowest = min(self._settings.skin_speed, fine_speed)
+        share = (clearance - AT_SKIN_M) / (OFF_SKIN_M - AT_SKIN_M)
+        return slowest + min(max(share, 0.0), 1.0) * (fine_speed - slowest)
 
     def _by_command(
         self,

@@ -120,13 +120,28 @@ class Texts:
         )
 
 
+NO_NAMES: Mapping[str, str] = MappingProxyType({})
+
+
 def pair_label(first: str, second: str) -> str:
     """Return the common name of two inputs, such as "Stick left / right"."""
     shared, _, last = second.rpartition(" ")
     return f"{first} / {last if first.rpartition(' ')[0] == shared else second}"
 
 
-def input_label(texts: Texts, device: str, name: str) -> str:
-    """Return the name of an input of a device ("gamepad" or "keyboard")."""
+def input_label(
+    texts: Texts, device: str, name: str, key_names: Mapping[str, str] = NO_NAMES
+) -> str:
+    """Return the name of an input of a device ("gamepad" or "keyboard").
+
+    `key_names` says what is written on the keys, by their W3C codes.
+    """
     key = f"{device}.{name}"
-    return texts.say(key) if key in texts else name.removeprefix("Key").removeprefix("Digit")
+    return texts.say(key) if key in texts else key_name(name, key_names)
+
+
+def key_name(code: str, key_names: Mapping[str, str]) -> str:
+    """Return what is written on a key, or what an American keyboard has there."""
+    name = key_names.get(code, code.removeprefix("Key").removeprefix("Digit"))
+    # The capital of ß is two letters, and on no key.
+    return name.upper() if len(name.upper()) == len(name) == 1 else name

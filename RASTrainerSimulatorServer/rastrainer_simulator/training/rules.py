@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -20,6 +21,7 @@ from rastrainer.protocol import (
     TouchRule,
 )
 from rastrainer.transforms import MM_PER_M
+from rastrainer.trial.scoring import DEPTH_LIMIT_MM
 from rastrainer_simulator.state import OperatorCommand, TouchStage, TrainingState
 from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.feed import NO_FEED, Feed
@@ -243,16 +245,34 @@ def refused_touch(
             return texts.say(
                 "wrong point", point=next_point, label=label, nearest=MM_PER_M * nearest
             )
-        return texts.say("too far", point=next_point, radius=MM_PER_M * radius)
+        return _too_far(next_point, MM_PER_M * away, MM_PER_M * radius, method, texts)
     is_above = now.tip_clearance > settings.skin_tolerance
     if settings.touch_rule is TouchRule.ON_SKIN and is_above:
         return texts.say("above the skin", point=next_point, height=MM_PER_M * now.tip_clearance)
     return None
 
 
+TOLD_MM, TOLD_RADII = 15.0, 1.5
+"""A refusal tells how far away the point is up to here, or to so many times the distance at which
+touches count: told from anywhere, three would lead to the point without a look at the head."""
+UNMARKED_STEP_MM = 10
+"""Where a point that is not marked is, is what the trainee has to know: its distance is rounded."""
+
+
+def _too_far(
+    point: str, away_mm: float, radius_mm: float, method: RegistrationMethod, texts: Texts
+) -> str:
+    """Return the refusal of a touch that is farther from its point than touches count."""
+    step = 1 if method is RegistrationMethod.FIDUCIALS else UNMARKED_STEP_MM
+    away = step * max(round(away_mm / step), math.floor(radius_mm / step) + 1)
+    most = max(TOLD_MM, TOLD_RADII * radius_mm)
+    key = "too far" if away <= most else "much too far"
+    return texts.say(key, point=point, distance=away, most=f"{most:g}", radius=radius_mm)
+
+
 _TOUCHING = (Phase.RUNNING, Phase.COMPLETE)
-TOO_DEEP_MM = 0.5
-"""How deep the tip may be pressed in before it counts as an error."""
+PRESSED_MM, TOO_DEEP_MM = 0.5, DEPTH_LIMIT_MM
+"""How deep the tip may be pressed in before it is asked to ease off, and before it is an error."""
 
 
 def touch_stage(
@@ -285,11 +305,12 @@ def touch_stage(
         return TouchStage.ARM
     is_on_skin = now.tip_clearance <= settings.skin_tolerance
     radius, is_open = settings.radius(training.method), training.phase in _TOUCHING
-    if is_open and training.trace is not None and training.next_point is None:
-        # Wherever the skin is traced.
-        return TouchStage.ON_SKIN if is_on_skin else TouchStage.NEAR
-    if goal is not None and distance(now.tip, goal) <= radius:
-        return TouchStage.ON_SKIN if is_on_skin else TouchStage.NEAR
+    is_traced = is_open and training.trace is not None and training.next_point is None
+    if is_traced or (goal is not None and distance(now.tip, goal) <= radius):
+        if not is_on_skin:
+            return TouchStage.NEAR
+        is_pressed = MM_PER_M * now.depth > PRESSED_MM
+        return TouchStage.PRESSED if is_pressed else TouchStage.ON_SKIN
     # The tip still is where the last touch was made, or no trial is open.
     is_just_touched = any(distance(now.tip, t.position) <= radius for t in training.touches[-1:])
     return TouchStage.ELSEWHERE if is_open and not is_just_touched else TouchStage.NEAR

@@ -13,7 +13,7 @@ from rastrainer.protocol import MIN_TRACE_POINTS, TRACE_SPACING_MM, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import Event, EventKind, TrainingState
 from rastrainer_simulator.training.replies import TrialStep
-from rastrainer_simulator.training.rules import TOO_DEEP_MM, TouchMoment, TrainingSettings
+from rastrainer_simulator.training.rules import PRESSED_MM, TouchMoment, TrainingSettings
 from rastrainer_simulator.trial_state import TracedPoint, TraceState
 from rastrainer_simulator.vectors import Vector, distance
 
@@ -25,7 +25,7 @@ def takes_point(trace: TraceState | None, now: TouchMoment, settings: TrainingSe
     """
     if trace is None or not trace.is_on or now.tip_clearance > settings.skin_tolerance:
         return False
-    if MM_PER_M * now.depth > TOO_DEEP_MM:
+    if MM_PER_M * now.depth > PRESSED_MM:
         return False
     last = trace.points[-1:]
     return not last or MM_PER_M * distance(now.tip, last[0].seen) >= TRACE_SPACING_MM

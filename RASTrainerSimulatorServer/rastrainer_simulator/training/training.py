@@ -48,6 +48,9 @@ if TYPE_CHECKING:
     from rastrainer.scenario.points import Task
     from rastrainer.scenario.scenario import Scenario
 
+REFUSAL_S = 5.0
+"""For so long a refused touch's sentence takes the place of the instruction."""
+
 
 class Training:
     """The state machine of a trial.
@@ -78,6 +81,8 @@ class Training:
         self.state = TrainingState(instruction=self._texts.say("idle"))
         self._kept = KeptStates()
         self._kept.begin(self.state)
+        # Until when (simulated s) a refusal is shown, and the instruction that it stands for.
+        self._refused_over: tuple[float, str] | None = None
         self._handlers: dict[str, Callable[[OperatorCommand, TouchMoment], TrainingReply]] = {
             CommandName.START_TASK: self._start,
             CommandName.CAPTURE: self._capture,
@@ -146,6 +151,12 @@ class Training:
             return ()
         return self.handle(OperatorCommand(TRACED), now).events
 
+    def end_refusal(self, sim_time: float) -> None:
+        """Show the instruction again in place of a refusal that has been shown long enough."""
+        if self._refused_over is not None and sim_time >= self._refused_over[0]:
+            self.state = replace(self.state, instruction=self._refused_over[1])
+            self._refused_over = None
+
     @property
     def _count(self) -> int:
         """How many points the trial has to touch."""
@@ -193,6 +204,8 @@ class Training:
     def _refused(self, step: RefusedStep, now: TouchMoment) -> TrainingReply:
         if step.data is None:
             return TrainingReply(False, step.sentence)
+        task = self.state.instruction if self._refused_over is None else self._refused_over[1]
+        self._refused_over = now.sim_time + REFUSAL_S, task
         self.state = replace(self.state, instruction=step.sentence)
         event = Event(EventKind.REJECTED, now.sim_time, step.data)
         return TrainingReply(False, step.sentence, events=(event,))
@@ -356,6 +369,7 @@ class Training:
         }
         revision = state.revision + 1
         instruction = self._texts.say(key, **words)
+        self._refused_over = None
         self.state = replace(state, revision=revision, instruction=instruction)
         self._kept.keep(self.state)
 

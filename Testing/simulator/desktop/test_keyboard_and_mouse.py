@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import pygame
 import pytest
 
@@ -10,6 +12,7 @@ from rastrainer_simulator.desktop.keyboard_and_mouse import (
     DEG_PER_HEIGHT,
     MouseSticks,
     ViewMouse,
+    key_names,
     without_late_repeats,
 )
 from rastrainer_simulator.desktop.panels.controls_picture import stick_boxes
@@ -53,6 +56,22 @@ BOTH = {
 @pytest.mark.parametrize(("scancode", "code"), BOTH.items())
 def test_a_key_is_identified_by_its_position(scancode, code):
     assert CODES[scancode] == code
+
+
+class Keyboard(tuple):
+    """SDL's answer to which keys are pressed, on a French keyboard: asked by what is on a key."""
+
+    AZERTY: ClassVar = {"a": "KeyQ", "q": "KeyA", "&": "Digit1", "é": "Digit2", " ": "Space"}
+
+    def __getitem__(self, written):
+        code = self.AZERTY.get(chr(written), "")
+        return tuple.__getitem__(self, next((s for s, c in CODES.items() if c == code), 0))
+
+
+def test_keys_are_named_by_what_is_written_on_them(monkeypatch):
+    monkeypatch.setattr(pygame.key, "get_pressed", lambda: Keyboard([False] * 512))
+    names = {"KeyQ": "a", "KeyA": "q", "Digit1": "&", "Digit2": "é"}
+    assert key_names() == names
 
 
 def test_every_key_with_a_function_can_be_pressed_in_the_window():

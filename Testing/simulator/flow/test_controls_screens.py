@@ -16,7 +16,7 @@ from rastrainer_simulator.input.bindings import BINDINGS_FILE, DEFAULT_BINDINGS,
 from rastrainer_simulator.input.controls import IDLE_S
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.presenter import Hello
-from rastrainer_simulator.texts.texts import LANGUAGES
+from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label
 from Testing.simulator.flow.trainee import STEP_S, Keys
 
 
@@ -255,8 +255,52 @@ def test_the_hints_begin_with_the_keys_that_move_the_tool(trainee):
     assert first_hints(trainee) == [("W A S D", "Move"), ("R / F", "Up, down")]
 
 
+AZERTY = {"KeyW": "z", "KeyA": "q", "KeyS": "s", "KeyD": "d", "KeyZ": "w", "Semicolon": "m"}
+
+
+def test_keys_are_named_as_on_the_operators_keyboard(trainee):
+    def forward():
+        return trainee.presenter._session.operator.label(ControlName.MOVE_FORWARD)
+
+    trainee.presenter.on_layout(1, AZERTY)
+    assert first_hints(trainee)[0] == ("Z Q S D", "Move")
+    # Another page's keyboard is not theirs, and one that has left is forgotten.
+    trainee.presenter.view_joined(2, Hello("page"))
+    trainee.presenter.on_layout(2, {"KeyW": "ц"})
+    trainee.hands.key("KeyE")
+    assert forward() == "Z"
+    trainee.presenter.view_left(1)
+    assert forward() == "Ц"
+    trainee.presenter.view_left(2)
+    assert forward() == "W"
+
+
+@pytest.mark.parametrize(
+    ("code", "name"),
+    [("KeyW", "Z"), ("KeyQ", "Q"), ("Digit1", "1"), ("Minus", "ß"), ("Space", "Space")],
+)
+def test_a_key_has_the_name_that_is_written_on_it(code, name):
+    written = {**AZERTY, "Minus": "ß", "Space": " "}
+    assert input_label(Texts(), "keyboard", code, written) == name
+
+
 def test_the_hints_begin_with_the_sticks_that_move_the_tool(pilot):
     assert first_hints(pilot) == [("Left stick", "Move"), ("Right stick up / down", "Up, down")]
+
+
+@pytest.mark.parametrize("is_slow", [False, True])
+@pytest.mark.parametrize("steps", [0, 1, 5])
+def test_a_tap_of_a_key_is_one_small_step_of_the_tip(trainee, is_slow, steps):
+    trainee.start("task-1")
+    presenter = trainee.presenter
+    if is_slow:
+        presenter.on_key(1, "ShiftLeft", True, "")
+    before = tip(trainee)
+    presenter.on_key(1, "KeyF", True, "")
+    trainee.step(steps)
+    presenter.on_key(1, "KeyF", False, "")
+    trainee.step(20)
+    assert np.linalg.norm(tip(trainee) - before) == pytest.approx(0.0002, abs=0.00005)
 
 
 @pytest.mark.parametrize(("key", "letter"), [("ArrowRight", "KeyD"), ("ArrowUp", "KeyW")])
@@ -266,7 +310,7 @@ def test_arrow_keys_move_the_tool_as_the_letters_do(trainee, key, letter):
     for code in (letter, key):
         before = tip(trainee)
         trainee.presenter.on_key(1, code, True, "")
-        trainee.step(10)
+        trainee.step(30)
         trainee.presenter.on_key(1, code, False, "")
         trainee.step(5)
         moves.append(tip(trainee) - before)

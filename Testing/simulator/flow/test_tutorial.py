@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -18,7 +19,8 @@ from rastrainer_simulator.flow.tutorial.steps import TutorialStep
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.state import TOUCH_ERRORS
-from rastrainer_simulator.training.rules import TOO_DEEP_MM
+from rastrainer_simulator.training.rules import PRESSED_MM
+from rastrainer_simulator.training.training import REFUSAL_S
 from Testing.simulator.flow.learner import FlowLearner
 from Testing.tutorial_player import TutorialPlayer
 
@@ -161,6 +163,70 @@ def test_a_touch_that_does_not_count_says_why(learner):
     assert "Point 1: " in status(learner)[-1]
 
 
+def move_over_skin(learner, aside_m, lift_m=0.0):
+    """Bring the tip onto the skin so far beside the next point, or so far above it."""
+    point, center = FlowLearner(learner)._next()
+    outward = (point - center) / np.linalg.norm(point - center)
+    aside = np.cross(outward, (1.0, 0.0, 0.0))
+    place = point + aside_m * aside / np.linalg.norm(aside)
+    # The head is not a ball: beside the point, the skin is a little lower or higher.
+    low = lift_m or -0.0005 - 0.2 * aside_m
+    for height, speed in ((0.03, 200), (low, 40)):
+        goal_mm = (MM_PER_M * (place + height * outward)).tolist()
+        learner.submit("MoveTipTo", positionMm=goal_mm, speedMmS=speed)
+        learner.until(lambda: learner.state.motion == "none", "the tip's rest")
+    learner.step(20)
+
+
+def test_a_tip_beside_the_center_is_not_praised_but_led_there(learner):
+    go_to_step(learner, TutorialStep.LOWER)
+    move_over_skin(learner, 0.005)
+    assert learner.presenter.shown.latest.touch == "near"
+    assert status(learner)[1] == "Step 10 of 14"
+    said = learner.presenter.screen.instruction
+    assert said.text in [
+        f"On the skin, {mm} mm beside point 1: move the tip to its center." for mm in (4, 5, 6)
+    ]
+    assert said.tone == "warning"
+    learner.tap("touch")
+    learner.until(lambda: "Too far from point 1" in instruction(learner), "the refusal")
+    assert instruction(learner).endswith("mm; a touch counts within 3 mm.")
+    move_over_skin(learner, 0.0)
+    learner.until(lambda: status(learner)[1] == "Step 11 of 14", "the praise")
+
+
+def test_a_refusal_gives_the_tutorials_task_back(learner):
+    go_to_step(learner, TutorialStep.LOWER)
+    asked = instruction(learner)
+    assert asked.startswith("Lower the tip onto the center of point 1")
+    learner.tap("touch")
+    learner.until(lambda: "Too far from point 1" in instruction(learner), "the refusal")
+    learner.step(round(REFUSAL_S / learner.step_s))
+    learner.until(lambda: instruction(learner) == asked, "the task")
+
+
+def test_a_tip_that_is_lifted_before_the_touch_is_to_be_lowered_again(learner):
+    go_to_step(learner, TutorialStep.LOWER)
+    asked, hints = instruction(learner), learner.presenter.screen.hints
+    move_over_skin(learner, 0.0)
+    go_to_step(learner, TutorialStep.TOUCH)
+    move_over_skin(learner, 0.0, lift_m=0.02)
+    assert status(learner)[1] == "Step 11 of 14"
+    assert instruction(learner) == asked
+    moving = [hint for hint in hints if hint.action in ("Move", "Up, down", "Slow")]
+    assert len(moving) == 3
+    assert set(moving) <= set(learner.presenter.screen.hints)
+
+
+def test_the_way_to_a_point_is_said_down_to_two_millimeters(learner):
+    go_to_step(learner, TutorialStep.LOWER)
+    for lift_mm, said in ((15.0, r"Point 1: 1[456] mm \w+"), (5.0, r"Point 1: [456] mm \w+")):
+        move_over_skin(learner, 0.0, lift_m=lift_mm / MM_PER_M)
+        assert re.match(said, status(learner)[-1])
+    move_over_skin(learner, 0.0)
+    assert status(learner)[-1] == "Point 1: less than 2 mm away"
+
+
 def test_the_view_does_not_move_by_itself_before_the_guided_touches(learner):
     control = session_of(learner).view.control
     go_to_step(learner, TutorialStep.LOWER)
@@ -188,7 +254,7 @@ def lower_gently(learner, player):
     for _ in range(20):
         player.lower()
         learner.step(15)
-        if MM_PER_M * learner.presenter.shown.latest.depth <= TOO_DEEP_MM:
+        if MM_PER_M * learner.presenter.shown.latest.depth <= PRESSED_MM:
             return
 
 

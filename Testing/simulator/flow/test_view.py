@@ -72,7 +72,7 @@ def test_the_scenario_cameras_view_leaves_the_sticks_bit_for_bit_unchanged(by_ha
     held = []
     by_hand.presenter._control_loop.hold_sticks = held.append
     by_hand.hands.push(-0.7, 0.0, 0.0, False)
-    by_hand.step(30)
+    by_hand.step(60)
     assert held[-1].translation == (-1.0, 0.0, 0.0)
 
 

@@ -2,10 +2,19 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.input.controls import IDLE_S, RAMP_S, Controls, InputState
+from rastrainer_simulator.input.controls import (
+    IDLE_S,
+    RAMP_S,
+    STEP_PUSH,
+    STEP_S,
+    Controls,
+    InputState,
+)
 from rastrainer_simulator.input.inputs import (
     ControlContext,
     ControlName,
@@ -167,18 +176,69 @@ def right(hand):
     return hand.sticks(DEFAULT_BINDINGS).translation[0]
 
 
-def test_a_key_pushes_harder_over_time_and_stops_at_once():
+def hand_with(device):
+    """Return a hand that presses what moves the tip to the right, a key or a button."""
+    hand = InputState(device)
+    table = DEFAULT_BINDINGS.rebound(InputDevice.GAMEPAD, ControlName.MOVE_RIGHT, "dpright")
+
+    def press(is_down):
+        if device is InputDevice.KEYBOARD:
+            hand.set_key("KeyD", is_down)
+        else:
+            hand.set_inputs({"dpright": float(is_down)})
+
+    return hand, press, lambda: hand.sticks(table).translation[0]
+
+
+@pytest.mark.parametrize("device", InputDevice)
+@pytest.mark.parametrize("held_s", [0.0, 0.03, 0.09])
+def test_a_tap_is_one_step_however_short_it_was(device, held_s):
+    hand, press, pushed = hand_with(device)
+    press(True)
+    hand.advance(held_s)
+    press(False)
+    moved, seconds = [], held_s
+    while seconds < 3.0 * STEP_S:
+        moved.append(pushed())
+        hand.advance(0.01)
+        seconds += 0.01
+    assert set(moved) == {STEP_PUSH, 0.0}
+    assert moved == sorted(moved, reverse=True)
+    assert held_s + 0.01 * moved.count(STEP_PUSH) == pytest.approx(STEP_S, abs=0.011)
+
+
+def test_a_tap_is_not_carried_through_a_change_of_the_situation():
+    hand, press, pushed = hand_with(InputDevice.KEYBOARD)
+    press(True)
+    press(False)
+    hand.block()
+    assert pushed() == 0.0
+
+
+def test_keys_once_released_are_forgotten():
     hand = InputState(InputDevice.KEYBOARD)
-    hand.set_key("KeyD", True)
-    pushed = [right(hand)]
+    for number in range(1000):
+        hand.set_key(f"Made{number}", True)
+        hand.set_key(f"Made{number}", False)
+    hand.advance(STEP_S)
+    assert not hand._inputs
+    assert not hand._pressed_s
+
+
+@pytest.mark.parametrize("device", InputDevice)
+def test_a_key_or_button_pushes_harder_over_time_and_stops_at_once(device):
+    hand, press, pushed_now = hand_with(device)
+    press(True)
+    pushed = [pushed_now()]
     for _ in range(10):
         hand.advance(RAMP_S / 8)
-        pushed.append(right(hand))
+        pushed.append(pushed_now())
     assert 0.0 < pushed[0] < 0.5
     assert pushed == sorted(pushed)
+    assert max(b - a for a, b in pairwise(pushed)) < 0.3
     assert pushed[-1] == 1.0
-    hand.set_key("KeyD", False)
-    assert right(hand) == 0.0
+    press(False)
+    assert pushed_now() == 0.0
 
 
 def test_opposite_keys_cancel():

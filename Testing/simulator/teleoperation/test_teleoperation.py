@@ -1,6 +1,7 @@
 """The sticks and commanded motions as the trainee feels them."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -104,6 +105,26 @@ def test_a_stick_that_reports_nan_counts_as_released(broken):
 def test_full_deflection_reaches_the_coarse_and_with_the_trigger_the_fine_speed():
     assert speed_after(Hand(), push(1.0, 0.0, 0.0)) == pytest.approx(SETTINGS.coarse_speed)
     assert speed_after(Hand(), push(1.0, 0.0, 0.0, fine=True)) == pytest.approx(SETTINGS.fine_speed)
+
+
+def at_clearance(clearance):
+    return Hand(surface=NearestSurface(clearance, (0.0, 0.0, 1.0), 0.05, (0.0, 0.0, 1.0)))
+
+
+@pytest.mark.parametrize("pushed", [0.7, 1.0])
+def test_slow_motion_is_slow_near_the_skin_however_far_a_stick_is_pushed(pushed):
+    fine = push(0.0, 0.0, -pushed, fine=True)
+    speeds = [speed_after(at_clearance(mm / 1000.0), fine) for mm in (-0.1, 0.0, 2.0, 6.0, 10.0)]
+    assert speeds == sorted(speeds)
+    assert speeds[0] == speeds[2] == pytest.approx(0.003)
+    assert speeds[-1] == speed_after(Hand(), fine)
+
+
+def test_near_the_skin_only_slow_motion_is_limited_and_never_sped_up():
+    assert speed_after(at_clearance(0.0), push(1.0, 0.0, 0.0)) == SETTINGS.coarse_speed
+    hand = at_clearance(0.0)
+    hand.teleoperation = Teleoperation(replace(SETTINGS, fine_speed=0.002))
+    assert speed_after(hand, push(1.0, 0.0, 0.0, fine=True)) == pytest.approx(0.002)
 
 
 def test_speed_never_changes_faster_than_the_acceleration_limit_while_the_stick_is_held():

@@ -5,12 +5,13 @@ import pytest
 from rastrainer.protocol import Phase, Proximity
 from rastrainer_simulator.state import TouchStage, TrainingState
 from rastrainer_simulator.training.rules import TouchMoment, TrainingSettings, touch_stage
-from rastrainer_simulator.trial_state import TouchState
+from rastrainer_simulator.trial_state import TouchState, TraceState
 
 RUNNING = TrainingState(phase=Phase.RUNNING, next_point="2")
 TOUCHED = TrainingState(
     phase=Phase.COMPLETE, touches=(TouchState("15", (0.0, 0.0, 0.0), 1.0, 1.0),)
 )
+TRACING = TrainingState(phase=Phase.RUNNING, trace=TraceState(is_on=True))
 HERE, BESIDE = (0.0, 0.0, 0.0), (0.02, 0.0, 0.0)
 CONTACT = Proximity.CONTACT
 
@@ -22,7 +23,11 @@ CONTACT = Proximity.CONTACT
         (Proximity.PROXIMITY, 0.015, 0.0, "", RUNNING, HERE, TouchStage.NEAR),
         (CONTACT, 0.0, 0.0, "", RUNNING, HERE, TouchStage.ON_SKIN),
         (CONTACT, 0.0, 0.0004, "", RUNNING, HERE, TouchStage.ON_SKIN),
-        (CONTACT, 0.0, 0.0006, "", RUNNING, HERE, TouchStage.TOO_DEEP),
+        (CONTACT, 0.0, 0.0006, "", RUNNING, HERE, TouchStage.PRESSED),
+        (CONTACT, 0.0, 0.0014, "", RUNNING, HERE, TouchStage.PRESSED),
+        (CONTACT, 0.0, 0.0016, "", RUNNING, HERE, TouchStage.TOO_DEEP),
+        (CONTACT, 0.0, 0.0006, "", RUNNING, BESIDE, TouchStage.ELSEWHERE),
+        (CONTACT, 0.0, 0.0006, "", TRACING, None, TouchStage.PRESSED),
         (CONTACT, 0.0, 0.0, "", RUNNING, BESIDE, TouchStage.ELSEWHERE),
         (CONTACT, 0.004, 0.0, "", RUNNING, HERE, TouchStage.SHAFT),
         (CONTACT, 0.0, 0.0, "links", RUNNING, HERE, TouchStage.ARM),

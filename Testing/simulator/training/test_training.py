@@ -16,6 +16,7 @@ from rastrainer_simulator.training.rules import (
     REFUSALS,
     TrainingSettings,
 )
+from rastrainer_simulator.training.training import REFUSAL_S
 from Testing.simulator.training.hand_driven import (
     DRILLED,
     LOCKABLE,
@@ -164,15 +165,47 @@ def test_under_the_papers_rule_a_touch_counts_at_any_height_within_the_radius(sc
     assert trial.do(CommandName.CAPTURE, (x, y, z + 0.009), above_mm=9.0).ok
 
 
-def test_a_touch_too_far_away_is_refused_with_the_rule_but_not_the_distance(scenario):
+@pytest.mark.parametrize(
+    ("away_m", "said"),
+    [
+        (0.0102, "11 mm"),
+        (0.014, "14 mm"),
+        (0.0153, "15 mm"),
+        (0.0156, "more than 15 mm"),
+        (0.2, "more than 15 mm"),
+    ],
+)
+def test_a_touch_too_far_away_is_refused_with_the_distance_where_it_does_not_lead_there(
+    scenario, away_m, said
+):
     trial = Trial(scenario)
     trial.start()
     x, y, z = trial.fiducial("1")
-    reply = trial.do(CommandName.CAPTURE, (x, y, z + 0.2))
-    assert reply.message == "Too far from point 1: a touch counts within 10 mm."
+    reply = trial.do(CommandName.CAPTURE, (x, y, z + away_m))
+    assert reply.message == f"Too far from point 1: {said}; a touch counts within 10 mm."
     assert trial.state.instruction == reply.message
     assert trial.state.rejected == 1
     assert [event.kind for event in reply.events] == [EventKind.REJECTED]
+
+
+def test_a_refusal_gives_way_to_the_instruction_after_some_seconds(scenario):
+    trial = Trial(scenario)
+    trial.start()
+    asked = trial.state.instruction
+    for _ in range(2):
+        trial.do(CommandName.CAPTURE, (0.0, 0.0, 2.0))
+        trial.now += 0.9 * REFUSAL_S
+        trial.training.end_refusal(trial.now)
+        assert trial.state.instruction.startswith("Too far")
+    trial.now += 0.2 * REFUSAL_S
+    trial.training.end_refusal(trial.now)
+    assert trial.state.instruction == asked
+    trial.do(CommandName.CAPTURE, (0.0, 0.0, 2.0))
+    trial.touch(1)
+    recorded = trial.state.instruction
+    trial.now += 2.0 * REFUSAL_S
+    trial.training.end_refusal(trial.now)
+    assert trial.state.instruction == recorded
 
 
 def test_touching_another_fiducial_is_refused_as_the_wrong_point(scenario):

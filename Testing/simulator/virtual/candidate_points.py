@@ -93,10 +93,14 @@ class CandidatePoints:
         if label not in self._known or away_m < self._known[label][0]:
             self._known[label] = away_m, at
 
-    def is_empty(self, at: np.ndarray) -> None:
-        """No point is near there."""
+    def is_refused(self, at: np.ndarray, away_m: float, is_farther: bool) -> None:
+        """No point is near there; the next one is so far away, or farther than that."""
         self._is_empty |= self._away(surface_at(at)) < AROUND_M
-        self.is_not_at(at)
+        away = self._away(at)
+        if is_farther:
+            self._keep(away > away_m - UNSURE_M)
+        else:
+            self._keep(np.abs(away - away_m) < UNSURE_M)
 
     def is_not_at(self, at: np.ndarray) -> None:
         """The point is not near there."""

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections import deque
+from typing import Protocol
+
 import numpy as np
 
 from rastrainer.protocol import Phase
-from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
+from rastrainer_simulator.state import TouchStage
 from Testing.simulator.flow.trainee import Trainee
 from Testing.simulator.virtual.drawn_pictures import DrawnPictures, Look
-from Testing.simulator.virtual.trained_pad import TrainedPad
 
 LOOK_STEPS = 10
 """Steps of the simulation between two looks."""
@@ -31,6 +33,23 @@ NEAR_VIEW_M = 0.08
 PATIENCE_S = 60.0
 
 
+class NotTouchedError(AssertionError):
+    """The trainee has given up a point."""
+
+
+class TrainedHands(Protocol):
+    """What the trainee steers with."""
+
+    def move(self, velocity: np.ndarray) -> None:
+        """Move the tip, (3,) float, m/s: right, forward, up."""
+
+    def stop(self) -> None:
+        """Release what moves the tip."""
+
+    def hold(self, control: str, is_down: bool) -> None:
+        """Hold a control of the view, or release it."""
+
+
 class LookingTrainee:
     """Touches the fiducials of the trial that runs, by what it sees.
 
@@ -38,15 +57,23 @@ class LookingTrainee:
     nothing else does. While a camera stands still, a fiducial that the tool hides is remembered.
 
     Args:
-        trainee: at the presenter, with a `TrainedPad`.
-        pad: its gamepad.
+        trainee: at the presenter.
+        hands: what it steers with.
         pictures: what it looks at.
+        late_looks: how many looks late it reacts to what it sees.
     """
 
-    def __init__(self, trainee: Trainee, pad: TrainedPad, pictures: DrawnPictures) -> None:
+    def __init__(
+        self,
+        trainee: Trainee,
+        hands: TrainedHands,
+        pictures: DrawnPictures,
+        late_looks: int = 0,
+    ) -> None:
         self._trainee = trainee
-        self._pad = pad
+        self._hands = hands
         self._pictures = pictures
+        self._looks: deque[Look] = deque(maxlen=1 + late_looks)
         self._label = ""
         self._outward = np.array([0.0, 0.0, 1.0])
         self._is_far_away = False
@@ -72,7 +99,8 @@ class LookingTrainee:
         self._find()
         while self._kept == kept:
             now = self._trainee.state.sim_time
-            assert now < give_up, f"{self._label}: not touched in {PATIENCE_S:g} s"
+            if now > give_up:
+                raise NotTouchedError(f"{self._label}: not touched in {PATIENCE_S:g} s")
             if self._travel() and self._lower():
                 self._press()
 
@@ -80,9 +108,12 @@ class LookingTrainee:
         """Let a moment pass, and look."""
         trainee = self._trainee
         trainee.step(LOOK_STEPS)
-        look = self._pictures.look(
-            trainee.state, trainee.presenter.pictures(trainee.state), self._label
+        self._looks.append(
+            self._pictures.look(
+                trainee.state, trainee.presenter.pictures(trainee.state), self._label
+            )
         )
+        look = self._looks[0]
         if not look.is_still:
             self._goals = [None, None]
         for index, picture in enumerate((look.main, look.beside)):
@@ -100,7 +131,7 @@ class LookingTrainee:
             if look.stage is TouchStage.FAR:
                 break
             self._push(look, 0.08 * self._outward)
-        self._pad.stop()
+        self._hands.stop()
 
     def _find(self) -> None:
         """Have the best view shown, and turn on until the fiducial is seen with its number."""
@@ -110,18 +141,18 @@ class LookingTrainee:
         for _ in range(40):
             if self._goals[0] is not None:
                 return
-            self._pad.hold("view_right", True)
+            self._hands.hold("view_right", True)
             self._look()
-            self._pad.hold("view_right", False)
+            self._hands.hold("view_right", False)
             self._wait_for_view()
         raise AssertionError(f"{self._label} is seen from nowhere")
 
     def _turn_view(self) -> None:
         """Look from the side, where it is seen how far before the fiducial the tip is."""
-        self._pad.hold("view_right", True)
+        self._hands.hold("view_right", True)
         for _ in range(TURN_LOOKS):
             self._look()
-        self._pad.hold("view_right", False)
+        self._hands.hold("view_right", False)
         self._wait_for_view()
 
     def _wait_for_view(self) -> None:
@@ -141,7 +172,7 @@ class LookingTrainee:
                 continue
             unseen = 0
             if self._is_far_away and np.linalg.norm(to_fiducial) < NEAR_VIEW_M:
-                self._pad.stop()
+                self._hands.stop()
                 # Lost once more, the tip is not near: it only lies before or behind the fiducial.
                 (self._turn_view if returned % 2 else self._find)()
                 returned += 1
@@ -150,11 +181,11 @@ class LookingTrainee:
             goal = to_fiducial + HOVER_M * self._outward
             if np.linalg.norm(goal) < OVER_M:
                 if self._is_judged(look):
-                    self._pad.stop()
+                    self._hands.stop()
                     return True
                 unjudged += 1
                 if unjudged % LOST_LOOKS == 0:
-                    self._pad.stop()
+                    self._hands.stop()
                     self._turn_view()
             velocity = GAIN_PER_S * goal
             if look.stage is not TouchStage.FAR and np.linalg.norm(beside) > GO_AROUND_M:
@@ -181,12 +212,12 @@ class LookingTrainee:
     def _search(self, look: Look, unseen: int) -> None:
         """Look for the tip: from farther away, and if it is hidden raise it."""
         if unseen % LOST_LOOKS == 1:
-            self._pad.stop()
-            self._pad.hold("view_farther", True)
+            self._hands.stop()
+            self._hands.hold("view_farther", True)
             for _ in range(ZOOM_LOOKS):
                 if "tip" in self._look().main.spots:
                     break
-            self._pad.hold("view_farther", False)
+            self._hands.hold("view_farther", False)
             self._is_far_away = True
             self._wait_for_view()
         else:
@@ -204,9 +235,9 @@ class LookingTrainee:
             beside = to_fiducial + height * self._outward
             off = float(np.linalg.norm(beside))
             if look.stage is TouchStage.ON_SKIN and off < AIM_M:
-                self._pad.stop()
+                self._hands.stop()
                 return True
-            if look.stage in (*TOUCH_ERRORS, TouchStage.ON_SKIN):
+            if look.stage not in (TouchStage.FAR, TouchStage.NEAR, None):
                 upward = 0.01
             elif off > AIM_M + 0.3 * max(0.0, height):
                 upward = 0.0
@@ -246,4 +277,4 @@ class LookingTrainee:
 
     def _push(self, look: Look, velocity: np.ndarray) -> None:
         """Push the sticks for a velocity of the tip, (3,) float, m/s, in World."""
-        self._pad.move(look.main.level_axes @ velocity)
+        self._hands.move(look.main.level_axes @ velocity)

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import math
 import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from scipy.stats import t
 
-from rastrainer.protocol import Phase
+from rastrainer.protocol import Phase, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
 from rastrainer_simulator.core.simulation import Simulation
@@ -23,20 +24,48 @@ from rastrainer_simulator.flow.running_presenter import RunningPresenter
 from rastrainer_simulator.flow.session.preferences import PREFERENCES_FILE
 from rastrainer_simulator.flow.session.services import FlowServices
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.state import Answer
+from rastrainer_simulator.state import TOUCH_ERRORS, Answer, EventKind, StepResult, TouchStage
 from Testing.sdl_virtual_gamepad import VirtualGamepad
 from Testing.simulator.at_once import at_once
 from Testing.simulator.flow.trainee import Trainee
 from Testing.simulator.virtual.drawn_pictures import DrawnPictures
-from Testing.simulator.virtual.looking_trainee import LookingTrainee
+from Testing.simulator.virtual.looking_trainee import LookingTrainee, NotTouchedError
 from Testing.simulator.virtual.reading_trainee import ReadingTrainee
-from Testing.simulator.virtual.trained_pad import TrainedPad
+from Testing.simulator.virtual.trained_hands import HANDS, TrainedMouse, TrainedPad
 from Testing.without_tutorial import skip_tutorial
 
 LIMIT_S = 300.0
 """A trial ends here: the trial run lasts five minutes, and no model has longer for a task."""
 POINTS = 15
 MODELS = ("looks", "reads")
+LATE_LOOKS = 2
+"""A person at a device reacts this many looks, 0.16 s, late."""
+GREEN_MM = 0.5
+"""Pressed in less than this, the tip is green on the point."""
+
+
+@dataclass(frozen=True)
+class Landing:
+    """How the tip came onto a point, from its way there to the touch that counts.
+
+    Attributes:
+        deepest_mm: how deep it was pressed in.
+        was_red: whether the frame was red meanwhile.
+        tries: how often it came into contact.
+        time_s: since the last touch.
+        error_mm: distance of the touch from the point.
+    """
+
+    deepest_mm: float
+    was_red: bool
+    tries: int
+    time_s: float
+    error_mm: float
+
+    @property
+    def is_green(self) -> bool:
+        """Whether the first try was green from contact to touch."""
+        return self.deepest_mm <= GREEN_MM and not self.was_red and self.tries == 1
 
 
 @dataclass(frozen=True)
@@ -47,16 +76,46 @@ class Outcome:
         time_s: the trial's time at its last touch, or when it was ended.
         touches: how many of the 15 points were touched.
         error_mm: mean distance of the touches from their points; nan without touches.
+        landings: how the tip came onto each of these points.
     """
 
     time_s: float
     touches: int
     error_mm: float
+    landings: tuple[Landing, ...] = ()
 
     def is_worse_than(self, other: Outcome) -> bool:
         """Return whether fewer points were touched, or as many later and less accurately."""
         is_late = self.time_s > other.time_s and self.error_mm > other.error_mm
         return is_late if self.touches == other.touches else self.touches < other.touches
+
+
+class WatchedLandings:
+    """Watches each tick how the tip comes onto the points."""
+
+    def __init__(self) -> None:
+        self.seen: list[tuple[float, bool, int, float]] = []
+        self._since = 0.0
+        self._begin(0.0)
+
+    def _begin(self, now: float) -> None:
+        self._has_left = self._was_red = self._is_in_contact = False
+        self._deepest_mm, self._tries, self._since = 0.0, 0, now
+
+    def take(self, result: StepResult) -> None:
+        """Note a tick; the way off the last point does not count."""
+        state = result.state
+        self._has_left = self._has_left or state.touch is TouchStage.FAR
+        if self._has_left:
+            is_in_contact = state.proximity is Proximity.CONTACT
+            self._tries += is_in_contact and not self._is_in_contact
+            self._is_in_contact = is_in_contact
+            self._deepest_mm = max(self._deepest_mm, MM_PER_M * state.depth)
+            self._was_red = self._was_red or state.touch in TOUCH_ERRORS
+        if any(event.kind is EventKind.TOUCH for event in result.events):
+            elapsed = state.elapsed - self._since
+            self.seen.append((self._deepest_mm, self._was_red, self._tries, elapsed))
+            self._begin(state.elapsed)
 
 
 class SteadyTrainee(Trainee):
@@ -66,35 +125,58 @@ class SteadyTrainee(Trainee):
 
 
 def play(
-    setup: SimulationSetup, model: str, task: str, seed: int, limit_s: float = LIMIT_S
+    setup: SimulationSetup,
+    model: str,
+    task: str,
+    seed: int,
+    limit_s: float = LIMIT_S,
+    device: str = "pad",
+    late_looks: int = 0,
 ) -> Outcome:
     """Let a model (one of `MODELS`) play a task, until all is touched or its time is over.
 
-    The seed is that of the head's pose, and of the model's eyes or choices.
+    The seed is that of the head's pose, and of the model's eyes or choices. A model that looks
+    works one of the devices of `HANDS`.
     """
+    landings = WatchedLandings()
     with (
         tempfile.TemporaryDirectory() as folder,
-        _at_work(setup, seed, Path(folder), model) as trainee,
+        _at_work(setup, seed, Path(folder), model, device) as trainee,
     ):
         trainee.start(task)
+        trainee.loop.subscribe(landings.take)
+        if isinstance(trainee.hands, TrainedMouse):
+            trainee.hands.show_sticks()
         if model == "looks":
-            LookingTrainee(trainee, trainee.hands, DrawnPictures(setup, seed)).play(limit_s)
+            pictures = DrawnPictures(setup, seed)
+            with suppress(NotTouchedError):
+                LookingTrainee(trainee, trainee.hands, pictures, late_looks).play(limit_s)
         else:
             ReadingTrainee(trainee, trainee.hands).play(limit_s)
         state, truth = trainee.state, trainee.loop.truth
         touches = state.training.touches
-        errors = [
-            MM_PER_M * np.array(touch.position) - truth.in_world(truth.fiducials[touch.label])
+        errors_mm = [
+            float(np.linalg.norm(MM_PER_M * np.array(touch.position) - place))
             for touch in touches
+            for place in [truth.in_world(truth.fiducials[touch.label])]
         ]
-        error_mm = float(np.mean(np.linalg.norm(errors, axis=1))) if errors else float("nan")
         is_complete = state.training.phase is Phase.COMPLETE
-        return Outcome(state.elapsed if is_complete else limit_s, len(touches), error_mm)
+        return Outcome(
+            state.elapsed if is_complete else limit_s,
+            len(touches),
+            float(np.mean(errors_mm)) if errors_mm else float("nan"),
+            tuple(
+                Landing(*seen, error_mm)
+                for seen, error_mm in zip(landings.seen, errors_mm, strict=True)
+            ),
+        )
 
 
 @contextmanager
-def _at_work(setup: SimulationSetup, seed: int, folder: Path, model: str) -> Iterator[Trainee]:
-    """Yield a trainee with a gamepad, at the start menu of their own simulator."""
+def _at_work(
+    setup: SimulationSetup, seed: int, folder: Path, model: str, device: str
+) -> Iterator[Trainee]:
+    """Yield a trainee with a device, at the start menu of their own simulator."""
     done: Future[Answer] = Future()
     done.set_result(Answer(0, True))
     services = FlowServices(
@@ -116,16 +198,18 @@ def _at_work(setup: SimulationSetup, seed: int, folder: Path, model: str) -> Ite
     loop = ControlLoop(Simulation(setup, seed), folder / "records", speed=None)
     with at_once(), loop:
         running = RunningPresenter(loop, services, has_gamepad=True)
-        gamepad.plug_in()
-        trainee = SteadyTrainee(
-            loop, running.presenter, lambda it: TrainedPad(it, gamepad), running.advance
-        )
+        hands = HANDS[device]
+        if hands is TrainedPad:
+            gamepad.plug_in()
+            hands = functools.partial(TrainedPad, plugged=gamepad)
+        trainee = SteadyTrainee(loop, running.presenter, hands, running.advance)
         try:
             trainee.until_menu("start")
             yield trainee
         finally:
             trainee.close()
-            gamepad.unplug()
+            if gamepad.is_plugged_in:
+                gamepad.unplug()
             running.close()
 
 
@@ -138,13 +222,13 @@ def mean_and_interval(values: Sequence[float]) -> str:
     return f"{known.mean():.2f} ± {half:.2f}"
 
 
-def main(*arguments: str) -> None:
-    """Play all tasks with the seeds that are given, and print a line for each trial and task."""
+def play_tasks(*seeds: int) -> None:
+    """Play all tasks by both models, and print a line for each trial and task."""
     setup = load_setup()
     for task in setup.scenario.tasks:
         for model in MODELS:
             outcomes = []
-            for seed in map(int, arguments):
+            for seed in seeds:
                 outcomes.append(play(setup, model, task.name, seed))
                 print(seed, task.name, model, outcomes[-1], flush=True)
             finished = sum(outcome.touches == POINTS for outcome in outcomes)
@@ -153,6 +237,36 @@ def main(*arguments: str) -> None:
                 for name in ("touches", "time_s", "error_mm")
             )
             print(task.name, model, f"{finished} of {len(outcomes)} finished", *each, sep=" | ")
+
+
+def play_devices(count: int, *devices: str) -> None:
+    """Touch `count` points with each device by looking, and print a line for each device."""
+    setup = load_setup()
+    tasks = [task.name for task in setup.scenario.tasks]
+    for device in devices or tuple(HANDS):
+        landings: list[Landing] = []
+        given_up = 0
+        for number, task in enumerate(tasks):
+            if len(landings) < count:
+                played = play(setup, "looks", task, 11 + number, LIMIT_S, device, LATE_LOOKS)
+                landings.extend(played.landings)
+                given_up += played.touches < POINTS
+        kept = landings[:count]
+        green, red = (sum(getattr(one, what) for one in kept) for what in ("is_green", "was_red"))
+        each = (
+            mean_and_interval([getattr(one, name) for one in kept])
+            for name in ("time_s", "error_mm", "deepest_mm")
+        )
+        shares = f"{green} of {len(kept)} green at first, {red} red, {given_up} given up"
+        print(device, shares, *each, sep=" | ", flush=True)
+
+
+def main(*arguments: str) -> None:
+    """Play the tasks with the seeds that are given; after `devices` a number of touches each."""
+    if arguments[0] == "devices":
+        play_devices(int(arguments[1]), *arguments[2:])
+    else:
+        play_tasks(*map(int, arguments))
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ from rastrainer.protocol import Phase
 from rastrainer_simulator.presentation.screen import Tone
 from Testing.simulator.flow.trainee import Trainee
 from Testing.simulator.virtual.candidate_points import CandidatePoints, outward, surface_at
-from Testing.simulator.virtual.trained_pad import TrainedPad
+from Testing.simulator.virtual.trained_hands import TrainedPad
 
 READ_STEPS = 6
 """Steps of the simulation between two looks at the words."""
@@ -254,8 +254,9 @@ class ReadingTrainee:
             self._places.has_touched(self._at, trainee.state.training.next_point or "")
         elif other is not None:
             self._places.is_of(self._at, other[1], float(other[2]) / 1000.0)
-        elif self._instruction.startswith("Too far"):
-            self._places.is_empty(self._at)
+        elif too_far := re.match(r"Too far .*: (more than )?(\d+) mm;", self._instruction):
+            away_m = float(too_far[2]) / 1000.0
+            self._places.is_refused(self._at, away_m, is_farther=too_far[1] is not None)
 
 
 def _unit(vector: np.ndarray) -> np.ndarray:

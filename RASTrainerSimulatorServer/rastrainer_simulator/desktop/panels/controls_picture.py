@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +12,7 @@ from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
 from rastrainer_simulator.desktop.panels.theme import Color, rgba
+from rastrainer_simulator.texts.texts import key_name
 
 # In a frame that is 100 wide and 66 high, y down.
 WIDTH, HEIGHT = 100.0, 66.0
@@ -55,17 +56,22 @@ def draw_gamepad(canvas: Canvas, place: Box, brush: Brush) -> None:
         pen.slab(x - 3, 22, 6, 3.4, 1.7, PART)
 
 
-def draw_keyboard(canvas: Canvas, place: Box, inputs: Sequence[str], brush: Brush) -> None:
+def draw_keyboard(
+    canvas: Canvas, place: Box, inputs: Sequence[str], key_names: Mapping[str, str], brush: Brush
+) -> None:
     """Draw the letters of a keyboard at the top of `place`, and below them other keys by name.
 
-    `inputs` are the names of the keys that do something: these are colored.
+    `inputs` are the names of the keys that do something: these are colored. `key_names` says what
+    is written on the keys, by their W3C codes.
     """
     pen = _Pen(canvas, brush, place.left, place.top, place.width / WIDTH)
     used = set(inputs)
-    for row, (begin, letters) in enumerate(LETTERS):
-        for column, letter in enumerate(letters):
+    letters_shown = set()
+    for row, (begin, places) in enumerate(LETTERS):
+        for column, american in enumerate(places):
+            letter = key_name(f"Key{american}", key_names)
+            letters_shown.add(letter)
             pen.key(begin + column * KEY_STEP, row * KEY_STEP, KEY_STEP, letter, letter in used)
-    letters_shown = {letter for _, row in LETTERS for letter in row}
     x, y = 0.0, (len(LETTERS) + 0.3) * KEY_STEP
     for name in dict.fromkeys(inputs):
         if name in letters_shown:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +19,7 @@ from rastrainer_simulator.desktop.panels.item_row import (
     trend_height,
 )
 from rastrainer_simulator.presentation.screen import Menu
+from rastrainer_simulator.texts.texts import NO_NAMES
 
 SHRINK = 0.94
 SMALLEST = 0.84
@@ -52,10 +54,12 @@ def menu_panel(
     room: tuple[int, int],
     hovered: str = "",
     thumbnail: Thumbnail | None = None,
+    key_names: Mapping[str, str] = NO_NAMES,
 ) -> MenuPicture:
     """Paint a menu into at most `room` (width, height) pixels.
 
     The item `hovered` is under the mouse; `thumbnail` belongs to the one that has the focus.
+    `key_names` says what is written on the keys.
 
     What is too high is set smaller, down to what is still readable, then with closer rows, then,
     as where these are clipped, wider, and with its text beside its rows; beyond that the rows
@@ -75,7 +79,7 @@ def menu_panel(
         else:
             break
         layout = _Layout(menu, Brush(scale * factor), room, width, rows)
-    return layout.paint(hovered, thumbnail)
+    return layout.paint(hovered, thumbnail, key_names)
 
 
 class _Layout:
@@ -170,7 +174,9 @@ class _Layout:
         first = min(max(0, focus - count // 2), len(names) - count)
         return range(first, first + count)
 
-    def paint(self, hovered: str, thumbnail: Thumbnail | None) -> MenuPicture:
+    def paint(
+        self, hovered: str, thumbnail: Thumbnail | None, key_names: Mapping[str, str]
+    ) -> MenuPicture:
         """Paint it."""
         brush = self._brush
         canvas = Canvas(self._width, self._height)
@@ -187,7 +193,7 @@ class _Layout:
             place = Box(self._pad, top, self._picture_width, self._height - top - self._pad)
             if self._menu.picture == "keyboard":
                 inputs = [key for fact in self._menu.facts for key in fact.value.split(" / ")]
-                draw_keyboard(canvas, place, inputs, brush)
+                draw_keyboard(canvas, place, inputs, key_names, brush)
             elif self._menu.picture:
                 draw_gamepad(canvas, place, brush)
             elif self._menu.trend is not None:

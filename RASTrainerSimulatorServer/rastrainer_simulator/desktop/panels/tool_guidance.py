@@ -68,11 +68,11 @@ def touch_ring(
 def paint_ring(look: tuple[int, TouchStage], brush: Brush) -> np.ndarray:
     """Return a ring of a radius in pixels, in the color of its stage."""
     radius, stage = look
-    is_on_skin = stage is TouchStage.ON_SKIN
-    thickness = brush.px(THICKNESS_ON_SKIN if is_on_skin else THICKNESS)
+    is_on_point = stage in (TouchStage.ON_SKIN, TouchStage.PRESSED)
+    thickness = brush.px(THICKNESS_ON_SKIN if is_on_point else THICKNESS)
     reach = radius + thickness
     canvas = Canvas(2 * reach, 2 * reach)
-    color = theme.ON_SKIN if is_on_skin else theme.NEAR
+    color = theme.ON_SKIN if stage is TouchStage.ON_SKIN else theme.NEAR
     if stage in TOUCH_ERRORS:
         color = theme.CONTACT
     canvas.frame(Box(0, 0, 2 * reach, 2 * reach), color, reach, thickness)

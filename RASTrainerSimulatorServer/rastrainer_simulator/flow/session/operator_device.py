@@ -5,7 +5,7 @@ An operator with only a mouse gets two sticks that views draw on request.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rastrainer.protocol import Mode
@@ -13,7 +13,7 @@ from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.controls import Controls
 from rastrainer_simulator.input.inputs import ControlName, InputDevice, SourceKind
 from rastrainer_simulator.state import OperatorInput
-from rastrainer_simulator.texts.texts import Texts, input_label, pair_label
+from rastrainer_simulator.texts.texts import NO_NAMES, Texts, input_label, pair_label
 
 _OWN_LABELS = {SourceKind.XR: "headset", SourceKind.TOUCH_SCREEN: "touch screen"}
 _BY_MOUSE = "mouse"
@@ -31,12 +31,14 @@ class OperatorDevice:
         texts: name the inputs in the chosen language.
         mode: "desktop" or "hmd".
         has_screen_sticks: whether views draw sticks for a mouse.
+        layouts: what is written on the keys of each view, by their W3C codes.
     """
 
     controls: Controls
     texts: Texts
     mode: str
     has_screen_sticks: bool
+    layouts: dict[int, Mapping[str, str]]
 
     @property
     def kind(self) -> InputDevice:
@@ -108,8 +110,12 @@ class OperatorDevice:
         return self.texts.listed(self.input_label(device, name) for name in names)
 
     def input_label(self, device: InputDevice, name: str) -> str:
-        """Return the name of an input."""
-        return input_label(self.texts, device.value, name)
+        """Return the name of an input; of a key, as on the operator's keyboard if it is known."""
+        holder = self.controls.holder
+        view = None if holder is None else holder.view
+        latest = next(reversed(self.layouts.values()), NO_NAMES)
+        names = latest if view is None else self.layouts.get(view, NO_NAMES)
+        return input_label(self.texts, device.value, name, names)
 
 
 class ScreenSticks:

@@ -84,6 +84,7 @@ class TrainingSession:
         tutorial: the one that is open; else None.
         tutorials: who has finished one, and with which device.
         screen_sticks: those that views draw for a mouse.
+        layouts: what is written on the keys of each view, by their W3C codes.
         lock: what needs the instructor's PIN.
         notices: what is said beside the instruction.
         setting_up: has the simulation continue with other settings, or on another head.
@@ -122,6 +123,7 @@ class TrainingSession:
         self.tutorial: Tutorial | None = None
         self.tutorials = FinishedTutorials(services.records)
         self.screen_sticks = ScreenSticks()
+        self.layouts: dict[int, Mapping[str, str]] = {}
         self.lock = InstructorLock(services.pin)
         self.languages = services.languages
         self.list_scenarios = services.list_scenarios
@@ -175,7 +177,8 @@ class TrainingSession:
     @property
     def operator(self) -> OperatorDevice:
         """The operator's device, and the names of its inputs."""
-        return OperatorDevice(self._controls, self.texts, self.mode, self.screen_sticks.is_shown)
+        has_sticks = self.screen_sticks.is_shown
+        return OperatorDevice(self._controls, self.texts, self.mode, has_sticks, self.layouts)
 
     @property
     def curriculum(self) -> CurriculumMessage | None:

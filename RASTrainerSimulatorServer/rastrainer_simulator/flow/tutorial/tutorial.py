@@ -32,11 +32,13 @@ from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.training.rules import TouchMoment, touch_stage
 from rastrainer_simulator.training.training import Training, TrainingReply
-from rastrainer_simulator.vectors import Vector, distance, in_millimeters, vector
+from rastrainer_simulator.vectors import ZERO, Vector, distance, in_millimeters, vector
 
 _NOT_MOVED = Perturbation(0.0, 0.0, 0.0)
 PRAISE_S = 0.8
 """How long a completed step is praised before the next one begins."""
+CENTERED_M = 0.003
+"""The longest distance of a touch to its point: trials allow more, but the center is aimed at."""
 _MAY_TOUCH = (TutorialStep.LOWER, TutorialStep.TOUCH, TutorialStep.GUIDED)
 _MAY_UNDO = (TutorialStep.UNDO, TutorialStep.GUIDED)
 
@@ -72,7 +74,8 @@ class TouchPractice:
             rest: where the tip may still be on the skin from a touch before, World, m.
         """
         self._rest = rest
-        self._settings = setup.settings.training
+        self._settings = replace(setup.settings.training, acceptance_radius=CENTERED_M)
+        self._of_trials = setup.settings.training
         scenario = _short_scenario(setup.scenario, state.head_to_world, points)
         self._training = Training(scenario, 0, self._settings, texts)
         start = {**arguments, "task": scenario.tasks[0].name}
@@ -94,6 +97,11 @@ class TouchPractice:
     def state(self) -> TrainingState:
         """The progress of the touches."""
         return self._training.state
+
+    def end_refusal(self, sim_time: float) -> None:
+        """Forget a refusal that has been shown long enough."""
+        self._training.end_refusal(sim_time)
+        self._shown = self._present()
 
     def touch(self, state: SimulationState) -> TrainingReply:
         """Record a touch, or refuse it."""
@@ -119,14 +127,25 @@ class TouchPractice:
         # What stops the arm is not in the state; that it is stopped is.
         obstacle = state.touch.value if state.touch is TouchStage.ARM else ""
         stage = touch_stage(
-            _moment(state), state.proximity, obstacle, training, goal, self._settings
+            _moment(state), state.proximity, obstacle, training, goal, self._of_trials
         )
-        if stage is TouchStage.ELSEWHERE and self._is_at_rest(state):
+        is_on_point = stage in (TouchStage.ON_SKIN, TouchStage.PRESSED)
+        is_beside = is_on_point and distance(_tip(state), goal or ZERO) > CENTERED_M
+        if is_beside or (stage is TouchStage.ELSEWHERE and self._is_at_rest(state)):
             stage = TouchStage.NEAR
         return replace(state, training=training, touch=stage)
 
+    def off_center_mm(self, state: SimulationState) -> float | None:
+        """Return how far from the next point a tip is on the skin beside its center, else None."""
+        goal, tip = self._training.goal, _tip(state)
+        if goal is None or state.tip_clearance > self._settings.skin_tolerance:
+            return None
+        off = distance(tip, goal)
+        is_beside = CENTERED_M < off <= self._of_trials.acceptance_radius
+        return MM_PER_M * off if is_beside else None
+
     def _is_at_rest(self, state: SimulationState) -> bool:
-        radius = self._settings.acceptance_radius
+        radius = self._of_trials.acceptance_radius
         return self._rest is not None and distance(_tip(state), self._rest) <= radius
 
     def _handle(self, command: str, state: SimulationState) -> TrainingReply:

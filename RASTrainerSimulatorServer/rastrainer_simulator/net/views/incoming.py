@@ -27,6 +27,7 @@ SUBPROTOCOL = "rastrainer.views.1"
 
 HELLO = "hello"
 KEY = "key"
+LAYOUT = "layout"
 PAD = "pad"
 STICKS = "sticks"
 PRESS = "press"
@@ -45,6 +46,7 @@ BOARD = "board"
 ONLY_WATCH = (SPECTATOR, BOARD)
 """The kinds that may only send that they are alive."""
 VIEW_KINDS = (DESKTOP, "page", HEADSET, *ONLY_WATCH)
+MAX_KEYS = 80
 MAX_AXES = 16
 MAX_BUTTONS = 32
 # Pads go a little beyond their end; what is farther out is no position of a stick.
@@ -88,6 +90,14 @@ def _maybe_empty(longest: int) -> Callable[[Any], str]:
     return lambda value: "" if value == "" else check(value)
 
 
+def _key_names(value: Any) -> Mapping[str, str]:
+    """Accept the names of at most `MAX_KEYS` keys, of some letters each, by their W3C codes."""
+    if not isinstance(value, dict) or len(value) > MAX_KEYS:
+        raise ValueError(f"an object with at most {MAX_KEYS} names")
+    check_code, check_name = text(32), text(8)
+    return {check_code(code): check_name(name) for code, name in value.items()}
+
+
 def _positions(most: int, lowest: float) -> Callable[[Any], tuple[float, ...]]:
     """Accept a list of at most `most` positions from `lowest` to 1."""
     check_one = number(-SLACK, SLACK)
@@ -116,6 +126,7 @@ _COUNT = whole_number(0, 10_000)
 MEMBERS: Mapping[str, Mapping[str, Callable[[Any], Any]]] = {
     HELLO: {"kind": one_of(*VIEW_KINDS), "device": _maybe_empty(80), "refreshHz": _RATE},
     KEY: {"code": text(32), "isDown": yes_or_no, "text": _maybe_empty(16)},
+    LAYOUT: {"keys": _key_names},
     PAD: {"axes": _positions(MAX_AXES, -1.0), "buttons": _positions(MAX_BUTTONS, 0.0)},
     STICKS: {
         "translation": numbers(3, 1),

@@ -159,6 +159,7 @@ class ViewSocket:
             incoming.KEY: self.held.key,
             incoming.PAD: self.held.pad,
             incoming.STICKS: self.held.sticks,
+            incoming.LAYOUT: to_presenter(presenter.on_layout),
             incoming.ORBIT: to_presenter(presenter.on_orbit),
             incoming.PRESS: to_presenter(presenter.on_press),
             incoming.ITEM: to_presenter(presenter.on_item),

@@ -1,6 +1,7 @@
 /** The keys, sent to the simulator as they are; it knows what each does. */
 
 import type { Connection } from "../stream/connection";
+import { keyNames, learnKeyName, readKeyNames } from "./key_names";
 
 /** These stay the browser's own. */
 const BROWSERS = new Set(["F3", "F5", "F6", "F11", "F12", "MetaLeft", "MetaRight", "AltLeft", "Tab"]);
@@ -28,11 +29,18 @@ export class Keyboard {
     return this.held.size > 0;
   }
 
+  /** Tell what is written on the keys, as far as it is known. */
+  async tellNames(): Promise<void> {
+    await readKeyNames();
+    this.connection.send("layout", { keys: keyNames() });
+  }
+
   private press(event: KeyboardEvent): void {
     if (this.connection.isWatching) return;
     const isForBrowser = event.ctrlKey || event.metaKey || event.altKey;
     if (isForBrowser || event.code === "" || BROWSERS.has(event.code) || isOfElement(event)) return;
     event.preventDefault();
+    if (learnKeyName(event)) this.connection.send("layout", { keys: keyNames() });
     this.held.add(event.code);
     const text = event.key.length <= 2 ? event.key.slice(0, LONGEST_TEXT) : "";
     this.connection.send("key", { code: event.code, isDown: true, text });

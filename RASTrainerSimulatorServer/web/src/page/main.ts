@@ -99,6 +99,7 @@ export class Page {
     if (!isConnected) this.overlay.setNotice("lost");
     else this.overlay.setNotice(this.stage === null ? "noPicture" : "");
     this.headset?.setNotice(isConnected ? "" : say("lost"));
+    if (isConnected) void this.keyboard.tellNames();
     this.lastEvent = 0;
   }
 

@@ -1,5 +1,6 @@
 /** A drawing of what the trainee has in their hands; the inputs that do something are colored. */
 
+import { nameOf } from "../input/key_names";
 import type { Menu } from "../stream/messages";
 import { say, type TextName } from "../texts";
 import { COLORS } from "./pen";
@@ -137,7 +138,7 @@ function drawKeyboard(sketch: Sketch): void {
 }
 
 function letters(text: string): (readonly [string, string, number])[] {
-  return [...text].map((letter) => [letter, letter, 1] as const);
+  return [...text].map((place) => [nameOf(place), nameOf(place), 1] as const);
 }
 
 function drawControllers(sketch: Sketch): void {

@@ -218,7 +218,7 @@ export class SceneModel {
 
 function tipColor(stage: TouchStage): Color {
   if (isTouchError(stage)) return COLORS.error;
-  return stage === "on skin" ? COLORS.onSkin : stage === "near" ? COLORS.near : COLORS.free;
+  return stage === "on skin" ? COLORS.onSkin : stage === "far" ? COLORS.free : COLORS.near;
 }
 
 /** Load the scene of `news`; `onProgress` receives the number of bytes loaded, and their total. */

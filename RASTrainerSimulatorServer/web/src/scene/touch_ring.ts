@@ -30,7 +30,7 @@ export class TouchRing {
     this.mesh.visible = isShown;
     if (!isShown) return;
     const isOnSkin = state.touch === "on skin";
-    this.mesh.geometry = isOnSkin ? this.closed : this.open;
+    this.mesh.geometry = isOnSkin || state.touch === "pressed" ? this.closed : this.open;
     this.material.color.copy(isTouchError(state.touch) ? COLORS.error : isOnSkin ? COLORS.onSkin : COLORS.near);
     this.mesh.position.copy(tool.getWorldPosition(this.tip));
     camera.getWorldQuaternion(this.mesh.quaternion);

@@ -146,11 +146,11 @@ export interface ProcedureNews {
 }
 
 /** How the next touch is going; views show the last four in red. */
-export type TouchStage = "far" | "near" | "on skin" | "too deep" | "elsewhere" | "shaft" | "arm";
+export type TouchStage = "far" | "near" | "on skin" | "pressed" | "too deep" | "elsewhere" | "shaft" | "arm";
 
 /** Whether a touch goes wrong. */
 export function isTouchError(stage: TouchStage): boolean {
-  return !["far", "near", "on skin"].includes(stage);
+  return !["far", "near", "on skin", "pressed"].includes(stage);
 }
 
 export interface StateNews {

@@ -55,6 +55,13 @@ GARBAGE = {
     "code is long": changed(KEY, code="K" * 33),
     "text has a line feed": changed(KEY, text="\n"),
     "text is long": json.dumps({"type": "text", "name": "trainee", "value": "x" * 201}),
+    "keys are a list": '{"type":"layout","keys":["q"]}',
+    "a key's name is long": json.dumps({"type": "layout", "keys": {"KeyA": "q" * 9}}),
+    "a key's name is a line feed": json.dumps({"type": "layout", "keys": {"KeyA": "\n"}}),
+    "a key's code is long": json.dumps({"type": "layout", "keys": {"K" * 33: "q"}}),
+    "too many keys": json.dumps(
+        {"type": "layout", "keys": dict.fromkeys(map(str, range(81)), "q")}
+    ),
     "a page wears nothing": json.dumps(WORN),
     "eyes are no pose": changed(WORN, eyes=[0] * 6),
     "eyes are far out": changed(WORN, eyes=[1e9, 0, 0, 0, 0, 0, 1]),

@@ -16,6 +16,8 @@ STICKS = {
 
 MESSAGES = [
     (KEY, ("on_key", "KeyW", True, "w")),
+    ({"type": "layout", "keys": {"KeyA": "q"}}, ("on_layout", {"KeyA": "q"})),
+    ({"type": "layout", "keys": {}}, ("on_layout", {})),
     (PAD, ("on_pad", (0.5, -1.0, 0.0, 0.0), (0.0, 1.0, 0.25))),
     (STICKS, ("on_sticks", (1.0, 0.0, -0.5), (0.0, 0.5), True, 90.0)),
     (

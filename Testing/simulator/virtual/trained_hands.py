@@ -1,0 +1,210 @@
+"""Input devices in hands that have learned how fast the tip follows them."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+
+from rastrainer_simulator.presentation.presenter import Hello
+from Testing.simulator.flow.mouse import VIEW, Mouse
+from Testing.simulator.flow.trainee import Keys, Pad, Trainee
+
+DEAD_ZONE = 0.12
+SPEED_M_S, FINE_SPEED_M_S = 0.15, 0.02
+"""The speed grows with the square of the push beyond the dead zone, up to these."""
+FASTEST_M_S = 0.1
+HELD_SHARE = 0.4
+"""Keys are held for parts of a velocity that are this share of its largest, or more."""
+HELD_SLOWLY_M_S, RELEASED_FAST_M_S = 0.08, 0.045
+"""For less than the first, keys are held with Shift; without it they are released at the second."""
+TAP_STEPS, WAIT_LOOKS = 10, 2
+"""How many steps of the simulation a tap lasts (0.08 s), and how many looks are waited for."""
+KEPT_STICK_SHARE = 0.4
+"""A mouse keeps the stick that it drags if its part of the way is this share of the other's."""
+DOWN_LAST = 0.3
+"""A mouse lowers the tip once less than this share of the way down is left to go level."""
+STICK_PX = 100.0
+"""Radius of a stick on the screen; a mouse pushes it by whole pixels."""
+CHANGE_STEPS = 30
+"""Steps of the simulation that it takes to let go of a stick on the screen and seize another."""
+THUMB_SD = 0.04
+"""How far a thumb lands from where it is meant to be, of a stick's radius."""
+DRAG_DEG, PINCH = 20.0, 2.0
+"""A drag over the picture turns the view so far, a pinch takes the eye so much farther away."""
+
+
+def stick_push(velocity: np.ndarray) -> tuple[np.ndarray, bool]:
+    """Return the sticks' push, (3,) float, and whether slowly, for a velocity of the tip, m/s."""
+    wanted = float(np.linalg.norm(velocity))
+    speed = min(wanted, FASTEST_M_S)
+    is_fine = speed < FINE_SPEED_M_S
+    share = speed / (FINE_SPEED_M_S if is_fine else SPEED_M_S)
+    push = DEAD_ZONE + (1.0 - DEAD_ZONE) * share**0.5
+    return velocity * push / max(wanted, 1e-9), is_fine
+
+
+class TrainedPad(Pad):
+    """Moves the tip at a speed, and zooms out the view, too."""
+
+    BUTTONS: ClassVar = {**Pad.BUTTONS, "view_farther": "leftstick"}
+
+    def move(self, velocity: np.ndarray) -> None:
+        """Push the sticks for a velocity of the tip, (3,) float, m/s: right, forward, up."""
+        push, is_fine = stick_push(velocity)
+        self.push(*push.tolist(), is_fine)
+
+    def stop(self) -> None:
+        """Release the sticks."""
+        self.push(0.0, 0.0, 0.0, False)
+
+
+class TrainedKeys(Keys):
+    """Holds the keys of the larger parts of a velocity, with Shift for a low one, and taps nearby.
+
+    Keys cannot be pushed less: they are released a little before the tip is there, and after that
+    it is seen where this has led.
+    """
+
+    CODES: ClassVar = {**Keys.CODES, "view_farther": "KeyZ"}
+    released_m_s = 0.01
+    """Keys held with Shift are released below this, and below it keys are tapped."""
+
+    def __init__(self, trainee: Trainee) -> None:
+        super().__init__(trainee)
+        self._parts = np.zeros(3)
+        self._is_slow = False
+        self._waits = 0
+
+    def move(self, velocity: np.ndarray) -> None:
+        """Hold or tap the keys for a velocity of the tip, (3,) float, m/s: right, forward, up."""
+        if self._waits > 0:
+            self._waits -= 1
+        elif self._parts.any():
+            least = self.released_m_s if self._is_slow else RELEASED_FAST_M_S
+            if ((velocity * self._parts)[self._parts != 0.0] < least).any():
+                self.stop()
+                self._waits = WAIT_LOOKS
+        else:
+            self._begin(velocity)
+
+    def stop(self) -> None:
+        """Release all keys."""
+        self._parts = np.zeros(3)
+        self.push(0.0, 0.0, 0.0, False)
+
+    def _begin(self, velocity: np.ndarray) -> None:
+        largest = float(np.abs(velocity).max())
+        parts = np.where(np.abs(velocity) > HELD_SHARE * largest, np.sign(velocity), 0.0)
+        self._is_slow = largest < HELD_SLOWLY_M_S
+        self.push(*parts.tolist(), self._is_slow)
+        if largest < self.released_m_s:
+            self._trainee.step(TAP_STEPS)
+            self.stop()
+            self._waits = WAIT_LOOKS
+        else:
+            self._parts = parts
+
+
+class HeldKeys(TrainedKeys):
+    """Keys in hands that do not tap on the way down: they hold until they see that it is green."""
+
+    released_m_s = 0.003
+
+
+class _OnPicture:
+    """Turns and zooms the view by drags over the picture."""
+
+    _trainee: Trainee
+
+    def hold(self, control: str, is_down: bool) -> None:
+        """Drag while a control of the view would be held."""
+        if is_down:
+            around, zoom = (DRAG_DEG, 1.0) if control == "view_right" else (0.0, PINCH)
+            self._trainee.presenter.on_orbit(VIEW, around, 0.0, zoom)
+
+
+class TrainedMouse(_OnPicture, Mouse):
+    """Drags one of the sticks on the screen at a time, and clicks the rest."""
+
+    def __init__(self, trainee: Trainee) -> None:
+        super().__init__(trainee, "page")
+        self._stick, self._was_fine = "", False
+
+    def show_sticks(self) -> None:
+        """Have the sticks shown, which is offered to who clicks."""
+        for control in ("best_view", "sticks"):
+            self.tap(control)
+            self._trainee.step(CHANGE_STEPS)
+
+    def move(self, velocity: np.ndarray) -> None:
+        """Drag a stick for a velocity of the tip, (3,) float, m/s: right, forward, up."""
+        level, upright = float(np.linalg.norm(velocity[:2])), abs(float(velocity[2]))
+        kept = {"level": level, "upright": upright}.get(self._stick, 0.0)
+        if kept < KEPT_STICK_SHARE * max(level, upright):
+            # First above the point, then down.
+            share = DOWN_LAST if velocity[2] < 0.0 else 1.0
+            self._stick = "level" if level >= share * upright else "upright"
+            self._let_go()
+        wanted = velocity * ([1, 1, 0] if self._stick == "level" else [0, 0, 1])
+        push, is_fine = stick_push(wanted)
+        if is_fine != self._was_fine:
+            self._was_fine = is_fine
+            self._let_go()
+        self.push(*(np.round(STICK_PX * push) / STICK_PX).tolist(), is_fine)
+
+    def stop(self) -> None:
+        """Let go of the sticks."""
+        self.push(0.0, 0.0, 0.0, self._was_fine)
+
+    def _let_go(self) -> None:
+        self.stop()
+        self._trainee.step(CHANGE_STEPS)
+
+
+class Thumbs(_OnPicture):
+    """Two thumbs on the sticks of a touch screen; a button switches slow motion on and off."""
+
+    def __init__(self, trainee: Trainee) -> None:
+        self._trainee = trainee
+        self._was_fine = False
+        self._random = np.random.default_rng(3)
+        trainee.presenter.view_joined(VIEW, Hello("page"))
+
+    def tap(self, control: str) -> None:
+        """Tap on a button of the page."""
+        self._trainee.presenter.on_press(VIEW, control)
+        self._trainee.step(2)
+
+    def move(self, velocity: np.ndarray) -> None:
+        """Push the sticks for a velocity of the tip, (3,) float, m/s: right, forward, up."""
+        push, is_fine = stick_push(velocity)
+        if is_fine != self._was_fine:
+            self.stop()
+            self._was_fine = is_fine
+            self._trainee.step(CHANGE_STEPS)
+        level, upright = push[:2] + self._missed(push[:2]), push[2:] + self._missed(push[2:])
+        level /= max(1.0, float(np.linalg.norm(level)))
+        self.push(*level.tolist(), float(np.clip(upright[0], -1.0, 1.0)), is_fine)
+
+    def push(self, right: float, forward: float, up: float, fine: bool) -> None:
+        """Push the sticks, −1…1."""
+        self._trainee.presenter.on_sticks(VIEW, (right, forward, up), (0.0, 0.0), fine, 0.0)
+
+    def stop(self) -> None:
+        """Lift the thumbs."""
+        self.push(0.0, 0.0, 0.0, False)
+
+    def _missed(self, push: np.ndarray) -> np.ndarray:
+        """Return how far a thumb lands from a push; it is not on a stick that is not pushed."""
+        return self._random.normal(0.0, THUMB_SD, len(push)) * bool(push.any())
+
+
+HANDS = {
+    "keys": TrainedKeys,
+    "held keys": HeldKeys,
+    "pad": TrainedPad,
+    "mouse": TrainedMouse,
+    "touch screen": Thumbs,
+}
+"""By the names of the devices; a gamepad's also takes the gamepad."""
