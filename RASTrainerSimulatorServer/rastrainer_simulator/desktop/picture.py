@@ -218,6 +218,7 @@ class Picture:
         if _differs(state, self._drawn_state):
             self._scene.place(state["poses"])
             self._scene.place_ghost(state["ghost"])
+            self.viewports.see_through(state["translucent"])
             self._show_instrument(state["procedure"])
             self._must_draw = True
         self._drawn_state = state
@@ -313,5 +314,16 @@ class Picture:
 
 def _differs(state: Mapping[str, Any], other: Mapping[str, Any] | None) -> bool:
     """Return whether two states look different."""
-    names = ("poses", "ghost", "touch", "next", "touched", "camera", "view", "inset", "procedure")
+    names = (
+        "poses",
+        "ghost",
+        "touch",
+        "next",
+        "touched",
+        "camera",
+        "view",
+        "inset",
+        "translucent",
+        "procedure",
+    )
     return other is None or any(state[name] != other[name] for name in names)
