@@ -18,10 +18,12 @@ from rastrainer_simulator.vectors import Vector, vector
 
 COVERS_M = 0.005
 """A body that comes so near to a line of sight covers what is seen along it: a point is a disk."""
-CLEARS_M = 0.015
-"""And one that covers it does so until it is this far away, so that it does not flicker."""
+FLICKER_M = 0.01
+"""And one that covers it does so until it is so much farther away, so that it does not flicker."""
 SLENDER_M = 0.005
-"""Radius up to which a part is too slender to cover a point: the tool toward its tip."""
+"""Radius up to which a part of the tool covers a point only where it is right before it."""
+MARKER_M = 0.009
+"""So near the tip, the tool is what has to be seen."""
 
 
 class ArmCover:
@@ -42,7 +44,10 @@ class ArmCover:
             for name, (joint, _offset) in self._fixed.items()
         }
         self._nodes = np.array([nodes.get(name, TOOL) for name in self._arm.names])
-        self._broad = self._arm.radii > SLENDER_M
+        self._margins = np.where(self._arm.radii > SLENDER_M, COVERS_M, 0.0)
+        # The tool's capsules are in the frame of its tip.
+        is_tip = np.array([np.linalg.norm(each.start) < MARKER_M for each in self._arm.capsules])
+        self._margins[is_tip & (np.arange(len(is_tip)) >= self._arm.link_count)] = -np.inf
         self._covering: dict[str, frozenset[str]] = {}
 
     def covering(
@@ -52,7 +57,7 @@ class ArmCover:
 
         World, m; an eye that is None, as of nobody, sees nothing covered.
         """
-        ends = self._posed(now)[self._broad]
+        ends = self._posed(now)
         for name, eye in eyes.items():
             known = self._covering.get(name, frozenset())
             if eye is None or not len(places):
@@ -68,11 +73,10 @@ class ArmCover:
 
         One that is `known` to be there is so until it has left by a margin.
         """
-        lines, radii = np.array(places), self._arm.radii[self._broad]
+        lines = np.array(places)
         eyes = np.broadcast_to(eye, lines.shape)
-        off = sight_clearances(eyes, lines, ends, radii).min(axis=0)
-        nodes = self._nodes[self._broad]
-        near, nearer = (set(nodes[off < margin].tolist()) for margin in (CLEARS_M, COVERS_M))
+        off = sight_clearances(eyes, lines, ends, self._arm.radii).min(axis=0) - self._margins
+        near, nearer = (set(self._nodes[off < more].tolist()) for more in (FLICKER_M, 0.0))
         return known & near | nearer
 
     def _posed(self, now: SimulationState) -> np.ndarray:

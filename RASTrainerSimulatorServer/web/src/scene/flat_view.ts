@@ -97,8 +97,8 @@ export class FlatView {
     renderer.render(scene, this.camera);
     if (!hasInset) return;
     const box = this.frame.getBoundingClientRect();
-    // A low window has no room for it beside the bull's-eye.
-    if (box.height === 0) return;
+    // A low window has no room for it beside the bull's-eye; and what it would cover comes first.
+    if (box.height === 0 || this.frame.classList.contains("clear")) return;
     this.inset.look(this.other, box.width / box.height);
     renderer.setScissorTest(true);
     renderer.setViewport(box.left, height - box.bottom, box.width, box.height);

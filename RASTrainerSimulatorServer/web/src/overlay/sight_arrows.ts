@@ -1,31 +1,47 @@
-/** An arrow at the picture's edge toward a next point that is out of sight. */
+/** Arrows at the picture's edge toward what is out of sight: the next point, and the tool. */
 
 import { type PerspectiveCamera, Vector3 } from "three";
 
 import { byId } from "../elements";
 import type { SceneModel } from "../scene/scene_model";
+import type { StateNews } from "../stream/messages";
 import { yUp } from "../scene/viewpoint";
+import { say } from "../texts";
 
 /** How much of the picture, from its middle, counts as in sight. */
 const IN_SIGHT = 0.9;
 const REACH = 0.86;
 
-export class TargetArrow {
+export class SightArrows {
+  private readonly target = new EdgeArrow("target");
+  private readonly tool = new EdgeArrow("tool");
   private readonly point = new Vector3();
-  private readonly tip = new Vector3();
+
+  /** Point at the tool while the trainee works, and if that is wanted at the next point, or at the place to draw next. */
+  show(model: SceneModel, camera: PerspectiveCamera, state: StateNews, isWorking: boolean, isWanted: boolean): void {
+    const tip = isWorking && state.phase !== "idle" ? model.node("tool")?.position : undefined;
+    const point = tip && isWanted ? model.next(state.next, this.point) : null;
+    const name = state.next === null ? "" : `${state.next}: `;
+    const distance = tip && point ? `${name}${Math.round(tip.distanceTo(point) * 200) * 5} mm` : "";
+    this.target.show(point, camera, distance);
+    this.tool.show(tip ?? null, camera, say("tool"));
+  }
+}
+
+class EdgeArrow {
+  private readonly point = new Vector3();
   private shown = "";
 
-  /** Point at a fiducial, or without one at the place to draw next over the skin. */
-  show(model: SceneModel | null, camera: PerspectiveCamera, label: string | null, isWanted: boolean): void {
-    const place = byId("target");
-    const found = isWanted ? (model?.next(label, this.point) ?? null) : null;
-    const tool = model?.node("tool");
-    if (found === null || tool === undefined) {
+  constructor(private readonly id: "target" | "tool") {}
+
+  /** Point at a place in World, m, if it is out of sight; null for none. */
+  show(found: Vector3 | null, camera: PerspectiveCamera, text: string): void {
+    const place = byId(this.id);
+    if (found === null) {
       place.hidden = true;
       return;
     }
-    const distance = this.tip.copy(tool.position).distanceTo(this.point);
-    yUp(this.point).project(camera);
+    yUp(this.point.copy(found)).project(camera);
     const isBehind = this.point.z > 1;
     const isSeen = Math.max(Math.abs(this.point.x), Math.abs(this.point.y)) <= IN_SIGHT;
     place.hidden = isSeen && !isBehind;
@@ -34,8 +50,6 @@ export class TargetArrow {
     const across = sign * this.point.x * camera.aspect;
     const up = sign * this.point.y;
     const reach = REACH * Math.min(camera.aspect / Math.abs(across), 1 / Math.abs(up));
-    const name = label === null ? "" : `${label}: `;
-    const text = `${name}${Math.round(distance * 200) * 5} mm`;
     const left = 50 + (50 * across * reach) / camera.aspect;
     const top = 50 - 50 * up * reach;
     this.place(place, text, left, top, Math.atan2(-up, across));
