@@ -18,7 +18,7 @@ def test_the_best_view_of_any_posture_shows_tip_and_point_which_the_planned_one_
     planned, *present = counts.values()
     assert planned.covered > 0.05 * planned.views
     assert [count.covered for count in present] == [0, 0], counts
-    # Seen from where they are covered, what covers them is translucent, and only what is next to it besides.
+    # Elsewhere what covers them is translucent, and besides it only what almost does.
     assert planned.hidden == 0, planned
     assert planned.needless < 0.4 * planned.views
 
@@ -36,7 +36,9 @@ def test_a_link_at_the_edge_of_the_line_of_sight_does_not_flicker(setup, state):
     for name, moved in (("in", offsets[::-1]), ("out", offsets)):
         for offset in moved:
             eye = link + np.array((-1.0, offset, 0.0))
-            (found,) = cover.covering(state, {"view": eye}, [eye + np.array((2.0, 0.0, 0.0))]).values()
+            (found,) = cover.covering(
+                state, {"view": eye}, [eye + np.array((2.0, 0.0, 0.0))]
+            ).values()
             if ("link_3" in found) is (name == "in"):
                 seen.setdefault(name, offset)
     assert seen["out"] - seen["in"] == pytest.approx(0.01, abs=2.5 * STEP_M)
