@@ -126,13 +126,16 @@ class Overlay:
         self._show_error(content.is_error)
         self._show_ring(content.ring)
         self._show_inset(content.inset, content.inset_title)
-        self._show_edge("target", *(content.target or (None, None)))
-        self._show_edge("tool", content.tool, None)
         self._show_aside("aim", content.aim, paint_bulls_eye, content.inset)
         self._show_aside("gauge", content.gauge, paint_gauge, content.inset)
         self._show_sticks(content.sticks)
         top = self._show_top(content.screen)
         bottom = self._show_bottom(content)
+        for name, (direction, distance_mm) in (
+            ("target", content.target or (None, None)),
+            ("tool", (content.tool, None)),
+        ):
+            self._show_edge(name, direction, distance_mm, (top, bottom))
         self._show_menu(content, top, bottom)
         for name in _CLEARED:
             self._slots[name].sprite.show_through(content.seen)
@@ -269,8 +272,14 @@ class Overlay:
                 knob = knob_box(box, look, self._brush)
                 self._place(f"{name} knob", knob.left, knob.top)
 
-    def _show_edge(self, name: str, direction: Direction | None, distance_mm: int | None) -> None:
-        """Show an arrow at the edge of the picture."""
+    def _show_edge(
+        self,
+        name: str,
+        direction: Direction | None,
+        distance_mm: int | None,
+        room: tuple[int, int],
+    ) -> None:
+        """Show an arrow at the edge of the picture, between the panels above and below."""
         if direction is None:
             self._slots[name].hide()
             return
@@ -280,6 +289,8 @@ class Overlay:
         reach = (self._size[0] / 2 - half - 4, self._size[1] / 2 - half - 4)
         x = self._size[0] / 2 + direction.across * reach[0]
         y = self._size[1] / 2 + direction.upward * reach[1]
+        top, bottom = (self._size[1] - edge for edge in room)
+        y = max(min(y, top - half), bottom + half)
         self._slots[name].sprite.show(round(x - half), round(y - half))
 
     def _paint(

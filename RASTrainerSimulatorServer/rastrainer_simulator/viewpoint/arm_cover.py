@@ -16,12 +16,12 @@ from rastrainer_simulator.scene.nodes import TOOL, link_node_name
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.vectors import Vector, vector
 
-COVERS_M = 0.005
-"""A body that comes so near to a line of sight covers what is seen along it: a point is a disk."""
-FLICKER_M = 0.01
-"""And one that covers it does so until it is so much farther away, so that it does not flicker."""
+COVERS_M, FLICKER_M = 0.005, 0.01
+"""A body that comes so near to a line of sight covers what is seen along it: a point is a disk.
+It does so until it is so much farther away, so that it does not flicker."""
 SLENDER_M = 0.005
-"""Radius up to which a part of the tool covers a point only where it is right before it."""
+SLENDER_COVERS_M, SLENDER_FLICKER_M = 0.0, 0.003
+"""Radius up to which a part of the tool is slender, and the margins of such a part."""
 MARKER_M = 0.009
 """So near the tip, the tool is what has to be seen."""
 
@@ -44,7 +44,9 @@ class ArmCover:
             for name, (joint, _offset) in self._fixed.items()
         }
         self._nodes = np.array([nodes.get(name, TOOL) for name in self._arm.names])
-        self._margins = np.where(self._arm.radii > SLENDER_M, COVERS_M, 0.0)
+        is_broad = self._arm.radii > SLENDER_M
+        self._margins = np.where(is_broad, COVERS_M, SLENDER_COVERS_M)
+        self._flicker = np.where(is_broad, FLICKER_M, SLENDER_FLICKER_M)
         # The tool's capsules are in the frame of its tip.
         is_tip = np.array([np.linalg.norm(each.start) < MARKER_M for each in self._arm.capsules])
         self._margins[is_tip & (np.arange(len(is_tip)) >= self._arm.link_count)] = -np.inf
@@ -76,7 +78,7 @@ class ArmCover:
         lines = np.array(places)
         eyes = np.broadcast_to(eye, lines.shape)
         off = sight_clearances(eyes, lines, ends, self._arm.radii).min(axis=0) - self._margins
-        near, nearer = (set(self._nodes[off < more].tolist()) for more in (FLICKER_M, 0.0))
+        near, nearer = (set(self._nodes[off < more].tolist()) for more in (self._flicker, 0.0))
         return known & near | nearer
 
     def _posed(self, now: SimulationState) -> np.ndarray:

@@ -11,6 +11,8 @@ import { say } from "../texts";
 /** How much of the picture, from its middle, counts as in sight. */
 const IN_SIGHT = 0.9;
 const REACH = 0.86;
+/** Half the height of an arrow with its text, pixels. */
+const ROOM = 40;
 
 export class SightArrows {
   private readonly target = new EdgeArrow("target");
@@ -51,7 +53,7 @@ class EdgeArrow {
     const up = sign * this.point.y;
     const reach = REACH * Math.min(camera.aspect / Math.abs(across), 1 / Math.abs(up));
     const left = 50 + (50 * across * reach) / camera.aspect;
-    const top = 50 - 50 * up * reach;
+    const top = between(50 - 50 * up * reach);
     this.place(place, text, left, top, Math.atan2(-up, across));
   }
 
@@ -64,4 +66,12 @@ class EdgeArrow {
     (place.firstElementChild as HTMLElement).style.transform = `rotate(${angle}rad)`;
     place.lastElementChild!.textContent = text;
   }
+}
+
+/** Keep a height, % from the window's top, between what is written above and below. */
+function between(top: number): number {
+  const above = byId("words").getBoundingClientRect().bottom + ROOM;
+  const below = byId("hints").getBoundingClientRect().top - ROOM;
+  const share = 100 / window.innerHeight;
+  return Math.max(Math.min(top, below * share), above * share);
 }
