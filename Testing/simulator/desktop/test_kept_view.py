@@ -97,12 +97,8 @@ def test_a_point_is_seen_through_a_link_in_the_picture_that_the_link_covers(make
     picture = make()
     middle = np.s_[260:280, 470:490]
     bare, covered, through = (
-        show(picture, times_drawn=3, inset=CAMERA, **changes)
-        for changes in (
-            {},
-            CHANGES["a link before the head"],
-            CHANGES["a translucent link"],
-        )
+        show(picture, times_drawn=3, inset=CAMERA, **CHANGES[name])
+        for name in ("the tool before the head", "a link before the head", "a translucent link")
     )
     assert not draws_all(picture)
     off = [np.abs(pixels[middle] - bare[middle]).mean() for pixels in (covered, through)]
