@@ -131,11 +131,9 @@ class Overlay:
         self._show_sticks(content.sticks)
         top = self._show_top(content.screen)
         bottom = self._show_bottom(content)
-        for name, (direction, distance_mm) in (
-            ("target", content.target or (None, None)),
-            ("tool", (content.tool, None)),
-        ):
-            self._show_edge(name, direction, distance_mm, (top, bottom))
+        direction, distance_mm = content.target or (None, None)
+        self._show_edge("target", direction, distance_mm, (top, bottom))
+        self._show_edge("tool", content.tool, None, (top, bottom))
         self._show_menu(content, top, bottom)
         for name in _CLEARED:
             self._slots[name].sprite.show_through(content.seen)
