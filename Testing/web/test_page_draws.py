@@ -8,9 +8,9 @@ import pytest
 
 from rastrainer_simulator.net.views import outgoing
 from rastrainer_simulator.presentation.presenter import SkinPlace, TraceGuidance
-from rastrainer_simulator.presentation.screen import DepthRuler, Screen
+from rastrainer_simulator.presentation.screen import DepthRuler, Screen, ScreenMessage
 from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
-from Testing.web.chromium import enter_headset, open_page, wait_for
+from Testing.web.chromium import enter_headset, open_page, show, wait_for
 
 
 @pytest.fixture(scope="module")
@@ -65,6 +65,51 @@ def test_a_ghost_is_where_the_stream_places_it_and_disappears_when_it_ends(draw)
     poses = {"link_7": [0.4, 0.1, 0.7, 0, 0, 0, 1], "tool": [0.4, 0.1, 0.5, 0, 0, 0, 1]}
     assert draw(ghost=poses)["ghost"] == [pytest.approx(pose[:3]) for pose in poses.values()]
     assert draw()["ghost"] == []
+
+
+SEEN_THROUGH = """
+() => {
+  const { model, renderer } = page.stage;
+  const drawn = [];
+  const before = renderer.render;
+  const isClear = ([, meshes]) => meshes.some(([mesh]) => mesh.material.transparent);
+  renderer.render = () => drawn.push([...model.arm].filter(isClear).map(([name]) => name));
+  const translucent = { view: ["link_5", "tool"], inset: ["link_6"], worn: [] };
+  page.isDue = true;
+  page.drawFlat(page.flat, 1, model, { ...page.state, translucent });
+  renderer.render = before;
+  return drawn;
+}
+"""
+
+
+def test_each_picture_shows_translucent_what_covers_tip_or_point_in_it(page, draw):
+    assert page.evaluate(SEEN_THROUGH) == [["link_5", "tool"], ["link_6"]]
+    draw()
+    own = "[...page.stage.model.arm.values()].flat().some(([mesh]) => mesh.material.transparent)"
+    assert page.evaluate(own) is False
+
+
+def looked_at(page, offset_m):
+    """Return a camera that sees the tip so far above the middle of its picture."""
+    x, y, z = page.evaluate("page.stage.model.node('tool').position.toArray()")
+    middle = [x, y, z - offset_m]
+    place = {"position": [x, y - 0.6, middle[2]], "focalPoint": middle}
+    return {**place, "viewUp": [0, 0, 1], "viewAngleDeg": 30}
+
+
+def test_an_arrow_points_to_a_tool_out_of_sight_and_no_panel_covers_the_tip(page, served, draw):
+    show(page, served, Screen(instruction=ScreenMessage("Touch point 1.")))
+    is_seen = {}
+    for name, offset_m in (("middle", 0.0), ("under", 0.14), ("above", 0.4)):
+        draw(phase="running", view=looked_at(page, offset_m))
+        is_seen[name] = page.evaluate(
+            "[!document.getElementById('tool').hidden, "
+            "document.getElementById('instruction').classList.contains('clear')]"
+        )
+    assert is_seen == {"middle": [False, False], "under": [False, True], "above": [True, False]}
+    draw(phase="idle", view=looked_at(page, 0.14))
+    assert page.locator(".clear").count() == 0
 
 
 NOSE = (0.95, 84.89, -36.69)

@@ -156,6 +156,7 @@ STATE_MEMBERS = (
     "camera",
     "view",
     "inset",
+    "translucent",
     "next",
     "touched",
     "procedure",

@@ -8,7 +8,7 @@ kept is drawn at a fraction of the window's resolution.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 from vtkmodules.vtkCommonCore import VTK_UNSIGNED_CHAR
 from vtkmodules.vtkCommonDataModel import vtkBoundingBox
@@ -61,6 +61,7 @@ class KeptView:
     Attributes:
         still, moving: renderers with one camera and one viewport. Where nothing is kept, `still`
             draws everything, and `moving` nothing.
+        translucent: names of the bodies that are seen through in this view.
     """
 
     def __init__(self, window: GlWindow):
@@ -71,6 +72,7 @@ class KeptView:
         self.moving.SetActiveCamera(self.still.GetActiveCamera())
         self.moving.PreserveColorBufferOn()
         self.moving.PreserveDepthBufferOn()
+        self.translucent: Collection[str] = ()
         self._window = window
         self._scene: ShownScene | None = None
         self._is_split = False
@@ -79,6 +81,8 @@ class KeptView:
         self._drawn: tuple[object, ...] | None = None
         self._kept: tuple[object, ...] | None = None
         # VTK's stubs leave out that events have names.
+        for renderer in (self.still, self.moving):
+            renderer.AddObserver("StartEvent", lambda *_event: self._see_through())  # type: ignore[arg-type]
         self.still.AddObserver("EndEvent", lambda *_event: self._keep())  # type: ignore[arg-type]
         self.moving.AddObserver("StartEvent", lambda *_event: self._lay())  # type: ignore[arg-type]
         self.moving.AddObserver("EndEvent", lambda *_event: self._note())  # type: ignore[arg-type]
@@ -175,6 +179,10 @@ class KeptView:
             return
         drawn = self._window.render_window.GetRenderFramebuffer()
         copy_frame(self._window, self._frame, self._whole, drawn, self._rectangle, COLORS | DEPTHS)
+
+    def _see_through(self) -> None:
+        if self._scene is not None:
+            self._scene.see_through(self.translucent)
 
     def _note(self) -> None:
         self._drawn = self._look

@@ -59,7 +59,10 @@ class Content:
         is_error: whether the touch goes wrong: the picture is framed in red.
         ring: about the tool's tip; None without one.
         inset: where the second view is; None without one.
+        inset_title: what it shows.
         target: direction to a target out of sight, and its distance in mm.
+        tool: direction to a tool out of sight.
+        seen: what no panel may cover: pixels from the lower left corner.
         hovered: name of the item under the mouse.
         thumbnail: picture of the menu's item that has the focus; None without one.
         aim: how the planned line lies to the guide; None while none is aligned.
@@ -71,7 +74,10 @@ class Content:
     is_error: bool = False
     ring: TouchRing | None = None
     inset: Box | None = None
+    inset_title: str = ""
     target: tuple[Direction, int] | None = None
+    tool: Direction | None = None
+    seen: tuple[tuple[int, int], ...] = ()
     hovered: str = ""
     thumbnail: Thumbnail | None = None
     aim: BullsEye | None = None
@@ -125,14 +131,18 @@ class Overlay:
         self._brush = Brush(theme.scale_of(*size))
         self._show_error(content.is_error)
         self._show_ring(content.ring)
-        self._show_inset(content.inset)
-        self._show_target(content.target)
+        self._show_inset(content.inset, content.inset_title)
         self._show_aside("aim", content.aim, paint_bulls_eye, content.inset)
         self._show_aside("gauge", content.gauge, paint_gauge, content.inset)
         self._show_sticks(content.sticks)
         top = self._show_top(content.screen)
         bottom = self._show_bottom(content)
+        direction, distance_mm = content.target or (None, None)
+        self._show_edge("target", direction, distance_mm, (top, bottom))
+        self._show_edge("tool", content.tool, None, (top, bottom))
         self._show_menu(content, top, bottom)
+        for name in _CLEARED:
+            self._slots[name].sprite.show_through(content.seen)
         return True
 
     @property
@@ -236,12 +246,15 @@ class Overlay:
             if self._paint(name, is_error and thick, fringe_picture, theme.CONTACT, side):
                 self._slots[name].sprite.show(*place)
 
-    def _show_inset(self, box: Box | None) -> None:
+    def _show_inset(self, box: Box | None, title: str) -> None:
         thick = self._brush.px(INSET_FRAME)
         outer = None if box is None else box.inset(-thick)
         is_shown = self._paint("inset", outer, frame_picture, thick, theme.INSET_EDGE)
         if is_shown and outer is not None:
             self._place("inset", outer.left, outer.top)
+        if self._paint("title", box and (title,), strips.status, self._brush, 0) and box:
+            step, height = self._brush.px(theme.STEP), self._slots["title"].sprite.size[1]
+            self._place("title", box.left + step, box.top + box.height - step - height)
 
     def _show_aside(
         self, name: str, look: Any, paint: Callable[..., np.ndarray], inset: Box | None
@@ -264,18 +277,26 @@ class Overlay:
                 knob = knob_box(box, look, self._brush)
                 self._place(f"{name} knob", knob.left, knob.top)
 
-    def _show_target(self, target: tuple[Direction, int] | None) -> None:
-        if target is None:
-            self._slots["target"].hide()
+    def _show_edge(
+        self,
+        name: str,
+        direction: Direction | None,
+        distance_mm: int | None,
+        room: tuple[int, int],
+    ) -> None:
+        """Show an arrow at the edge of the picture, between the panels above and below."""
+        if direction is None:
+            self._slots[name].hide()
             return
-        direction, distance_mm = target
         angle = STEP_DEG * round(direction.angle_deg / STEP_DEG)
-        self._paint("target", (angle, distance_mm), target_arrow, self._brush)
+        self._paint(name, (angle, distance_mm), target_arrow, self._brush)
         half = self._brush.px(REACH) + 2
         reach = (self._size[0] / 2 - half - 4, self._size[1] / 2 - half - 4)
         x = self._size[0] / 2 + direction.across * reach[0]
         y = self._size[1] / 2 + direction.upward * reach[1]
-        self._slots["target"].sprite.show(round(x - half), round(y - half))
+        top, bottom = (self._size[1] - edge for edge in room)
+        y = max(min(y, top - half), bottom + half)
+        self._slots[name].sprite.show(round(x - half), round(y - half))
 
     def _paint(
         self, name: str, content: Any, paint: Callable[..., np.ndarray], *how: Hashable
@@ -296,10 +317,12 @@ class Overlay:
 # From the farthest to the nearest.
 _SLOTS = (
     "inset",
+    "title",
     "ring",
     *(f"error {side.value}" for side in Side),
     "scrim",
     "target",
+    "tool",
     "aim",
     "gauge",
     *(f"{name} {part}" for name in STICKS for part in ("stick", "knob")),
@@ -310,6 +333,10 @@ _SLOTS = (
     "instruction",
     "menu",
 )
+
+
+_CLEARED = ("title", "aim", "gauge", "status", "legend", "hints", "instruction")
+"""Panels that give way to tip and point; a warning does not."""
 
 
 class _Slot:

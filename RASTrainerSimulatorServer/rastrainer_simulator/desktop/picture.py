@@ -18,6 +18,7 @@ from rastrainer_simulator.desktop.head_marks import ErrorArrows, TraceMarks
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, Viewpoint
 from rastrainer_simulator.desktop.keyboard_and_mouse import Push
 from rastrainer_simulator.desktop.overlay import Content, Overlay
+from rastrainer_simulator.desktop.panels.canvas import COVERS_PX
 from rastrainer_simulator.desktop.panels.controls_picture import StickLook
 from rastrainer_simulator.desktop.panels.tool_guidance import (
     Direction,
@@ -25,6 +26,7 @@ from rastrainer_simulator.desktop.panels.tool_guidance import (
     bulls_eye,
     depth_gauge,
     direction_out_of_sight,
+    pixel_of,
     touch_ring,
 )
 from rastrainer_simulator.desktop.shown_scene import ShownScene
@@ -157,7 +159,8 @@ class Picture:
         self._take_scene()
         self._take_state(now)
         screen = self._inbox.screen
-        self.viewports.wants_inset = screen is None or screen.menu is None
+        is_free = screen is None or screen.menu is None
+        self.viewports.wants_inset = is_free and not self._is_under_inset()
         if self._errors.show(() if screen is None else screen.errors):
             self._must_draw = True
         self._show_trace()
@@ -222,6 +225,7 @@ class Picture:
         if _differs(state, self._drawn_state):
             self._scene.place(state["poses"])
             self._scene.place_ghost(state["ghost"])
+            self.viewports.see_through(state["translucent"])
             self._show_instrument(state["procedure"])
             self._must_draw = True
         self._drawn_state = state
@@ -273,7 +277,10 @@ class Picture:
             is_error=is_free and state.get("touch") in TOUCH_ERRORS,
             ring=self._ring() if is_free else None,
             inset=self.viewports.inset_box if self.viewports.has_inset else None,
+            inset_title=texts.say(f"window.{self._inset_name()}"),
             target=self._target() if is_free and screen.has_arrow else None,
+            tool=self._out_of_sight(self._tip) if is_free else None,
+            seen=self._seen() if is_free else (),
             hovered=hovered,
             thumbnail=self._inbox.thumbnails.get(focused_picture(screen.menu)),
             aim=bulls_eye(procedure, texts),
@@ -292,30 +299,83 @@ class Picture:
 
     def _ring(self) -> TouchRing | None:
         """Return the ring about the tip, where it is near the head."""
-        state = self._inbox.state
-        tool = None if self._scene is None else self._scene.poses.get("tool")
-        if state is None or tool is None or state["phase"] not in OPEN_PHASES:
+        state, tip = self._inbox.state, self._tip
+        if state is None or tip is None:
             return None
-        return touch_ring(state, tool[:3, 3], self.viewports.main, self._window.size)
+        return touch_ring(state, tip, self.viewports.main, self._window.size)
 
     def _target(self) -> tuple[Direction, int] | None:
         """Return the direction to the next point and its distance in mm, if out of sight."""
-        state = self._inbox.state
-        if self._scene is None or self._loaded is None or state is None:
+        place, tip = self._next_place, self._tip
+        direction = self._out_of_sight(place)
+        if direction is None or place is None or tip is None:
+            return None
+        return direction, round(MM_PER_M * float(np.linalg.norm(place - tip)))
+
+    @property
+    def _next_place(self) -> np.ndarray | None:
+        """(3,) float, World, m: the next point, or the place to draw next."""
+        state, scene = self._inbox.state, self._scene
+        head = None if scene is None else scene.poses.get("head")
+        if head is None or self._loaded is None or state is None:
             return None
         traced = self._inbox.trace.place
         place = self._loaded.fiducials.get(state["next"] or "", traced and traced[0])
-        head, tool = self._scene.poses.get("head"), self._scene.poses.get("tool")
-        if place is None or head is None or tool is None:
+        return None if place is None else head[:3, :3] @ place + head[:3, 3]
+
+    @property
+    def _tip(self) -> np.ndarray | None:
+        """(3,) float, World, m: the tip of the tool in an open trial."""
+        state, scene = self._inbox.state, self._scene
+        tool = None if scene is None else scene.poses.get("tool")
+        is_open = state is not None and state["phase"] in OPEN_PHASES
+        return tool[:3, 3] if tool is not None and is_open else None
+
+    def _out_of_sight(self, place: np.ndarray | None) -> Direction | None:
+        if place is None:
             return None
-        target = head[:3, :3] @ place + head[:3, 3]
-        direction = direction_out_of_sight(self.viewports.main, target, self._window.size)
-        if direction is None:
-            return None
-        return direction, round(MM_PER_M * float(np.linalg.norm(target - tool[:3, 3])))
+        return direction_out_of_sight(self.viewports.main, place, self._window.size)
+
+    def _seen(self) -> tuple[tuple[int, int], ...]:
+        """Return where tip and next point are, in pixels from the lower left corner."""
+        tip = self._tip
+        places = () if tip is None else (tip, self._next_place)
+        found = (
+            pixel_of(self.viewports.main, place, self._window.size)
+            for place in places
+            if place is not None
+        )
+        return tuple(pixel for pixel in found if pixel is not None)
+
+    def _is_under_inset(self) -> bool:
+        """Return whether the inset would cover tip or next point."""
+        box, height = self.viewports.inset_box, self._window.size[1]
+        around = box.inset(-COVERS_PX * (1 if self.viewports.wants_inset else 2))
+        return any(around.contains(x, height - y) for x, y in self._seen())
+
+    def _inset_name(self) -> str:
+        """Return the name of what the inset shows."""
+        state = self._inbox.state or {}
+        if state.get("inset") is None:
+            shown = state.get("camera")
+            return next((name for name in self.viewports.cameras if name != shown), FAR)
+        procedure = state.get("procedure")
+        has_line = procedure is not None and procedure["tool"] != "pointer"
+        return "across" if has_line else "beside"
 
 
 def _differs(state: Mapping[str, Any], other: Mapping[str, Any] | None) -> bool:
     """Return whether two states look different."""
-    names = ("poses", "ghost", "touch", "next", "touched", "camera", "view", "inset", "procedure")
+    names = (
+        "poses",
+        "ghost",
+        "touch",
+        "next",
+        "touched",
+        "camera",
+        "view",
+        "inset",
+        "translucent",
+        "procedure",
+    )
     return other is None or any(state[name] != other[name] for name in names)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
+from itertools import chain
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
@@ -77,7 +78,11 @@ INSTRUMENTS: Mapping[str, tuple[str, ...]] = {
 """Nodes that are shown with each tool of a procedure; the pointer has none."""
 FED = ("drill", "electrode")
 """Nodes as long as they are fed; in the file they are 1 m long."""
+OWN_LOOK = frozenset({TIP_MARKER, *chain(*INSTRUMENTS.values())})
+"""Nodes at the tool that stay as they are where the tool is seen through."""
 CLEAR_SKIN = 0.3
+COVER_OPACITY = 0.3
+"""Of a body that covers tip or point."""
 PULSE_COLOR = (1.0, 0.97, 0.75)
 SKIN_NODE = "skin"
 STILL_BODIES = ("", "head", "stand")
@@ -98,6 +103,7 @@ class ShownScene:
         self._finishes = {}
         self._matrices: dict[str, vtkMatrix4x4] = defaultdict(vtkMatrix4x4)
         self._named: dict[str, list[vtkActor]] = defaultdict(list)
+        self._bodies: dict[str, list[vtkActor]] = defaultdict(list)
         self.still: list[vtkActor] = []
         self.moving: list[vtkProp3D] = []
         self.still_version = 0
@@ -117,6 +123,9 @@ class ShownScene:
                 self._lit[part.body].append((actor, part))
             for name in part.nodes:
                 self._named[name].append(actor)
+            has_own_look = part.finish.opacity < 1.0 or not OWN_LOOK.isdisjoint(part.nodes)
+            if part.body not in STILL_BODIES and not has_own_look:
+                self._bodies[part.body].append(actor)
         for name in list(self._named):
             if name in {*FED, "guide", "axis"} or name.startswith(NO_GO_PREFIX):
                 self._set_visible(name, False)
@@ -221,6 +230,12 @@ class ShownScene:
         self.still_version += 1
         for actor in self._named[SKIN_NODE]:
             actor.GetProperty().SetOpacity(CLEAR_SKIN if is_clear else 1.0)
+
+    def see_through(self, bodies: Collection[str]) -> None:
+        """Draw these bodies of the arm translucent, and the others not."""
+        for body, actors in self._bodies.items():
+            for actor in actors:
+                actor.GetProperty().SetOpacity(COVER_OPACITY if body in bodies else 1.0)
 
     def _set_visible(self, name: str, is_visible: bool) -> None:
         for actor in self._named[name]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from enum import Enum
 
@@ -153,6 +153,10 @@ class Viewports:
         else:
             self._transition.follow(viewpoint)
         self._chosen = (camera, aside)
+
+    def see_through(self, bodies: Mapping[str, Sequence[str]]) -> None:
+        """Draw bodies translucent, those that the stream says of each picture."""
+        self._main.translucent, self._inset.translucent = bodies["view"], bodies["inset"]
 
     def is_moving(self, now: float) -> bool:
         """Return whether the main view's camera is moving, or has arrived and draws finer."""

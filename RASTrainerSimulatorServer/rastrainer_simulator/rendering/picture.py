@@ -37,12 +37,14 @@ from rastrainer_simulator.scene.nodes import (
     TIP_FREE,
     TIP_MARKER,
     TIP_NEAR,
+    TOOL,
     TOUCHED,
     Material,
     Node,
     Surface,
+    link_node_name,
 )
-from rastrainer_simulator.scene.scene_glb import TOOL, link_node_name, scene_nodes
+from rastrainer_simulator.scene.scene_glb import scene_nodes
 from rastrainer_simulator.scene.surfaces import surface, vtk_matrix
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future
 from enum import Enum
 from functools import reduce
 
@@ -23,8 +24,9 @@ from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage
 from rastrainer_simulator.replay.playback import PERIOD_S, Playback
 from rastrainer_simulator.state import SimulationState, StepResult
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label, pair_label
-from rastrainer_simulator.viewpoint.best_view import BestViews
+from rastrainer_simulator.viewpoint.best_view import BestView
 from rastrainer_simulator.viewpoint.view_control import STILL, Pictures, ViewControl, orbit_to
+from rastrainer_simulator.viewpoint.view_search import BestViews
 
 STEP_S = 5.0
 SLOWLY = 0.5
@@ -195,7 +197,7 @@ class ReplayPresenter:
         self._held: dict[int, frozenset[int]] = {}
         self._view = ViewControl()
         self._best = BestViews()
-        self._is_looking_for_views = False
+        self._search: Future[BestView | None] | None = None
         self._wants_worst = False
         self._player = Player(playback, end, blinded)
         self._blinded = blinded
@@ -290,21 +292,26 @@ class ReplayPresenter:
         self._player.do(action)
         if action in (PlayerAction.WORST, PlayerAction.CAMERA):
             self._wants_worst = action is PlayerAction.WORST and not self._blinded
-        if self._wants_worst and not self._is_looking_for_views:
-            self._look_for_views()
+        if self._wants_worst:
+            self._look_for_worst()
 
-    def _look_for_views(self) -> None:
-        """Start looking for the best views in a thread: it takes seconds."""
+    def _look_for_worst(self) -> None:
+        """Start looking for the best view of the worst touch."""
         playback = self._playback
-        head_to_world = playback.latest.head_to_world.copy()
-        head_to_world[:3, 3] *= MM_PER_M
-        self._best.look(playback.setup, playback.trial.task, head_to_world)
-        self._is_looking_for_views = True
+        worst = playback.trial.worst
+        if worst is None:
+            return
+        now = playback.latest
+        if self._search is None:
+            head_to_world = now.head_to_world.copy()
+            head_to_world[:3, 3] *= MM_PER_M
+            self._best.look(playback.setup, playback.trial.task, head_to_world)
+        self._search = self._best.search(worst[0], now.q)
 
     def _move_view(self, result: StepResult) -> None:
         """Go to the best view of the worst touch if that is wanted, as soon as it is known."""
-        worst = self._playback.trial.worst
-        view = self._best.of(worst[0]) if self._wants_worst and worst is not None else None
+        is_found = self._wants_worst and self._search is not None and self._search.done()
+        view = self._search.result() if self._search is not None and is_found else None
         camera = self._playback.setup.scenario.cameras[result.state.camera]
         self._view.use(result.state.camera)
         if view is not None:

@@ -35,6 +35,14 @@ class Material:
         return red, green, blue
 
 
+TOOL = "tool"
+
+
+def link_node_name(joint: int) -> str:
+    """Return the name of the node that moves behind that many joints."""
+    return f"link_{joint}"
+
+
 TIP_MARKER = "tip_marker"
 NO_GO_PREFIX = "no_go_"
 """Name of the node at the tip, and how the names of no-go structures begin."""

@@ -41,10 +41,12 @@ from rastrainer_simulator.scene.nodes import (
     SKIN,
     TIP_FREE,
     TIP_MARKER,
+    TOOL,
     WAITING,
     Material,
     Node,
     Surface,
+    link_node_name,
     merged,
     no_go_name,
     painted,
@@ -53,13 +55,6 @@ from rastrainer_simulator.scene.room_nodes import room_nodes, stand_node, table_
 from rastrainer_simulator.scene.skin import Shape
 from rastrainer_simulator.scene.skin_marks import SkinMark, skin_marks
 from rastrainer_simulator.scene.surfaces import shaded, turned
-
-TOOL = "tool"
-
-
-def link_node_name(joint: int) -> str:
-    """Return the name of the node that moves behind that many joints."""
-    return f"link_{joint}"
 
 
 def robot_nodes(robot: RobotModel) -> list[Node]:

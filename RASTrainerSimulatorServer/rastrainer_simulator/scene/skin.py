@@ -156,8 +156,11 @@ def _counterclockwise(made: vtkPolyData) -> Flat:
 STEP = 2.0
 """Length of a step, after which the ribbon is projected onto the skin again, mm."""
 GAP = 1.3
-LENGTHS = (26.0, 16.0, 10.0)
-"""Greatest length of arrows; shorter where numbers would otherwise find no room."""
+LENGTHS = (60.0, 26.0, 16.0, 10.0)
+"""Greatest length of arrows; shorter where numbers would otherwise find no room.
+
+The first one leads all the way to most next fiducials that are seen with this one.
+"""
 SHORTEST = 6.0
 SHAFT_WIDTH = 2.0
 HEAD_WIDTH, HEAD_LENGTH = 5.4, 5.5
@@ -208,11 +211,11 @@ def arrows(skin: Skin, points: np.ndarray, longest: float = LENGTHS[0]) -> list[
 
     They keep away from all fiducials and from each other, and are shortened where needed.
     """
-    made = []
+    made: list[Arrow] = []
     for index in range(len(points) - 1):
         start, goal = points[index], points[index + 1]
         others = np.delete(points, (index, index + 1), axis=0)
-        made.append(_between(skin, start, goal, others, longest))
+        made.append(_between(skin, start, goal, others, longest, made))
     return _kept_apart(made)
 
 
@@ -234,18 +237,29 @@ def arrow_shape(skin: Skin, arrow: Arrow) -> Shape:
 
 
 def _between(
-    skin: Skin, start: np.ndarray, goal: np.ndarray, others: np.ndarray, longest: float
+    skin: Skin,
+    start: np.ndarray,
+    goal: np.ndarray,
+    others: np.ndarray,
+    longest: float,
+    made: list[Arrow],
 ) -> Arrow:
-    """Return the arrow from one fiducial toward the next, around any of the `others` (k, 3)."""
+    """Return the arrow from one fiducial toward the next.
+
+    It goes around any of the `others` (k, 3), and if it can, past the arrows that are `made`.
+    """
+    whole: Arrow | None = None
     best: Arrow | None = None
     for turn in TURNS:
         arrow, is_whole = _turned(skin, start, goal, others, turn, longest)
-        if is_whole:
+        if is_whole and all(_distance(arrow, each) >= APART for each in made):
             return arrow
+        if is_whole and whole is None:
+            whole = arrow
         if best is None or arrow.end > best.end + STEP:
             best = arrow
     assert best is not None  # There is at least one turn.
-    return best
+    return best if whole is None else whole
 
 
 def _turned(

@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-import logging
 import math
-import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 
 from rastrainer import transforms
-from rastrainer.errors import RASTrainerError
 from rastrainer.head.mesh import HeadMesh, outward_normals, read_head_mesh
 from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.collision.clearance import LineOfSight
 from rastrainer_simulator.collision.collision import head_collision
+from rastrainer_simulator.collision.line_of_sight import LineOfSight
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.scene.skin import Skin
 from rastrainer_simulator.scene.skin_marks import Placement, place_marks
@@ -30,6 +26,7 @@ from rastrainer_simulator.vectors import (
     add,
     angle,
     cross,
+    distance,
     dot,
     reject,
     rotated,
@@ -50,40 +47,84 @@ AWAY_M = (0.5, 0.38, 0.28)
 """From the eye to the fiducial, the best first."""
 ELEVATIONS_DEG = tuple(range(-10, 81, 10))
 AZIMUTHS_DEG = tuple(range(0, 360, 10))
-MARGINS_M = (0.02, 0.0)
-"""Around the links: in a trial the arm stands a little differently than planned."""
+MARGIN_M = 0.02
+"""Around the links, where there is room for it: the arm moves on."""
 
 BESIDE_M = 0.22
 BESIDE_DEG = (82.0, 75.0, 65.0)
 """Between the normal and the line along the skin, the best first."""
+LEVEL_DEG = 10.0
+STEEPEST_DEG = 45.0
+"""How far that line may rise or fall: the picture stays upright, and never looks into the neck."""
 
 OFF_SKIN_M = 0.002
 SHAFT_M = 0.012
 """Length of the tool behind the tip that is seen with it."""
+AT_POINT_M = 0.02
+"""A tool whose tip is so near the point comes from there, and does not cover it."""
+IN_PICTURE_M = 0.15
+"""A tip farther from the point is mostly out of the picture, and need not be seen."""
 
 
 @dataclass(frozen=True)
-class ViewedTouch:
-    """A touch to be viewed: World, m.
+class HeldTool:
+    """A posture of the arm: where its tool is, and what it leaves visible; World, m.
+
+    `direction` is the tool's, a unit vector to its tip.
+    """
+
+    tip: Vector
+    direction: Vector
+    sight: LineOfSight
+
+    @property
+    def shaft(self) -> Vector:
+        """What must be seen of the tool."""
+        return add(self.tip, scale(self.direction, -SHAFT_M))
+
+
+@dataclass(frozen=True)
+class ViewedPoint:
+    """A fiducial to be viewed: World, m.
 
     Attributes:
-        fiducial: where the tip will be.
+        fiducial: its position.
         normal: the skin's outward unit normal there.
         number: the middle of its number on the skin.
-        direction: of the tool, unit vector to its tip.
     """
 
     fiducial: Vector
     normal: Vector
     number: Vector
-    direction: Vector
 
     @property
-    def places(self) -> tuple[Vector, Vector, Vector]:
-        """What must be seen: target, number and tip."""
-        lift = scale(self.normal, OFF_SKIN_M)
-        shaft = add(self.fiducial, scale(self.direction, -SHAFT_M))
-        return add(self.fiducial, lift), add(self.number, lift), shaft
+    def target(self) -> Vector:
+        """What must be seen of the fiducial."""
+        return self._lifted(self.fiducial)
+
+    @property
+    def marks(self) -> tuple[Vector, Vector]:
+        """What must be seen on the skin: the fiducial and its number."""
+        return self.target, self._lifted(self.number)
+
+    def _lifted(self, place: Vector) -> Vector:
+        return add(place, scale(self.normal, OFF_SKIN_M))
+
+
+@dataclass(frozen=True)
+class PointViews:
+    """What is known of the views of a fiducial before the arm's posture is.
+
+    Attributes:
+        point: the fiducial.
+        eyes: (k, 3) float, from where head and table leave fiducial and number visible, the best
+            first; World, m.
+        planned: the posture in which it is to be touched; None where the robot cannot.
+    """
+
+    point: ViewedPoint
+    eyes: np.ndarray
+    planned: HeldTool | None
 
 
 @dataclass(frozen=True)
@@ -91,57 +132,86 @@ class BestView:
     """A viewpoint for a touch: World, m.
 
     Attributes:
-        eye: from where target, number and tip are seen.
+        eye: from where fiducial, number and tip are seen as well as possible.
         fiducial: the point in focus.
-        normal: the skin's outward unit normal there.
         beside: an eye that looks along the skin; None where something is always in between.
+        is_whole: whether nothing of these is hidden from `eye`.
     """
 
     eye: Vector
     fiducial: Vector
-    normal: Vector
     beside: Vector | None
+    is_whole: bool
 
 
-def best_view(touch: ViewedTouch, sight: LineOfSight, front: Vector) -> BestView | None:
-    """Return the best view of a touch; None where none shows it within `WIDEST_DEG`.
+def best_view(views: PointViews, postures: Sequence[HeldTool]) -> BestView | None:
+    """Return the best view of a fiducial; None where the head always hides it.
 
-    `sight` is that of the arm's posture in the touch, `front` the direction from the head to the
-    usual camera: of equal views the one nearer to it is taken.
+    What the first of the postures hides counts most. Of equal views the first one is taken that
+    also keeps a margin to the links.
     """
-    for margin in MARGINS_M:
-        for eye in _eyes(touch, front):
-            if is_seen(touch, sight, eye, margin):
-                beside = _beside(touch, sight, eye)
-                return BestView(eye, touch.fiducial, touch.normal, beside)
-    return None
-
-
-def is_seen(touch: ViewedTouch, sight: LineOfSight, eye: Vector, margin: float) -> bool:
-    """Return whether an eye sees target, number and tip of a touch well enough."""
-    line = subtract(eye, touch.fiducial)
-    off_tool = angle(line, scale(touch.direction, -1.0))
-    return (
-        angle(line, touch.normal) <= math.radians(WIDEST_DEG)
-        and off_tool >= math.radians(LEAST_OFF_TOOL_DEG)
-        and all(sight.is_free(eye, place, margin) for place in touch.places)
-        and sight.is_past_tool(eye, touch.places[1])
+    point, eyes = views.point, views.eyes
+    if not len(eyes):
+        return None
+    hidden, tight = zip(*(_hidden(point, held, eyes) for held in postures), strict=True)
+    order = np.lexsort((np.arange(len(eyes)), sum(tight), *reversed(hidden)))
+    now = postures[0]
+    is_tip_seen = (
+        not _is_near(point, now) or now.sight.is_past_head(vector(eyes[each]), now.shaft)
+        for each in order
     )
+    best = next((each for each, is_seen in zip(order, is_tip_seen, strict=True) if is_seen), None)
+    eye = vector(eyes[order[0] if best is None else best])
+    is_whole = best is not None and not hidden[0][best]
+    return BestView(eye, point.fiducial, _beside(point, postures, eye), is_whole)
 
 
-def _eyes(touch: ViewedTouch, front: Vector) -> list[Vector]:
-    """Return the positions from which a touch may be viewed, the best first."""
+def _is_near(point: ViewedPoint, held: HeldTool) -> bool:
+    """Return whether the tip is to be seen with a point."""
+    return distance(held.tip, point.fiducial) <= IN_PICTURE_M
+
+
+def _must_be_seen(point: ViewedPoint, held: HeldTool) -> tuple[Vector, ...]:
+    return (*point.marks, held.shaft) if _is_near(point, held) else point.marks
+
+
+def _hidden(point: ViewedPoint, held: HeldTool, eyes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return how much of fiducial, number and tip the arm hides from each eye, (k,) int.
+
+    The second count is of links that are thicker by `MARGIN_M`.
+    """
+    sight, number = held.sight, np.array(point.marks[1])
+    hidden = (sight.off_tool(eyes, number) <= 0.0).astype(int)
+    if distance(held.tip, point.fiducial) > AT_POINT_M:
+        hidden += sight.off_tool(eyes, np.array(point.target)) <= 0.0
+    if _is_near(point, held):
+        lines = eyes - held.tip
+        along_tool = -(lines @ held.direction) / np.linalg.norm(lines, axis=1)
+        hidden += along_tool > math.cos(math.radians(LEAST_OFF_TOOL_DEG))
+    tight = np.zeros(len(eyes), dtype=int)
+    for place in _must_be_seen(point, held):
+        off_links = sight.off_links(eyes, np.array(place))
+        hidden += off_links <= 0.0
+        tight += off_links <= MARGIN_M
+    return hidden, tight
+
+
+def _eyes(point: ViewedPoint, front: Vector) -> list[Vector]:
+    """Return the positions from which a touch may be viewed, the best first.
+
+    `front` is the direction from the head to the usual camera: of equal views the one nearer to it
+    is taken.
+    """
     ranked: list[tuple[float, Vector]] = []
     for elevation, azimuth in product(ELEVATIONS_DEG, AZIMUTHS_DEG):
         line = _direction(azimuth, elevation)
-        off_normal = math.degrees(angle(line, touch.normal))
+        off_normal = math.degrees(angle(line, point.normal))
         if off_normal > WIDEST_DEG:
             continue
         cost = abs(off_normal - LIKED_DEG) + 0.5 * abs(elevation - LIKED_ELEVATION_DEG)
         cost += 0.25 * math.degrees(angle(line, front))
         for place, away in enumerate(AWAY_M):
-            eye = add(touch.fiducial, scale(line, away))
-            ranked.append((cost + 15.0 * place, eye))
+            ranked.append((cost + 15.0 * place, add(point.fiducial, scale(line, away))))
     return [eye for _, eye in sorted(ranked)]
 
 
@@ -151,33 +221,46 @@ def _direction(azimuth_deg: float, elevation_deg: float) -> Vector:
     return (level * math.cos(azimuth), level * math.sin(azimuth), math.sin(elevation))
 
 
-def _beside(touch: ViewedTouch, sight: LineOfSight, eye: Vector) -> Vector | None:
-    """Return an eye that looks along the skin, across the best view's line as far as possible."""
-    target, _number, shaft = touch.places
-    for place in _along_skin(touch, eye):
-        off_tool = angle(subtract(place, touch.fiducial), scale(touch.direction, -1.0))
-        is_side_on = off_tool >= math.radians(LEAST_OFF_TOOL_DEG)
-        if is_side_on and sight.is_free(place, target) and sight.is_free(place, shaft):
-            return place
-    return None
+def _beside(point: ViewedPoint, postures: Sequence[HeldTool], eye: Vector) -> Vector | None:
+    """Return an eye that looks along the skin, level and across the best view's line if possible.
+
+    None where the head is always in between.
+    """
+    sight = postures[0].sight
+    places = [each for each in _along_skin(point, eye) if sight.is_past_head(each, point.target)]
+    free = (each for each in places if all(_is_beside_seen(point, held, each) for held in postures))
+    return next(free, places[0] if places else None)
 
 
-def _along_skin(touch: ViewedTouch, eye: Vector) -> Iterator[Vector]:
-    line = subtract(eye, touch.fiducial)
-    across = reject(line, touch.normal)
+def _is_beside_seen(point: ViewedPoint, held: HeldTool, eye: Vector) -> bool:
+    off_tool = angle(subtract(eye, held.tip), scale(held.direction, -1.0))
+    is_side_on = off_tool >= math.radians(LEAST_OFF_TOOL_DEG) or not _is_near(point, held)
+    target, _number, *shaft = _must_be_seen(point, held)
+    return is_side_on and all(held.sight.is_free(eye, each) for each in (target, *shaft))
+
+
+def _along_skin(point: ViewedPoint, eye: Vector) -> list[Vector]:
+    """Return the positions from which one may look along the skin, the best first."""
+    line = subtract(eye, point.fiducial)
+    across = reject(line, point.normal)
     # Seen exactly along the normal, any side is across.
-    start = unit(across if dot(across, across) > 1e-9 else reject((0.0, 0.0, 1.0), touch.normal))
-    right = cross(touch.normal, start)
-    for lean in BESIDE_DEG:
-        for turn in sorted(range(-180, 180, 15), key=lambda degrees: abs(abs(degrees) - 0.1)):
-            side = rotated(right, touch.normal, math.radians(turn))
-            tilt = math.radians(lean)
-            raised = add(scale(side, math.sin(tilt)), scale(touch.normal, math.cos(tilt)))
-            yield add(touch.fiducial, scale(raised, BESIDE_M))
+    start = unit(across if dot(across, across) > 1e-9 else reject((0.0, 0.0, 1.0), point.normal))
+    right = cross(point.normal, start)
+    ranked: list[tuple[float, Vector]] = []
+    for lean, turn in product(BESIDE_DEG, range(-180, 180, 15)):
+        side = rotated(right, point.normal, math.radians(turn))
+        tilt = math.radians(lean)
+        raised = add(scale(side, math.sin(tilt)), scale(point.normal, math.cos(tilt)))
+        rise = abs(math.degrees(math.asin(raised[2])))
+        if rise <= STEEPEST_DEG:
+            off_across = min(abs(turn), 180 - abs(turn))
+            cost = 2.0 * max(0.0, rise - LEVEL_DEG) + BESIDE_DEG[0] - lean + 0.2 * off_across
+            ranked.append((cost, add(point.fiducial, scale(raised, BESIDE_M))))
+    return [place for _, place in sorted(ranked)]
 
 
 class TouchViews:
-    """Looks for best views; it has its own collision shapes, so that a thread may use it alone."""
+    """Looks for the views of a task's fiducials; with its own collision shapes, for one thread."""
 
     def __init__(self, setup: SimulationSetup, head: HeadMesh | None = None) -> None:
         """Use what a simulation is made from; the head is read if it is not given.
@@ -189,37 +272,73 @@ class TouchViews:
         self._head = head or read_head_mesh(setup.scenario.head_mesh)
         self._collision = head_collision(setup.shape, self._head, setup.scenario.furniture)
         self._kinematics = make_kinematics(setup.robot)
+        self._robot = setup.robot
         self._planner = TouchPlanner(setup.robot, self._collision)
         self._known: dict[bytes, tuple[np.ndarray, Placement]] = {}
+        self._points: dict[str, ViewedPoint] = {}
+        self._views: dict[str, PointViews] = {}
 
-    def of(self, task: Task, head_to_world: np.ndarray) -> Iterator[tuple[str, BestView | None]]:
-        """Yield each fiducial's label and best view, None where there is none.
-
-        HeadToWorld is (4, 4) float, mm. A fiducial that the robot cannot touch has no view.
-        """
+    def begin(self, task: Task, head_to_world: np.ndarray) -> None:
+        """Put the head where a trial of a task has it; HeadToWorld is (4, 4) float, mm."""
         pose = np.array(head_to_world, dtype=float)
         pose[:3, 3] /= MM_PER_M
         self._collision.set_head_pose(pose)
         in_head, placement = self._on_skin(task)
-        numbers = np.array(placement.places)
         normals = in_head @ pose[:3, :3].T
-        places, beside = (
-            transforms.apply(pose, points / MM_PER_M) for points in (task.fiducials, numbers)
+        places, numbers = (
+            transforms.apply(pose, points / MM_PER_M)
+            for points in (task.fiducials, np.array(placement.places))
         )
-        camera = self._scenario.cameras["close-up"]
-        front = unit(subtract(_vector(camera.position), _vector(camera.focal_point)))
-        for label, place, normal, number in zip(task.labels, places, normals, beside, strict=True):
-            planned = self._planner.touch(place, normal)
-            if planned is None:
-                yield label, None
-                continue
-            sight = self._collision.line_of_sight(self._kinematics.links(planned.q))
-            touch = ViewedTouch(*map(_vector, (place, normal, number, planned.direction)))
-            yield label, best_view(touch, sight, front)
+        self._points = {
+            label: ViewedPoint(*map(_vector, each))
+            for label, *each in zip(task.labels, places, normals, numbers, strict=True)
+        }
+        self._views = {}
+
+    def views(self, label: str) -> PointViews:
+        """Return what is known of the views of a fiducial of the task that was begun."""
+        if label not in self._views:
+            point = self._points[label]
+            planned = self._planner.touch(np.array(point.fiducial), np.array(point.normal))
+            held = None if planned is None else self._held(planned.q)
+            sight = self._held(self._robot.home).sight
+            camera = self._scenario.cameras["close-up"]
+            front = unit(subtract(_vector(camera.position), _vector(camera.focal_point)))
+            eyes = [
+                eye
+                for eye in _eyes(point, front)
+                if all(sight.is_past_head(eye, mark) for mark in point.marks)
+            ]
+            self._views[label] = PointViews(point, np.array(eyes), held)
+        return self._views[label]
+
+    def best(self, label: str, q: Sequence[float]) -> BestView | None:
+        """Return the best view of a fiducial while the arm has joint angles `q`, rad."""
+        views = self.views(label)
+        planned = () if views.planned is None else (views.planned,)
+        return best_view(views, (self._held(q), *planned))
+
+    def of(self, task: Task, head_to_world: np.ndarray) -> Iterator[tuple[str, BestView | None]]:
+        """Yield each fiducial's label and best view during its touch, as planned.
+
+        A fiducial that the robot cannot touch, or that no view shows with its number and the tip,
+        has None. HeadToWorld is (4, 4) float, mm.
+        """
+        self.begin(task, head_to_world)
+        for label in task.labels:
+            views = self.views(label)
+            view = None if views.planned is None else best_view(views, (views.planned,))
+            yield label, view if view is not None and view.is_whole else None
 
     def placement(self, task: Task) -> Placement:
         """Return where the marks of a task are on the skin."""
         return self._on_skin(task)[1]
+
+    def _held(self, q: Sequence[float]) -> HeldTool:
+        links = self._kinematics.links(q)
+        tip = links[self._robot.tip.name]
+        sight = self._collision.line_of_sight(links)
+        return HeldTool(_vector(tip[:3, 3]), _vector(tip[:3, 2]), sight)
 
     def _on_skin(self, task: Task) -> tuple[np.ndarray, Placement]:
         """Return the skin's normals at a task's fiducials, (n, 3), and where its marks are."""
@@ -233,64 +352,3 @@ class TouchViews:
 
 def _vector(array: np.ndarray) -> Vector:
     return vector(array.tolist())
-
-
-_log = logging.getLogger(__name__)
-
-
-class BestViews:
-    """Finds the views of one trial's touches after another, in their order.
-
-    Each is there as soon as it is found. What belongs to the head and the task is kept for the
-    next trial, for it makes ticks late.
-    """
-
-    def __init__(self) -> None:
-        self._found: dict[str, BestView] = {}
-        self._lock = threading.Lock()
-        self._views: tuple[SimulationSetup, TouchViews] | None = None
-
-    def look(self, setup: SimulationSetup, task: str, head_to_world: np.ndarray) -> None:
-        """Start looking for those of a trial; HeadToWorld is the trial's, (4, 4) float, mm."""
-        found: dict[str, BestView] = {}
-        self._found = found
-        threading.Thread(
-            target=self._look,
-            args=(setup, task, head_to_world, found),
-            name="best views",
-            daemon=True,
-        ).start()
-
-    def of(self, label: str | None) -> BestView | None:
-        """Return the best view of a fiducial; None if it is not found yet, or there is none."""
-        return None if label is None else self._found.get(label)
-
-    def forget(self) -> None:
-        """Stop looking."""
-        self._found = {}
-
-    def _look(
-        self,
-        setup: SimulationSetup,
-        task: str,
-        head_to_world: np.ndarray,
-        found: dict[str, BestView],
-    ) -> None:
-        # Set aside while it holds the interpreter, it would make the control loop wait.
-        raise_thread_priority()
-        try:
-            with self._lock:
-                for label, view in self._views_of(setup).of(
-                    setup.scenario.task(task), head_to_world
-                ):
-                    if self._found is not found:
-                        return
-                    if view is not None:
-                        found[label] = view
-        except (RASTrainerError, OSError):
-            _log.exception("The best views of %s cannot be found", task)
-
-    def _views_of(self, setup: SimulationSetup) -> TouchViews:
-        if self._views is None or self._views[0] is not setup:
-            self._views = setup, TouchViews(setup)
-        return self._views[1]

@@ -20,13 +20,15 @@ from rastrainer_simulator.presentation.screen import (
     ScreenMessage,
     Tone,
 )
-from rastrainer_simulator.scene.nodes import ARROW, SKIN, TIP_FREE, WAITING, WALL, Node
+from rastrainer_simulator.scene.nodes import ARROW, SKIN, STEEL, TIP_FREE, WAITING, WALL, Node
 from rastrainer_simulator.scene.scene_glb import to_glb
 from rastrainer_simulator.scene.surfaces import shaded
 
 SIZE = (960, 540)
-BODIES = ("tool", "head")
+BODIES = ("link_7", "tool", "head")
 HERE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+ASIDE = (5.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+"""Where the last link is out of every picture."""
 FIDUCIALS = {"1": (-0.06, -0.09, 0.0), "2": (0.0, -0.1, 0.0), "3": (0.06, -0.09, 0.0)}
 CAMERA = {
     "position": [0.0, -0.8, 0.0],
@@ -53,7 +55,8 @@ def make_glb() -> bytes:
     tool = Node("tool", children=(ball("tip_marker", 0.01, (0, 0, 0.01), TIP_FREE),))
     wall = trimesh.creation.box(bounds=[[-3, 0.5, -3], [3, 0.6, 3]])
     room = Node("room", (shaded(wall.vertices, wall.faces, WALL),))
-    return to_glb([tool, head, room])
+    link = ball("link_7", 0.03, (0, 0, 0), STEEL)
+    return to_glb([link, tool, head, room])
 
 
 def state_text(**changes):
@@ -70,13 +73,14 @@ def state_text(**changes):
         "camera": "close-up",
         "view": CAMERAS[changes.get("camera", "close-up")],
         "inset": None,
+        "translucent": {"view": [], "inset": []},
         "phase": "running",
         "next": "2",
         "touched": ["1"],
         "procedure": None,
         **changes,
     }
-    members["poses"] = [members["poses"][body] for body in BODIES]
+    members["poses"] = [members["poses"].get(body, ASIDE) for body in BODIES]
     return json.dumps(members, separators=(",", ":"))
 
 

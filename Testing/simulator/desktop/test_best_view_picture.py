@@ -72,7 +72,7 @@ def show(gl_window, inbox):
     times = iter(np.arange(0.0, 1e4, 10.0))
 
     def show(state, pictures):
-        inbox.take_state(outgoing.state(state, 0, pictures))
+        inbox.take_state(outgoing.state(state, 0, pictures, {"view": (), "inset": ()}))
         for now in (float(next(times)), float(next(times))):
             picture.is_due(now)
         picture.draw()
@@ -99,7 +99,7 @@ def test_the_best_view_shows_a_fiducial_during_its_touch_where_the_default_views
     tip = vector(state.tool_tip_to_world[:3, 3].tolist())
     best = Pictures(
         camera_pose(cameras["close-up"], orbit_to(cameras["close-up"], view.eye, view.fiducial)),
-        along_skin(view.beside, view.fiducial, view.normal, tip),
+        along_skin(view.beside, view.fiducial, tip),
     )
     pixels, box = show(state, best)
     x, y = SIZE[0] // 2, SIZE[1] // 2

@@ -14,6 +14,8 @@ from Testing.simulator.desktop.conftest import CAMERA, HERE, MENU, SCREEN, state
 from Testing.simulator.desktop.test_trace_picture import AHEAD, news
 
 BEFORE_FACE, BEHIND = (0.0, -0.2, 0.0, *HERE[3:]), (0.03, 0.2, 0.02, *HERE[3:])
+COVERED = {"link_7": (0.0, -0.3, 0.0, *HERE[3:]), "tool": BEFORE_FACE, "head": HERE}
+SEEN_THROUGH = {"view": ["link_7"], "inset": []}
 TURNED = (0.02, 0.0, 0.01, 0.0, 0.0, 0.2588190, 0.9659258)
 SIDE = {**CAMERA, "position": [0.5, -0.6, 0.2]}
 TRACE = ShownTrace().with_update(news(AHEAD))
@@ -24,6 +26,8 @@ CHANGES = {
     "a ghost before the head": {"ghost": {"tool": BEFORE_FACE}},
     "a ghost behind it": {"ghost": {"tool": BEHIND}},
     "the head elsewhere": {"poses": {"tool": BEFORE_FACE, "head": TURNED}},
+    "a link before the head": {"poses": COVERED},
+    "a translucent link": {"poses": COVERED, "translucent": SEEN_THROUGH},
     "another inset": {"inset": SIDE},
     "a turned view": {"view": SIDE},
     "another camera": {"camera": "far"},
@@ -87,6 +91,21 @@ def test_whatever_changes_the_kept_picture_looks_like_a_newly_drawn_one(make, sh
         kept = show(picture, times_drawn=3, **changes)
         assert draws_all(picture) is ("seen through" in name), name
         assert np.abs(kept - anew[name]).max() <= 2, name
+
+
+def test_a_point_is_seen_through_a_link_in_the_picture_that_the_link_covers(make, show):
+    picture = make()
+    middle = np.s_[260:280, 470:490]
+    bare, covered, through = (
+        show(picture, times_drawn=3, inset=CAMERA, **CHANGES[name])
+        for name in ("the tool before the head", "a link before the head", "a translucent link")
+    )
+    assert not draws_all(picture)
+    off = [np.abs(pixels[middle] - bare[middle]).mean() for pixels in (covered, through)]
+    assert off[1] < 0.5 * off[0]
+    box = picture.viewports.inset_box
+    inset = np.s_[box.top : box.top + box.height, box.left : box.left + box.width]
+    assert np.abs(through[inset] - covered[inset]).max() <= 2
 
 
 def test_the_rest_is_kept_while_the_arm_moves_but_not_while_the_view_turns(make, show):

@@ -11,6 +11,7 @@ from rastrainer_simulator.presentation.presenter import Hello
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.replay.resimulation import replay
 from rastrainer_simulator.state import OperatorInput
+from rastrainer_simulator.viewpoint.arm_cover import ArmCover, places_to_see
 from rastrainer_simulator.viewpoint.view_control import FRONT
 
 LEFT = OperatorInput((-1.0, 0.0, 0.0), operator="keyboard")
@@ -120,6 +121,36 @@ def test_the_best_view_is_shown_on_request_where_it_is_not_automatic(by_hand):
     by_hand.tap("camera")
     by_hand.step(200)
     assert orbit(by_hand) == FRONT
+
+
+def test_the_best_view_shows_the_point_past_the_arm_as_it_stands(by_hand, setup):
+    by_hand.start("task-1")
+    wait_for_views(by_hand)
+    by_hand.tap("best_view")
+    by_hand.step(200)
+    view = by_hand.presenter.pictures(by_hand.state).main
+    point = np.array(view.focal_point)
+    ahead = point - view.position
+    ahead /= np.linalg.norm(ahead)
+    # The tool comes from the eye, and with it the wrist.
+    direction = ahead - (0.0, 0.0, 0.3)
+    target = {"positionMm": 1000.0 * (point - 0.03 * direction), "direction": direction}
+    answer = by_hand.submit("MoveTipTo", **{name: list(each) for name, each in target.items()})
+    assert answer.ok
+
+    def covering():
+        eyes = {"view": by_hand.presenter.pictures(by_hand.state).main.position}
+        return ArmCover(setup).covering(
+            by_hand.state, eyes, places_to_see(by_hand.state, setup.scenario)
+        )
+
+    by_hand.until(lambda: covering()["view"], "the arm before the point")
+    by_hand.step(200)
+    assert covering()["view"]
+    by_hand.tap("best_view")
+    by_hand.step(200)
+    assert covering() == {"view": []}
+    assert by_hand.presenter.pictures(by_hand.state).main.focal_point == pytest.approx(point)
 
 
 def test_held_keys_turn_the_view(by_hand):

@@ -67,7 +67,8 @@ class Look:
         main: the main picture.
         beside: the small one.
         is_still: whether both cameras stand where they stood at the last look.
-        outward: from the skin at the fiducial, (3,) float, where the small picture looks along it.
+        outward: from the skin at the fiducial, (3,) float, where the small picture looks along it:
+            there its edge is seen.
         stage: what the colors of tip, ring and frame say; None where the tip is hidden.
     """
 
@@ -84,6 +85,7 @@ class _Places:
 
     fiducials: dict[str, Vector] = field(default_factory=dict)
     numbers: dict[str, Vector] = field(default_factory=dict)
+    outward: dict[str, np.ndarray] = field(default_factory=dict)
     outline: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
 
 
@@ -101,23 +103,25 @@ class DrawnPictures:
         self._collision = head_collision(setup.shape, self._head, setup.scenario.furniture)
         self._kinematics = make_kinematics(setup.robot)
         self._random = np.random.default_rng(seed)
-        self._marks: dict[str, tuple[np.ndarray, np.ndarray]] = {}
+        self._marks: dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
         self._places = _Places()
         self._last: tuple[CameraPose, CameraPose] | None = None
 
     def use(self, task: Task, head_to_world: np.ndarray) -> None:
         """Put the head where a trial has it, with a task's marks on it; (4, 4) float, m."""
         if task.name not in self._marks:
-            lift = MM_PER_M * OFF_SKIN_M * outward_normals(self._head, task.fiducials)
+            outward = outward_normals(self._head, task.fiducials)
+            lift = MM_PER_M * OFF_SKIN_M * outward
             marks = place_marks(Skin(self._head), task.fiducials, task.labels)
-            self._marks[task.name] = task.fiducials + lift, np.array(marks.places) + lift
+            places = task.fiducials + lift, np.array(marks.places) + lift
+            self._marks[task.name] = (*places, outward)
         self._collision.set_head_pose(head_to_world)
-        fiducials, numbers = (
-            apply(head_to_world, places / MM_PER_M) for places in self._marks[task.name]
-        )
+        *marks, outward = self._marks[task.name]
+        fiducials, numbers = (apply(head_to_world, places / MM_PER_M) for places in marks)
         self._places = _Places(
             dict(zip(task.labels, map(_vector, fiducials), strict=True)),
             dict(zip(task.labels, map(_vector, numbers), strict=True)),
+            dict(zip(task.labels, outward @ head_to_world[:3, :3].T, strict=True)),
             apply(head_to_world, self._head.vertices[::50] / MM_PER_M),
         )
 
@@ -139,7 +143,7 @@ class DrawnPictures:
         is_still = self._last == (pictures.main, beside)
         self._last = pictures.main, beside
         is_tip_seen = any("tip" in picture.spots for picture in seen)
-        outward = None if pictures.inset is None else seen[1].axes[1]
+        outward = None if pictures.inset is None else self._places.outward[label]
         return Look(*seen, is_still, outward, state.touch if is_tip_seen else None)
 
     def _picture(

@@ -219,7 +219,7 @@ def everything_shown(rater):
     found = [outgoing.screen(m) for m in rater.messages if isinstance(m, Screen)]
     found += [outgoing.event(m) for m in rater.messages if isinstance(m, Feedback)]
     state = presenter.shown.latest
-    found.append(outgoing.state(state, 0, presenter.pictures(state), None))
+    found.append(outgoing.state(state, 0, presenter.pictures(state), {}))
     setup = presenter.shown.setup
     found.append(outgoing.scene("0" * 64, setup.scenario, state.training.task, setup.settings.axes))
     return "\n".join(found)

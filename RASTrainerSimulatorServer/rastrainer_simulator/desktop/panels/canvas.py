@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Iterable
 from enum import Enum
 from itertools import pairwise
 from typing import NamedTuple
@@ -220,6 +221,11 @@ class Thumbnail:
 _CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))
 
 
+OPAQUE, CLEAR = 0.999, 0.2
+COVERS_PX = 16
+"""A sprite this near to a pixel covers it; one that has, until it is twice as far away."""
+
+
 class Sprite:
     """One picture in a renderer's overlay, invisible until it is shown."""
 
@@ -237,10 +243,12 @@ class Sprite:
         mapper.SetInputData(_quad(self._points))
         self._actor.SetMapper(mapper)
         self._actor.SetTexture(self._texture)
-        self._actor.GetProperty().SetOpacity(0.999)
+        self._actor.GetProperty().SetOpacity(OPAQUE)
         self._actor.SetLayerNumber(order)
         self._actor.VisibilityOff()
         self.size = (0, 0)
+        self._box = Box(0, 0, 0, 0)
+        self._is_clear = False
         renderer.AddViewProp(self._actor)
 
     def paint(self, pixels: np.ndarray) -> None:
@@ -259,7 +267,15 @@ class Sprite:
         for index, (right, up) in enumerate(_CORNERS):
             self._points.SetPoint(index, left + right * width, bottom + up * height, 0.0)
         self._points.Modified()
+        self._box = Box(round(left), round(bottom), round(width), round(height))
         self._actor.VisibilityOn()
+
+    def show_through(self, places: Iterable[tuple[int, int]]) -> None:
+        """Be translucent where it would cover any of some pixels, from the lower left corner."""
+        margin = COVERS_PX * (2 if self._is_clear else 1)
+        around = self._box.inset(-margin)
+        self._is_clear = any(around.contains(*place) for place in places)
+        self._actor.GetProperty().SetOpacity(CLEAR if self._is_clear else OPAQUE)
 
     def hide(self) -> None:
         """Hide it."""

@@ -54,6 +54,7 @@ CONTACT = rgba(0xE5101C)
 NEAR = rgba(0x4AA5FF)
 ON_SKIN = rgba(0xA6FF66)
 TARGET = rgba(0xFFE14A)
+TOOL = rgba(0x8CC8FF)
 INSET_EDGE = rgba(0xFFFFFF)
 
 

@@ -120,18 +120,42 @@ def direction_out_of_sight(
     return Direction(math.degrees(math.atan2(up, right)), right * reach / aspect, up * reach)
 
 
+_SEEN_STEP_PX = 4
+
+
+def pixel_of(
+    renderer: vtkRenderer, point: np.ndarray, size: tuple[int, int]
+) -> tuple[int, int] | None:
+    """Return about where a point (World, m) is seen, in pixels from the lower left corner.
+
+    None where it is behind the camera.
+    """
+    camera = renderer.GetActiveCamera()
+    matrix = camera.GetCompositeProjectionTransformMatrix(size[0] / size[1], -1.0, 1.0)
+    x, y, _z, w = matrix.MultiplyPoint((*point, 1.0))
+    if w <= 0.0:
+        return None
+    across, up = (
+        _SEEN_STEP_PX * round(0.5 * side * (1.0 + share / w) / _SEEN_STEP_PX)
+        for side, share in zip(size, (x, y), strict=True)
+    )
+    return across, up
+
+
 DISK_RADIUS = 46
 REACH = 78
 HALF_WIDTH = 30
 STEP_DEG = 3.0
 
 
-def target_arrow(target: tuple[float, int], brush: Brush) -> np.ndarray:
+def target_arrow(target: tuple[float, int | None], brush: Brush) -> np.ndarray:
     """Return a disk with the distance, and an arrow head on it.
 
-    `target` is an angle in degrees, 0 to the right and 90 up, and a distance in mm.
+    `target` is an angle in degrees, 0 to the right and 90 up, and a distance in mm; None for the
+    tool's arrow, whose color is like that of the tip.
     """
     angle_deg, distance_mm = target
+    color = theme.TOOL if distance_mm is None else theme.TARGET
     middle = brush.px(REACH) + 2
     canvas = Canvas(2 * middle, 2 * middle)
     angle = math.radians(angle_deg)
@@ -141,11 +165,13 @@ def target_arrow(target: tuple[float, int], brush: Brush) -> np.ndarray:
     base = center + brush.px(0.6 * DISK_RADIUS) * ahead
     tip = center + brush.px(REACH) * ahead
     corners = (tip, base + brush.px(HALF_WIDTH) * aside, base - brush.px(HALF_WIDTH) * aside)
-    canvas.polygon([tuple(corner) for corner in corners], theme.TARGET)
+    canvas.polygon([tuple(corner) for corner in corners], color)
     radius = brush.px(DISK_RADIUS)
     disk = Box(middle - radius, middle - radius, 2 * radius, 2 * radius)
     canvas.box(disk, theme.NIGHT, radius)
-    canvas.frame(disk, theme.TARGET, radius, brush.px(4))
+    canvas.frame(disk, color, radius, brush.px(4))
+    if distance_mm is None:
+        return canvas.pixels()
     lines = ((str(distance_mm), theme.STRONG, -0.72), ("mm", theme.SMALL, 0.02))
     for text, style, rise in lines:
         left = middle - brush.width(text, style) // 2

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from concurrent.futures import Future
 from dataclasses import replace
 
 from rastrainer.protocol import OPEN_PHASES
@@ -25,7 +26,7 @@ from rastrainer_simulator.vectors import (
     unit,
     vector,
 )
-from rastrainer_simulator.viewpoint.best_view import BestView, BestViews
+from rastrainer_simulator.viewpoint.best_view import BestView
 from rastrainer_simulator.viewpoint.view_control import (
     UP,
     CameraPose,
@@ -35,6 +36,7 @@ from rastrainer_simulator.viewpoint.view_control import (
     heading_deg,
     orbit_to,
 )
+from rastrainer_simulator.viewpoint.view_search import BestViews
 
 
 class TrialView:
@@ -53,6 +55,8 @@ class TrialView:
         self.yaw_deg: float | None = None
         self._best = BestViews()
         self._trial_id = ""
+        self._search: tuple[str, Future[BestView | None]] | None = None
+        self._found: tuple[str, BestView | None] | None = None
         self._went_for: str | None = None
         self._is_wanted = False
 
@@ -68,6 +72,7 @@ class TrialView:
     def close(self) -> None:
         """Forget the trial."""
         self._best.forget()
+        self._search = self._found = None
         self._went_for, self._is_wanted = None, False
 
     def has_moved_to(self, label: str | None) -> bool:
@@ -76,7 +81,7 @@ class TrialView:
         return label is not None and label == self._went_for and is_there
 
     def want_best(self) -> None:
-        """Go to the best view of the next point as soon as it is known."""
+        """Go to the best view of the next point for the arm as it stands now, once it is found."""
         self._is_wanted = True
 
     def advance(
@@ -92,8 +97,9 @@ class TrialView:
         camera = scenario.cameras[state.camera]
         self.control.use(state.camera)
         label = state.training.next_point
+        has_searched = self._look_for(state)
         view = self._view_of(state)
-        if view is not None and self._is_wanted:
+        if view is not None and self._is_wanted and has_searched:
             self._go(camera, view, label, is_automatic=False)
         elif view is not None and follows and label != self._went_for:
             self._go(camera, view, label, is_automatic=True)
@@ -112,7 +118,7 @@ class TrialView:
         view = self._view_of(now)
         if view is None or view.beside is None:
             return Pictures(main, yaw_deg=self.yaw_deg)
-        beside = along_skin(view.beside, view.fiducial, view.normal, tip)
+        beside = along_skin(view.beside, view.fiducial, tip)
         return Pictures(main, beside, self.yaw_deg)
 
     def turned(
@@ -130,11 +136,33 @@ class TrialView:
             self.stick_turn_deg = yaw_deg - heading_deg(camera)
         return turned(sticks, self.stick_turn_deg) if axes is AxesChoice.CAMERA else sticks
 
-    def _view_of(self, state: SimulationState) -> BestView | None:
+    def _look_for(self, state: SimulationState) -> bool:
+        """Look for the view of a point once it is next, and whenever it is wanted.
+
+        Returns whether a search has just ended.
+        """
+        label = state.training.next_point
+        if label is None or not self._is_open(state):
+            return False
+        if self._search is None:
+            if self._is_wanted or self._found is None or self._found[0] != label:
+                self._search = label, self._best.search(label, state.q)
+            return False
+        searched, search = self._search
+        if not search.done():
+            return False
+        self._search, self._found = None, (searched, search.result())
+        return searched == label
+
+    def _is_open(self, state: SimulationState) -> bool:
         training = state.training
-        if training.phase not in OPEN_PHASES or training.trial_id != self._trial_id:
-            return None
-        return self._best.of(training.next_point)
+        is_this = training.trial_id == self._trial_id and training.is_marked
+        return is_this and training.phase in OPEN_PHASES
+
+    def _view_of(self, state: SimulationState) -> BestView | None:
+        label = state.training.next_point
+        is_found = self._found is not None and self._found[0] == label and self._is_open(state)
+        return self._found[1] if self._found is not None and is_found else None
 
     def _go(self, camera: Camera, view: BestView, label: str | None, is_automatic: bool) -> None:
         self._went_for, self._is_wanted = label, False
@@ -171,8 +199,8 @@ BESIDE_HEIGHT_M = (0.07, 0.3)
 """The least and the greatest height of what the picture along the skin shows."""
 
 
-def along_skin(eye: Vector, fiducial: Vector, normal: Vector, tip: Vector) -> CameraPose:
-    """Return the camera that looks along the skin at a fiducial, the skin level in its picture.
+def along_skin(eye: Vector, fiducial: Vector, tip: Vector) -> CameraPose:
+    """Return the camera that looks along the skin at a fiducial, upright as the main picture.
 
     It shows the more the farther the tip is, up to a limit; World, m.
     """
@@ -180,7 +208,7 @@ def along_skin(eye: Vector, fiducial: Vector, normal: Vector, tip: Vector) -> Ca
     height = min(max(2.4 * length(subtract(tip, fiducial)), least), most)
     away = length(subtract(eye, fiducial))
     angle_deg = math.degrees(2.0 * math.atan(0.5 * height / away))
-    return CameraPose(eye, fiducial, normal, angle_deg)
+    return CameraPose(eye, fiducial, UP, angle_deg)
 
 
 AWAY_M = 0.4

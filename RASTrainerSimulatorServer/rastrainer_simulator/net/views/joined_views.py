@@ -22,6 +22,8 @@ from rastrainer_simulator.presentation.presenter import Control, Feedback, Prese
 from rastrainer_simulator.presentation.screen import Screen, without_secrets
 from rastrainer_simulator.scene.scene_files import SceneFiles
 from rastrainer_simulator.state import SimulationState
+from rastrainer_simulator.viewpoint.arm_cover import ArmCover, places_to_see
+from rastrainer_simulator.viewpoint.view_control import Pictures
 
 _log = logging.getLogger(__name__)
 
@@ -53,6 +55,7 @@ class JoinedViews:
         self._scene = ""
         self._pairing = ""
         self._trace = TraceUpdate()
+        self._cover: ArmCover | None = None
         self.mirror = Mirror()
         self._loading: asyncio.Task[None] | None = None
         self._watching: asyncio.Task[None] | None = None
@@ -148,7 +151,23 @@ class JoinedViews:
         statistics = self._source.statistics
         delayed = statistics.late + statistics.skipped
         presenter = self._presenter
-        return outgoing.state(now, delayed, presenter.pictures(now), presenter.ghost(now))
+        pictures = presenter.pictures(now)
+        translucent = self._translucent(now, pictures)
+        return outgoing.state(now, delayed, pictures, translucent, presenter.ghost(now))
+
+    def _translucent(self, now: SimulationState, pictures: Pictures) -> dict[str, list[str]]:
+        """Return the bodies that cover tip or next point in each picture."""
+        setup = self._source.setup
+        if self._cover is None or self._cover.setup is not setup:
+            self._cover = ArmCover(setup)
+        eyes = {
+            "view": pictures.main.position,
+            "inset": None if pictures.inset is None else pictures.inset.position,
+            "worn": self.mirror.eyes,
+        }
+        guided = self._presenter.trace_guidance(now).next_place
+        places = places_to_see(now, setup.scenario, None if guided is None else guided.position)
+        return self._cover.covering(now, eyes, places)
 
     def _send_update(self, update: ViewUpdate) -> None:
         views, screen = self._views.values(), self._presenter.screen

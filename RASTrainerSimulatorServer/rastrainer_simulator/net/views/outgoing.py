@@ -19,11 +19,12 @@ from rastrainer_simulator.loop.timing import Pacer
 from rastrainer_simulator.net.views.incoming import PROTOCOL, Worn
 from rastrainer_simulator.presentation.presenter import Control, Feedback, TraceGuidance
 from rastrainer_simulator.presentation.screen import Screen, screen_to_json
-from rastrainer_simulator.scene.nodes import no_go_name
+from rastrainer_simulator.scene.nodes import TOOL, link_node_name, no_go_name
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.teleoperation.steering import AxesChoice
 from rastrainer_simulator.training.head_pose import RegisteredPlan
 from rastrainer_simulator.trial_state import Tool, TracedPoint
+from rastrainer_simulator.vectors import Vector, vector
 from rastrainer_simulator.viewpoint.view_control import CameraPose, Pictures, aim, camera_pose
 
 WELCOME = "welcome"
@@ -36,7 +37,7 @@ PAIRING = "pairing"
 TRACE = "trace"
 SEAT = "seat"
 
-BODIES = (*(f"link_{joint}" for joint in range(8)), "tool", "head", "stand", "plan")
+BODIES = (*map(link_node_name, range(8)), TOOL, "head", "stand", "plan")
 GHOST_LINKS = (7,)
 """The links of the arm that are shown of a ghost, by the number of joints before each."""
 GHOST_BODIES = (*(f"link_{joint}" for joint in GHOST_LINKS), "tool")
@@ -77,11 +78,17 @@ def state(
     now: SimulationState,
     delayed: int,
     pictures: Pictures,
+    translucent: Mapping[str, Sequence[str]],
     ghost: Sequence[np.ndarray] | None = None,
 ) -> str:
-    """Return what moves; `delayed` counts the control loop's late and skipped ticks.
+    """Return what moves.
 
-    `ghost` has the poses of `GHOST_BODIES`, (4, 4) float, to World, m; None without a ghost.
+    Args:
+        now: a state.
+        delayed: how many of the control loop's ticks were late or skipped.
+        pictures: from where it is seen.
+        translucent: bodies that cover tip or point in each picture.
+        ghost: poses of `GHOST_BODIES`, (4, 4) float, to World, m; None without a ghost.
     """
     training, planned = now.training, now.planned_target
     matrices = (
@@ -103,6 +110,7 @@ def state(
         camera=now.camera,
         view=_camera(pictures.main),
         inset=None if pictures.inset is None else _camera(pictures.inset),
+        translucent=translucent,
         phase=training.phase.value,
         next=training.next_point if training.is_marked else None,
         touched=[touch.label for touch in training.touches] if training.is_marked else [],
@@ -302,19 +310,26 @@ class Mirror:
         self._headsets: set[int] = set()
         self.text = NOBODY
         """JSON of what the newest headset sent last; "null" without one that is worn."""
+        self.eyes: Vector | None = None
+        """Where its wearer's eyes are, World, m; None without one."""
 
     def joined(self, view: int) -> None:
         """Follow a headset from now on."""
         self._headsets.add(view)
-        self.text = NOBODY
+        self._show(None)
 
     def left(self, view: int) -> None:
         """Forget a view; the previous one, if any, is followed again."""
         if view in self._headsets and view == max(self._headsets):
-            self.text = NOBODY
+            self._show(None)
         self._headsets.discard(view)
 
     def take(self, view: int, worn: Worn) -> None:
         """Process what a headset sends; only the newest is followed."""
         if view == max(self._headsets, default=None):
-            self.text = NOBODY if worn.eyes is None else wearer(worn)
+            self._show(worn)
+
+    def _show(self, worn: Worn | None) -> None:
+        eyes = None if worn is None else worn.eyes
+        self.eyes = None if eyes is None else vector(eyes[:3])
+        self.text = NOBODY if worn is None or eyes is None else wearer(worn)

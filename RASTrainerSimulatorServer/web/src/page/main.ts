@@ -19,7 +19,8 @@ import { Sounds } from "../audio/sounds";
 import { Speech } from "../audio/speech";
 import { isPairedAgain, onlyRead, showWatching, SPECTATOR } from "../overlay/spectator";
 import { Stage } from "../scene/stage";
-import { TargetArrow } from "../overlay/target_arrow";
+import { ClearSight } from "../overlay/clear_sight";
+import { SightArrows } from "../overlay/sight_arrows";
 import { say, useLanguage } from "../texts";
 import { TouchControls } from "../input/touch_controls";
 import { TouchRing } from "../scene/touch_ring";
@@ -46,7 +47,8 @@ export class Page {
   private readonly touch = new TouchControls(this.connection);
   private readonly sounds = new Sounds();
   private readonly frames = new FrameCount(this.connection);
-  private readonly arrow = new TargetArrow();
+  private readonly arrows = new SightArrows();
+  private readonly sight = new ClearSight();
   private readonly ring = this.stage && new TouchRing(this.stage.scene);
   private readonly worn = this.stage && new WornView(this.stage.world);
   private readonly errors = new ErrorArrows();
@@ -294,7 +296,8 @@ export class Page {
     this.overlay.showInset(inset);
     this.overlay.showError(isWorking && isTouchError(state.touch));
     this.ring?.show(model, state, flat.camera, isWorking);
-    this.arrow.show(model, flat.camera, state.next, isWorking && (this.screen?.has_arrow ?? false));
+    this.arrows.show(model, flat.camera, state, isWorking, this.screen?.has_arrow ?? false);
+    this.sight.show(model, flat.camera, state, isWorking);
     flat.draw(inset !== "");
     this.frames.drawn();
   }

@@ -17,9 +17,9 @@ export type Finish = "matt" | "glossy";
 
 /**
  * Replace the meshes at and below `root`, but those in `apart`, by one that is lit and one that
- * glows. Nothing below `root` may be moved afterward.
+ * glows, and return these. Nothing below `root` may be moved afterward.
  */
-export function batch(root: Object3D, finish: Finish, apart: ReadonlySet<Object3D>): void {
+export function batch(root: Object3D, finish: Finish, apart: ReadonlySet<Object3D>): Mesh[] {
   const lit: BufferGeometry[] = [];
   const glowing: BufferGeometry[] = [];
   root.updateMatrixWorld(true);
@@ -32,10 +32,13 @@ export function batch(root: Object3D, finish: Finish, apart: ReadonlySet<Object3
     mesh.geometry.dispose();
     if (mesh !== root) mesh.removeFromParent();
   }
-  if (lit.length > 0) root.add(new Mesh(mergeGeometries(lit), material(finish)));
+  const made: Mesh[] = [];
+  if (lit.length > 0) made.push(new Mesh(mergeGeometries(lit), material(finish)));
   if (glowing.length > 0) {
-    root.add(new Mesh(mergeGeometries(glowing), new MeshBasicMaterial({ vertexColors: true, toneMapped: false })));
+    made.push(new Mesh(mergeGeometries(glowing), new MeshBasicMaterial({ vertexColors: true, toneMapped: false })));
   }
+  if (made.length > 0) root.add(...made);
+  return made;
 }
 
 /** Return the color of a mesh of the GLB, and whether it needs no light. */

@@ -26,6 +26,8 @@ export class FlatView {
   private chosen = "";
   private isBeside = false;
   private hasLine = false;
+  /** What is seen through in the picture, and in its corner. */
+  private covers: Record<"view" | "inset", readonly string[]> = { view: [], inset: [] };
 
   constructor(
     private readonly stage: Stage,
@@ -53,6 +55,8 @@ export class FlatView {
     this.chosen = state.camera;
     if (worn === null) this.flight.go(state.camera, state.view, now);
     else this.flight.go(WORN, worn, now);
+    const { view, inset, worn: wornCovers } = state.translucent;
+    this.covers = { view: worn === null ? view : wornCovers, inset };
     this.isBeside = state.inset !== null;
     this.hasLine = hasGuide(state);
     const other = state.inset ?? this.scene.cameras[this.otherCamera];
@@ -84,20 +88,22 @@ export class FlatView {
 
   /** Draw, with the other camera in the corner if it is wanted. */
   draw(hasInset: boolean): void {
-    const { renderer, scene } = this.stage;
+    const { renderer, scene, model } = this.stage;
     const { x: width, y: height } = this.size;
     this.flight.now.look(this.camera, width / height);
     renderer.setScissorTest(false);
     renderer.setViewport(0, 0, width, height);
+    model?.seeThrough(this.covers.view);
     renderer.render(scene, this.camera);
     if (!hasInset) return;
     const box = this.frame.getBoundingClientRect();
-    // A low window has no room for it beside the bull's-eye.
-    if (box.height === 0) return;
+    // A low window has no room for it beside the bull's-eye; and what it would cover comes first.
+    if (box.height === 0 || this.frame.classList.contains("clear")) return;
     this.inset.look(this.other, box.width / box.height);
     renderer.setScissorTest(true);
     renderer.setViewport(box.left, height - box.bottom, box.width, box.height);
     renderer.setScissor(box.left, height - box.bottom, box.width, box.height);
+    model?.seeThrough(this.covers.inset);
     renderer.render(scene, this.other);
     renderer.setScissorTest(false);
   }

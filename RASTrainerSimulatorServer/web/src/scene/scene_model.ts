@@ -6,13 +6,15 @@ import {
   Group,
   Mesh,
   MeshBasicMaterial,
+  MeshLambertMaterial,
   MeshStandardMaterial,
   Vector3,
+  type Material,
   type Object3D,
 } from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 
-import { batch, ownColor } from "./batch";
+import { batch, ownColor, type Finish } from "./batch";
 import { served } from "../stream/served";
 import { isTouchError, type ProcedureNews, type SceneNews, type StateNews, type TouchStage } from "../stream/messages";
 
@@ -29,6 +31,8 @@ const INSTRUMENTS: Readonly<Record<ProcedureNews["tool"], readonly string[]>> = 
 const FED = ["drill", "electrode"];
 const AT_THE_TOOL = ["guide", "axis", ...FED];
 const CLEAR_SKIN = 0.3;
+/** Opacity of a body that covers tip or point. */
+const COVER = 0.3;
 const PULSE_S = 1.4;
 const PULSE_COLOR = new Color(1, 0.97, 0.75);
 
@@ -67,6 +71,14 @@ export class SceneModel {
   private skinMesh: Mesh | null = null;
   private readonly skin = new MeshStandardMaterial({ roughness: 0.6 });
   private readonly noGo: Object3D[] = [];
+  /** What is drawn of each body of the arm, with its own material. */
+  private readonly arm = new Map<string, readonly (readonly [Mesh, Material | Material[]])[]>();
+  private readonly seenThrough = new MeshLambertMaterial({
+    vertexColors: true,
+    transparent: true,
+    opacity: COVER,
+    depthWrite: false,
+  });
 
   constructor(
     file: Object3D,
@@ -145,6 +157,14 @@ export class SceneModel {
     }
   }
 
+  /** Draw these bodies of the arm translucent, and the others not. */
+  seeThrough(bodies: readonly string[]): void {
+    for (const [name, meshes] of this.arm) {
+      const isTranslucent = bodies.includes(name);
+      for (const [mesh, own] of meshes) mesh.material = isTranslucent ? this.seenThrough : own;
+    }
+  }
+
   /** Let what is within the head be seen through the skin, or not. */
   clearHead(isClear: boolean): void {
     if (this.skin.transparent === isClear) return;
@@ -178,7 +198,9 @@ export class SceneModel {
     const apart = [tip, ...AT_THE_TOOL.map((name) => this.named.get(name))];
     const kept = new Set(apart.filter((node) => node !== undefined));
     for (const name of bodies) {
-      if (name !== "head" && name !== "plan") this.batchNode(name, "glossy", kept);
+      if (name === "head" || name === "plan") continue;
+      const meshes = this.batchNode(name, "glossy", kept);
+      this.arm.set(name, meshes.map((mesh) => [mesh, mesh.material] as const));
     }
     this.noGo.push(...(this.named.get("plan")?.children ?? []));
     this.showInstrument(null);
@@ -210,9 +232,9 @@ export class SceneModel {
     }
   }
 
-  private batchNode(name: string, finish: "matt" | "glossy", apart: Set<Object3D>): void {
+  private batchNode(name: string, finish: Finish, apart: Set<Object3D>): Mesh[] {
     const node = this.named.get(name);
-    if (node !== undefined) batch(node, finish, apart);
+    return node === undefined ? [] : batch(node, finish, apart);
   }
 }
 

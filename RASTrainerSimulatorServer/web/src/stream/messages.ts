@@ -167,6 +167,8 @@ export interface StateNews {
   readonly view: CameraPlace;
   /** Where the corner's picture looks along the skin, or across the line of a procedure; null without either. */
   readonly inset: CameraPlace | null;
+  /** Bodies of the arm that cover tip or next point in each picture: they are seen through. */
+  readonly translucent: Readonly<Record<"view" | "inset" | "worn", readonly string[]>>;
   readonly phase: string;
   readonly next: string | null;
   readonly touched: readonly string[];

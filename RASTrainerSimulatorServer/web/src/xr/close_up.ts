@@ -13,7 +13,7 @@ import {
 } from "three";
 
 import { COLORS } from "../panels/pen";
-import type { CameraPlace } from "../stream/messages";
+import type { StateNews } from "../stream/messages";
 import type { Stage } from "../scene/stage";
 import { Viewpoint } from "../scene/viewpoint";
 
@@ -47,10 +47,10 @@ export class CloseUp {
   }
 
   /**
-   * Draw the picture if it is its turn; `hidden` is not to be seen in it. With `inset`, it is looked along
-   * the skin from there, also behind the head.
+   * Draw the picture if it is its turn; `hidden` is not to be seen in it. With the state's `inset`, it is
+   * looked along the skin from there, also behind the head.
    */
-  draw(stage: Stage, hidden: Object3D, inset: CameraPlace | null): void {
+  draw(stage: Stage, hidden: Object3D, { inset, translucent }: StateNews): void {
     const { model, renderer } = stage;
     const camera = model?.news.cameras["close-up"];
     const tool = model?.node("tool");
@@ -63,6 +63,7 @@ export class CloseUp {
       this.place.angle = ANGLE_DEG;
     }
     this.place.look(this.camera, WIDTH / HEIGHT);
+    model?.seeThrough(translucent.inset);
     hidden.visible = false;
     renderer.xr.enabled = false;
     const before = renderer.getRenderTarget();

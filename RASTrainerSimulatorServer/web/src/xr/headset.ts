@@ -145,8 +145,9 @@ export class Headset {
       this.worn.tell(now, this.camera, this.hands.controller("left"), this.hands.controller("right"));
     }
     this.hear(model);
-    this.panels.closeUp.draw(this.stage, this.panels.room, state.inset);
+    this.panels.closeUp.draw(this.stage, this.panels.room, state);
     this.arrow.show(model, this.camera, state.next, this.hasArrow);
+    model.seeThrough(state.translucent.worn);
     this.stage.renderer.render(this.stage.scene, this.camera);
   }
 

@@ -1,0 +1,81 @@
+"""What can be seen from an eye past the head and one posture of the arm."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rastrainer_simulator.collision.clearance import HeadClearance
+from rastrainer_simulator.collision.robot_shape import ArmCapsules, PosedArm
+from rastrainer_simulator.vectors import Vector
+
+ABOVE_TABLE_M = 0.02
+"""An eye nearer to the table than this would look through its top."""
+_TINY = 1e-12
+
+
+def sight_clearances(
+    eyes: np.ndarray, places: np.ndarray, ends: np.ndarray, radii: np.ndarray
+) -> np.ndarray:
+    """Return how far m lines of sight pass n capsules, (m, n) float, m; below zero: covered.
+
+    The nearest points of two segments as in `vectors.segment_distance`, for all pairs at once.
+
+    Args:
+        eyes, places: (m, 3) float, where the lines begin and end.
+        ends: (n, 2, 3) float, of the capsules' axes.
+        radii: (n,) float, of the capsules.
+    """
+    starts, axes = ends[:, 0], ends[:, 1] - ends[:, 0]
+    lines = places - eyes
+    uu = np.einsum("mi,mi->m", lines, lines)[:, None] + _TINY
+    vv = np.einsum("ni,ni->n", axes, axes) + _TINY
+    uv = lines @ axes.T
+    between = eyes[:, None] - starts
+    uw = np.einsum("mi,mni->mn", lines, between)
+    vw = np.einsum("ni,mni->mn", axes, between)
+    area = np.maximum(uu * vv - uv * uv, _TINY * uu * vv)
+    s = np.clip((uv * vw - vv * uw) / area, 0.0, 1.0)
+    t = np.clip((uv * s + vw) / vv, 0.0, 1.0)
+    s = np.clip((uv * t - uw) / uu, 0.0, 1.0)
+    apart = between + s[..., None] * lines[:, None] - t[..., None] * axes
+    return np.sqrt(np.einsum("mni,mni->mn", apart, apart)) - radii
+
+
+class LineOfSight:
+    """Finds what the head, the table and one posture of the arm leave visible; World, m."""
+
+    def __init__(
+        self, head: HeadClearance, arm: ArmCapsules, posed: PosedArm, table_height: float
+    ) -> None:
+        self._head = head
+        self._ends, self._radii = posed.ends, arm.radii
+        self._link_count = arm.link_count
+        self._lowest = table_height + ABOVE_TABLE_M
+
+    def is_free(self, eye: Vector, place: Vector) -> bool:
+        """Return whether a point is seen from an eye past head, links and table.
+
+        The tool does not count.
+        """
+        off_links = self.off_links(np.array([eye]), np.array(place))
+        return self.is_past_head(eye, place) and bool(off_links[0] > 0.0)
+
+    def is_past_head(self, eye: Vector, place: Vector) -> bool:
+        """Return whether a point is seen from an eye past head and table."""
+        return eye[2] > self._lowest and not self._head.is_crossed(eye, place)
+
+    def is_past_tool(self, eye: Vector, place: Vector) -> bool:
+        """Return whether the tool leaves a point visible from an eye."""
+        return bool(self.off_tool(np.array([eye]), np.array(place))[0] > 0.0)
+
+    def off_links(self, eyes: np.ndarray, place: np.ndarray) -> np.ndarray:
+        """Return how far the lines from eyes (m, 3) to a place (3,) pass the links, (m,), m."""
+        return self._off(eyes, place, slice(self._link_count))
+
+    def off_tool(self, eyes: np.ndarray, place: np.ndarray) -> np.ndarray:
+        """Return how far the lines from eyes (m, 3) to a place (3,) pass the tool, (m,), m."""
+        return self._off(eyes, place, slice(self._link_count, None))
+
+    def _off(self, eyes: np.ndarray, place: np.ndarray, rows: slice) -> np.ndarray:
+        places = np.broadcast_to(place, eyes.shape)
+        return sight_clearances(eyes, places, self._ends[rows], self._radii[rows]).min(axis=1)
