@@ -11,6 +11,7 @@ import slicer
 
 from rastrainer.number_text import fixed
 from rastrainer.panels.application import askWhereToSave, fitSliceViews, fitThreeDViews
+from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.training_panel import METHODS
 from rastrainer.panels.widgets import (
