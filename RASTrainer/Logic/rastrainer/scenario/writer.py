@@ -18,7 +18,8 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import json_object, read_fields
-from rastrainer.files.point_list import PointList, write_markups
+from rastrainer.files.point_files import write_markups
+from rastrainer.files.point_list import PointList
 from rastrainer.files.writing import make_private_folder, write_json
 from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
 from rastrainer.head.volume import HeadVolume, read_head_volume, read_volume_file, write_head_volume
