@@ -93,9 +93,7 @@ def test_register_pairs_by_order_where_labels_are_left_out(files, tmp_path, run_
     assert result["fre_mm"] == pytest.approx(register(moving, fixed).fre_mm)
 
 
-def test_register_leaves_out_what_is_deselected_in_slicer_and_says_so(
-    files, tmp_path, run_json, capsys
-):
+def test_register_leaves_out_what_is_deselected_in_slicer_and_says_so(files, run_json, capsys):
     moving, fixed, moving_file, fixed_file = files
     content = json.loads(fixed_file.read_bytes())
     point = content["markups"][0]["controlPoints"][4]
