@@ -20,6 +20,7 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.volume import check_place, read_head_volume
+from rastrainer.home_folder import home_folder
 from rastrainer.procedure.checks import unusable_lines
 from rastrainer.procedure.plan import read_all_no_go, read_procedure_meshes
 from rastrainer.scenario.scenario import FILE_NAME, PREVIEW_NAME, Scenario, load_scenario
@@ -51,9 +52,12 @@ class ListedScenario:
     problem: str
 
 
+USER_LIBRARY = "RASTrainer/scenarios"
+
+
 def user_library() -> Path:
     """Return the folder of the user's scenarios, which may not exist."""
-    return Path.home() / "RASTrainer" / "scenarios"
+    return home_folder() / USER_LIBRARY
 
 
 def list_scenarios(

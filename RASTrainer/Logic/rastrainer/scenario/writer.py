@@ -32,6 +32,16 @@ HEAD_NAME, SKULL_NAME, VOLUME_NAME = "head.ply", "skull.ply", "volume.nrrd"
 _DECIMALS = 4
 
 
+def require_new(folder: Path) -> None:
+    """Check that a folder can be made.
+
+    Raises:
+        InputError: there is a file, a link or a folder that is not empty.
+    """
+    if folder.is_symlink() or folder.is_file() or (folder.is_dir() and any(folder.iterdir())):
+        raise InputError(f"{folder} already exists; name a new or empty folder.")
+
+
 @contextlib.contextmanager
 def new_folder(folder: Path) -> Iterator[Path]:
     """Yield a temporary folder that becomes `folder` at the end, or is deleted on failure.
@@ -40,8 +50,7 @@ def new_folder(folder: Path) -> Iterator[Path]:
         InputError: `folder` is not empty, or cannot be made.
     """
     folder = Path(folder).absolute()
-    if folder.is_symlink() or folder.is_file() or (folder.is_dir() and any(folder.iterdir())):
-        raise InputError(f"{folder} already exists; name a new or empty folder.")
+    require_new(folder)
     partial = folder.parent / f".{uuid.uuid4().hex}.partial"
     try:
         # The head may have a recognizable face.
