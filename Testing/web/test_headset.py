@@ -216,6 +216,31 @@ def test_grabbing_can_be_switched_off(place, worn, trainee):
     trainee.hands.point_at("local grab")
 
 
+@pytest.mark.parametrize(("buttons", "button"), [(3, 2), (4, 3)], ids=["touchpad", "stick"])
+def test_a_wand_without_further_buttons_touches_and_undoes(worn, trainee, buttons, button):
+    worn.evaluate(
+        """(count) => {
+          const buttons = Array.from({ length: count }, () => ({ value: 0, pressed: false }));
+          window.wand = { axes: count === 3 ? [0, 0] : [0, 0, 0, 0], buttons };
+          const hand = page.headset.hands.hands.find(({ source }) => source.handedness === "right");
+          window.held = [hand, hand.source];
+          const { handedness, targetRayMode } = hand.source;
+          hand.source = { handedness, targetRayMode, gamepad: wand }; }""",
+        buttons,
+    )
+    click = """async ([index, down]) => {
+      wand.axes[wand.axes.length - 1] = down; wand.buttons[index].value = 1; await frames_(2);
+      wand.axes.fill(0); wand.buttons[index].value = 0; await frames_(2); }"""
+    try:
+        before = trainee.touched
+        worn.evaluate(click, [button, 0.0])
+        trainee.until(lambda: trainee.touched == before + 1, "the touch")
+        worn.evaluate(click, [button, -0.9])
+        trainee.until(lambda: trainee.touched == before, "the undo")
+    finally:
+        worn.evaluate("() => { const [hand, source] = held; hand.source = source; }")
+
+
 def test_proximity_pulses_both_controllers(worn, trainee):
     worn.evaluate(LISTEN_TO_PULSES)
     trainee.steer_to(trainee.place_of("1"), 0.002)
