@@ -232,6 +232,7 @@ def test_a_wand_without_further_buttons_touches_and_undoes(worn, trainee, button
       wand.axes[wand.axes.length - 1] = down; wand.buttons[index].value = 1; await frames_(2);
       wand.axes.fill(0); wand.buttons[index].value = 0; await frames_(2); }"""
     try:
+        trainee.lower_onto("1")
         before = trainee.touched
         worn.evaluate(click, [button, 0.0])
         trainee.until(lambda: trainee.touched == before + 1, "the touch")

@@ -81,8 +81,8 @@ def test_a_second_gamepad_takes_the_place_of_an_idle_one_and_an_unknown_one_is_r
           window.pad.index = 1;
           navigator.getGamepads = () => [null, idle, window.pad]; }"""
     )
-    before = trainee.menu.items[trainee.menu.focus].name
-    trainee.press("down", lambda: trainee.menu.items[trainee.menu.focus].name != before, "a step")
+    before = trainee.menu.focus
+    trainee.press("down", lambda: trainee.menu.focus != before, "a step")
     page.evaluate("window.pad.mapping = ''; navigator.getGamepads = () => [window.pad]")
     page.wait_for_selector("text=The browser does not know the layout of this gamepad")
     page.evaluate("window.pad.mapping = 'standard'; window.pad.index = 0")
