@@ -216,6 +216,22 @@ def test_grabbing_can_be_switched_off(place, worn, trainee):
     trainee.hands.point_at("local grab")
 
 
+class Wand:
+    """A wand whose touchpad or stick is pressed, at its upper end to undo."""
+
+    def __init__(self, page, button):
+        self._page, self._button = page, button
+
+    def tap(self, control):
+        self._page.evaluate(
+            """async ([index, down]) => {
+              wand.axes[wand.axes.length - 1] = down;
+              wand.buttons[index].value = 1; await frames_(2);
+              wand.axes.fill(0); wand.buttons[index].value = 0; await frames_(2); }""",
+            [self._button, {"touch": 0.0, "undo": -0.9}[control]],
+        )
+
+
 @pytest.mark.parametrize(("buttons", "button"), [(3, 2), (4, 3)], ids=["touchpad", "stick"])
 def test_a_wand_without_further_buttons_touches_and_undoes(worn, trainee, buttons, button):
     worn.evaluate(
@@ -228,17 +244,14 @@ def test_a_wand_without_further_buttons_touches_and_undoes(worn, trainee, button
           hand.source = { handedness, targetRayMode, gamepad: wand }; }""",
         buttons,
     )
-    click = """async ([index, down]) => {
-      wand.axes[wand.axes.length - 1] = down; wand.buttons[index].value = 1; await frames_(2);
-      wand.axes.fill(0); wand.buttons[index].value = 0; await frames_(2); }"""
+    controllers, before = trainee.hands, trainee.touched
+    trainee.lower_onto("1")
+    trainee.hands = Wand(worn, button)
     try:
-        trainee.lower_onto("1")
-        before = trainee.touched
-        worn.evaluate(click, [button, 0.0])
-        trainee.until(lambda: trainee.touched == before + 1, "the touch")
-        worn.evaluate(click, [button, -0.9])
-        trainee.until(lambda: trainee.touched == before, "the undo")
+        trainee.press("touch", lambda: trainee.touched == before + 1, "the touch")
+        trainee.press("undo", lambda: trainee.touched == before, "the undo")
     finally:
+        trainee.hands = controllers
         worn.evaluate("() => { const [hand, source] = held; hand.source = source; }")
 
 
