@@ -46,6 +46,7 @@ from rastrainer.slicer.scene.scenario_nodes import scenarioLoader, showScenario
 from rastrainer.study.database.study import STUDY_FILE, Study
 from rastrainer.trial.analysis import PublishedScore, RevealedTruth, TrialAnalysis
 from rastrainer.trial.ctps import CTPS_WARNING, read_trials
+from rastrainer.work_progress import allow_any_text
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.residual_picture import writeResidualPicture
 from rastrainer_headless.scene import HeadlessScene
@@ -289,6 +290,7 @@ def _writePicture(path: Path, scenario: Scenario, analysis: TrialAnalysis) -> No
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run and return the exit status."""
+    allow_any_text()
     arguments = _parser().parse_args(argv)
     try:
         _run(arguments)

@@ -17,11 +17,12 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.scenario.writer import HeadDraft, new_folder, write_draft
-from rastrainer.work_progress import HEAD_MADE, print_progress, print_warning
+from rastrainer.work_progress import HEAD_MADE, allow_any_text, print_progress, print_warning
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run and return the exit status."""
+    allow_any_text()
     arguments = _parser().parse_args(argv)
     try:
         from rastrainer.slicer.head.head_draft import makeDraft

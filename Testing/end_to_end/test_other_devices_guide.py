@@ -45,7 +45,8 @@ def test_the_guides_adapter_moves_the_arm_as_the_picture_shows_and_lets_it_stop(
         assert client.send_command("StartTask", start, timeout=60).ok
         here = [sys.executable, "-c", program.replace("18944", str(simulator.port))]
         first = next_tip(client)
-        lines = "0 0 0.5\n" * LINES + "touch\nfaster\n"
+        wrong = "nan nan nan\n-inf nan 0\n" * LINES + "0 0 up\n1 2 3 4\n"
+        lines = "0 0 0.5\n0,0 0 0,5\n" * (LINES // 2) + wrong + "touch\nfaster\n"
         done = subprocess.run(here, input=lines, capture_output=True, text=True)
         assert done.returncode == 0
         up = next_tip(client, lambda tip: tip[2] > first[2])
@@ -54,6 +55,8 @@ def test_the_guides_adapter_moves_the_arm_as_the_picture_shows_and_lets_it_stop(
             steps.append(next_tip(client))
         np.testing.assert_allclose(steps[-1][:2], first[:2], atol=0.5)
         assert steps[-1][2] <= first[2] + LINES * 0.1 * 0.5 * 150.0
-    refused, unknown = done.stderr.splitlines()
+    no_number, too_long, refused, unknown = done.stderr.splitlines()
+    assert no_number == "not understood: 0 0 up"
+    assert too_long == "not understood: 1 2 3 4"
     assert refused.startswith("Capture: ")
     assert unknown == "not understood: faster"

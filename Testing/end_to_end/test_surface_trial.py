@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from rastrainer.files.point_list import read_markups
+from rastrainer.files.point_files import read_markups
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import load_scenario

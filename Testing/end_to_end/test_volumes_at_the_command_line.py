@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.files.point_list import PointList, write_markups
+from rastrainer.files.point_files import write_markups
+from rastrainer.files.point_list import PointList
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.volume import check_place, read_head_volume
 from rastrainer.scenario.points import LABELS

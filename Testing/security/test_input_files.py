@@ -14,7 +14,7 @@ import pytest
 import trimesh
 
 from rastrainer.errors import InputError
-from rastrainer.files.point_list import read_markups, read_points
+from rastrainer.files.point_files import read_markups, read_points
 from rastrainer.files.reading import MAX_DEPTH, MAX_ELEMENTS
 from rastrainer.head.volume import read_nrrd, write_nrrd
 from rastrainer.procedure.plan import read_procedure

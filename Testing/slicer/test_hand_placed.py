@@ -17,9 +17,11 @@ def add_list(scene, name, count=15, labels=None):
 
 def test_lists_of_the_wrong_length_and_a_seventh_list_are_left_out_and_named(scene):
     add_list(scene, "Short", 14)
-    good = [add_list(scene, f"Task {letter}") for letter in "ABCDEFG"]
+    chosen = add_list(scene, "Chosen", 16)
+    chosen.SetNthControlPointSelected(15, False)
+    good = [chosen, *(add_list(scene, f"Task {letter}") for letter in "ABCDEF")]
     add_list(scene, "Long", 16)
-    half = add_list(scene, "Half placed")
+    half = add_list(scene, "Half")
     half.UnsetNthControlPointPosition(3)
     ours = add_list(scene, "Touched points", 7)
     ours.SetAttribute(ROLE_ATTRIBUTE, "touched")
@@ -27,10 +29,10 @@ def test_lists_of_the_wrong_length_and_a_seventh_list_are_left_out_and_named(sce
     taken, left_out = handPlacedLists(scene, targets)
     assert taken == good[:6]
     assert left_out == [
-        "The point list Short is left out: it has 14 placed points, not 15.",
-        "The point list Task G is left out: a scenario has at most 6 tasks.",
-        "The point list Long is left out: it has 16 placed points, not 15.",
-        "The point list Half placed is left out: it has 14 placed points, not 15.",
+        "The point list Short is left out: it has 14 points that are placed and selected, not 15.",
+        "The point list Task F is left out: a scenario has at most 6 tasks.",
+        "The point list Long is left out: it has 16 points that are placed and selected, not 15.",
+        "The point list Half is left out: it has 14 points that are placed and selected, not 15.",
     ]
 
 

@@ -130,6 +130,26 @@ def test_a_bad_touch_is_named_excluded_by_one_click_and_restored(table):
     assert not table.logic.canUndo
 
 
+def test_a_touch_that_is_deselected_in_slicer_is_left_out_until_it_is_selected(table):
+    bad = table.touched.copy()
+    bad[6] += [9.0, -6.0, 5.0]
+    table.touch(bad)
+    before, touches = table.logic.shown.fre_mm, capturedPointsNode(table.scene)
+    touches.SetNthControlPointSelected(6, False)
+    table.logic.process()
+    pairs = table.logic.comparison.pairs
+    assert (pairs.excluded, pairs.missing, len(pairs.labels)) == (("7",), (), 14)
+    assert table.logic.shown.fre_mm < 0.5 * before
+    table.fixed.SetNthControlPointSelected(0, False)
+    table.logic.process()
+    assert {*table.logic.comparison.pairs.excluded} == {"1", "7"}
+    for node in (touches, table.fixed):
+        for row in range(15):
+            node.SetNthControlPointSelected(row, True)
+    table.logic.process()
+    assert table.logic.shown.fre_mm == before
+
+
 def test_swapped_touches_are_put_in_order_by_one_click(table):
     order = [0, 1, 3, 2, *range(4, 15)]
     table.touch(table.touched[order])

@@ -216,6 +216,45 @@ def test_grabbing_can_be_switched_off(place, worn, trainee):
     trainee.hands.point_at("local grab")
 
 
+class Wand:
+    """A wand whose touchpad or stick is pressed, at its upper end to undo."""
+
+    def __init__(self, page, button):
+        self._page, self._button = page, button
+
+    def tap(self, control):
+        self._page.evaluate(
+            """async ([index, down]) => {
+              wand.axes[wand.axes.length - 1] = down;
+              wand.buttons[index].value = 1; await frames_(2);
+              wand.axes.fill(0); wand.buttons[index].value = 0; await frames_(2); }""",
+            [self._button, {"touch": 0.0, "undo": -0.9}[control]],
+        )
+
+
+@pytest.mark.parametrize(("buttons", "button"), [(3, 2), (4, 3)], ids=["touchpad", "stick"])
+def test_a_wand_without_further_buttons_touches_and_undoes(worn, trainee, buttons, button):
+    worn.evaluate(
+        """(count) => {
+          const buttons = Array.from({ length: count }, () => ({ value: 0, pressed: false }));
+          window.wand = { axes: count === 3 ? [0, 0] : [0, 0, 0, 0], buttons };
+          const hand = page.headset.hands.hands.find(({ source }) => source.handedness === "right");
+          window.held = [hand, hand.source];
+          const { handedness, targetRayMode } = hand.source;
+          hand.source = { handedness, targetRayMode, gamepad: wand }; }""",
+        buttons,
+    )
+    controllers, before = trainee.hands, trainee.touched
+    trainee.lower_onto("1")
+    trainee.hands = Wand(worn, button)
+    try:
+        trainee.press("touch", lambda: trainee.touched == before + 1, "the touch")
+        trainee.press("undo", lambda: trainee.touched == before, "the undo")
+    finally:
+        trainee.hands = controllers
+        worn.evaluate("() => { const [hand, source] = held; hand.source = source; }")
+
+
 def test_proximity_pulses_both_controllers(worn, trainee):
     worn.evaluate(LISTEN_TO_PULSES)
     trainee.steer_to(trainee.place_of("1"), 0.002)

@@ -70,6 +70,25 @@ def test_a_browser_gamepad_begins_a_task_and_steers(place, page):
     page.wait_for_selector("""#control:has-text("You drive: browser's gamepad")""")
 
 
+def test_a_second_gamepad_takes_the_place_of_an_idle_one_and_an_unknown_one_is_reported(
+    place, page
+):
+    trainee = place.trainee(BrowserPad(page))
+    trainee.go_home()
+    page.evaluate(
+        """() => {
+          const idle = { ...structuredClone(pad), index: 0, axes: [0.12, 0, 0, 0] };
+          window.pad.index = 1;
+          navigator.getGamepads = () => [null, idle, window.pad]; }"""
+    )
+    before = trainee.menu.focus
+    trainee.press("down", lambda: trainee.menu.focus != before, "a step")
+    page.evaluate("window.pad.mapping = ''; navigator.getGamepads = () => [window.pad]")
+    page.wait_for_selector("text=The browser does not know the layout of this gamepad")
+    page.evaluate("window.pad.mapping = 'standard'; window.pad.index = 0")
+    page.wait_for_selector("text=The browser does not know the layout", state="detached")
+
+
 def test_a_click_chooses_an_item_and_the_text_is_the_simulators(place, page):
     trainee = place.trainee(PageKeys(page))
     trainee.go_home()

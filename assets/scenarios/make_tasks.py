@@ -15,7 +15,8 @@ import numpy as np
 from colin27_setup import CLOSE_UP_MM, PERTURBATION, head_to_world, scenario_json
 
 from rastrainer import transforms
-from rastrainer.files.point_list import PointList, write_markups
+from rastrainer.files.point_files import write_markups
+from rastrainer.files.point_list import PointList
 from rastrainer.files.writing import write_text
 from rastrainer.head.mesh import outward_normal, read_head_mesh
 from rastrainer.head.trial_head import Perturbation, perturbed_pose

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -48,6 +49,14 @@ from rastrainer.protocol import (
     StepKind,
     TutorialRule,
 )
+
+
+def deflection(value: float) -> float:
+    """Return how far something is pushed, limited to −1…1; 0 for what is no finite number.
+
+    `max(-1, min(1, value))` would make full speed of a value that is not a number.
+    """
+    return max(-1.0, min(1.0, value)) if math.isfinite(value) else 0.0
 
 
 def skin_amounts(value: Any) -> dict[str, float]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import re
+import sys
 from collections.abc import Callable
 
 Progress = Callable[[str, float], None]
@@ -17,6 +19,13 @@ _WARNING = "Warning: "
 
 def no_progress(_step: str, _share: float) -> None:
     """Ignore the progress, if no one waits for the work."""
+
+
+def allow_any_text() -> None:
+    """Let what this program prints have ? for characters that the terminal cannot show."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
 
 
 def print_progress(step: str, share: float) -> None:

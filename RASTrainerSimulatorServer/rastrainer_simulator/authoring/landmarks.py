@@ -18,7 +18,8 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.files.point_list import PointList, read_markups, write_markups
+from rastrainer.files.point_files import read_markups, write_markups
+from rastrainer.files.point_list import PointList
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, outward_normals, read_head_mesh
 from rastrainer.registration.fits import RIGID, fit
 from rastrainer.scenario.points import (

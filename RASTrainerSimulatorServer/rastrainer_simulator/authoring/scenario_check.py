@@ -11,7 +11,7 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.files.point_list import read_markups
+from rastrainer.files.point_files import read_markups
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, outward_normal, read_head_mesh
 from rastrainer.procedure.checks import ENTRY_OFF_SKIN_MM
 from rastrainer.scenario.library import checked_scenario

@@ -116,8 +116,8 @@ def check_slicers_side() -> None:
 
 
 def move_aside(folder: Path) -> None:
-    """Rename a folder that holds something to the first free `name-1`, `name-2` …"""
-    if not folder.exists() or not any(folder.iterdir()):
+    """Rename a file, or a folder that holds something, to the first free `name-1`, `name-2` …"""
+    if not folder.exists() or (folder.is_dir() and not any(folder.iterdir())):
         return
     number = 1
     while (aside := folder.with_name(f"{folder.name}-{number}")).exists():

@@ -10,6 +10,8 @@ from typing import Any
 
 import rastrainer
 from rastrainer.errors import RASTrainerError
+from rastrainer.files.reading import failure_reason, printable_name
+from rastrainer.work_progress import allow_any_text
 
 # By name, so that `rastrainer register` does not wait for the robot to be imported.
 SUBCOMMANDS = {
@@ -62,6 +64,7 @@ class _CommandParser(argparse.ArgumentParser):
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one subcommand and return its exit status: 2 where the input cannot be used."""
+    allow_any_text()
     words = sys.argv[1:] if argv is None else list(argv)
     arguments = _parser(words).parse_args(words)
     try:
@@ -71,6 +74,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 2
     except BrokenPipeError:
         return 0
+    except OSError as error:
+        if error.filename is None:
+            raise
+        name, reason = printable_name(error.filename), failure_reason(error)
+        print(f"rastrainer: {name} cannot be used: {reason}.", file=sys.stderr)
+        return 2
     except KeyboardInterrupt:
         return 130
 

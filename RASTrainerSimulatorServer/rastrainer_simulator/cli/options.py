@@ -9,13 +9,23 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError
+from rastrainer.home_folder import home_folder
 from rastrainer.study.database.database import EXAMPLE, StudyPlace, study_place
 
 if TYPE_CHECKING:
     from rastrainer.study.study_data import StudyData
 
-DEFAULT_RECORDS = Path.home() / "RASTrainer" / "trials"
+DEFAULT_RECORDS = "~/RASTrainer/trials"
 STUDY_HELP = f"a study's file, or its address in PostgreSQL, such as {EXAMPLE}"
+
+
+def path_of_user(text: str) -> Path:
+    """Return the path of an option, in which ~ is the home folder."""
+    start, *rest = Path(text).parts or (".",)
+    try:
+        return home_folder().joinpath(*rest) if start == "~" else Path(text)
+    except InputError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def add_config(parser: argparse.ArgumentParser) -> None:
@@ -29,7 +39,7 @@ def add_records(parser: argparse.ArgumentParser) -> None:
     """Add the folder of the trials' journals to a command's parser."""
     parser.add_argument(
         "--records",
-        type=Path,
+        type=path_of_user,
         metavar="DIR",
         default=DEFAULT_RECORDS,
         help="folder of the trials' journals",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.point_list import pair, read_point_numbers, read_points
+from rastrainer.files.point_files import read_point_numbers, read_points
+from rastrainer.files.point_list import PointList, pair
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.registration.fits import KINDS, RIGID
 from rastrainer.registration.localization_error import (
@@ -70,7 +72,8 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="register moving points to fixed points",
         description=(
             "Register two files of points: CSV with the header label,x,y,z (mm), or Slicer's "
-            ".mrk.json. Points are paired by label, or by order where the labels are left out. "
+            ".mrk.json, .fcsv or exported table. Points are paired by label, or by order where the "
+            "labels are left out; what is deselected or not placed in Slicer is not used. "
             "With --surface they are landmarks, and a trace over the skin is matched to a head."
         ),
     )
@@ -119,22 +122,42 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         InputError: a file cannot be used, or the points cannot be registered.
     """
-    if arguments.surface is not None:
-        found = match_files(arguments)
-        text = json_text(match_json(*found))
-        print(text if arguments.json else match_text(*found))
+    left_out: dict[str, tuple[str, ...]] = {}
+
+    def read(path: str) -> PointList:
+        points = read_points(path)
+        if points.left_out:
+            left_out[path] = points.left_out_names
+        return points
+
+    if arguments.surface is None:
+        found = register_files(arguments, read)
+        answer, text = registration_json(*found), registration_text(*found)
+    else:
+        match = match_files(arguments, read)
+        answer, text = match_json(*match), match_text(*match)
+    if arguments.json:
+        print(json_text({**answer, "left_out": left_out}))
         return 0
-    labels, moving, fixed = pair(read_points(arguments.moving), read_points(arguments.fixed))
+    print(text)
+    for path, names in left_out.items():
+        print(f"Left out of {path}, deselected or not placed in Slicer: {', '.join(names)}")
+    return 0
+
+
+def register_files(
+    arguments: argparse.Namespace, read: Callable[[str], PointList]
+) -> tuple[Registration, TargetError | None, StatedErrors | None]:
+    """Return the registration of a command's files, the error to expect, and the stated errors.
+
+    Raises:
+        InputError: a file cannot be used, or the points cannot be registered.
+    """
+    labels, moving, fixed = pair(read(arguments.moving), read(arguments.fixed))
     fle_mm, weights = _weighting(arguments, labels)
     registration = register(moving, fixed, arguments.type, labels, weights)
     stated = None if fle_mm is None else StatedErrors.of(registration, fle_mm)
-    error = _target_error(registration, arguments.target, stated)
-    if arguments.json:
-        answer = registration_json(registration, error, stated)
-        print(json_text(answer))
-    else:
-        print(registration_text(registration, error, stated))
-    return 0
+    return registration, _target_error(registration, arguments.target, stated), stated
 
 
 def registration_json(
@@ -257,7 +280,9 @@ def _target_error(
     return target_error(registration, registration.fixed_mm.mean(axis=0), localization)
 
 
-def match_files(arguments: argparse.Namespace) -> tuple[SurfaceMatch, TargetError]:
+def match_files(
+    arguments: argparse.Namespace, read: Callable[[str], PointList]
+) -> tuple[SurfaceMatch, TargetError]:
     """Return the match of a command's files and the error to expect at its target.
 
     The points MOVING and FIXED, three landmarks or more, give the start.
@@ -269,8 +294,8 @@ def match_files(arguments: argparse.Namespace) -> tuple[SurfaceMatch, TargetErro
         if getattr(arguments, option) not in (None, "rigid"):
             raise InputError(f"--surface matches rigidly and unweighted: leave out --{option}.")
     mesh = _head(arguments.head)
-    labels, moving, fixed = pair(read_points(arguments.moving), read_points(arguments.fixed))
-    trace = read_points(arguments.surface).points
+    labels, moving, fixed = pair(read(arguments.moving), read(arguments.fixed))
+    trace = read(arguments.surface).points
     match = match_surface(trace, mesh, register(moving, fixed, labels=labels).matrix)
     target = mesh.middle if arguments.target is None else np.array(arguments.target)
     return match, surface_target_error(knowledge_of(match), target)

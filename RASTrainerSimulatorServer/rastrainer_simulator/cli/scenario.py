@@ -8,9 +8,9 @@ import sys
 import tempfile
 from pathlib import Path
 
-from rastrainer.errors import InputError
 from rastrainer.files.writing import write_json
 from rastrainer.scenario.library import list_scenarios, unpack
+from rastrainer.scenario.writer import require_new
 from rastrainer.work_progress import print_progress, print_warning
 from rastrainer_simulator.cli.scenario_options import (
     add_head_options,
@@ -114,8 +114,7 @@ def _build(arguments: argparse.Namespace) -> int:
 
     _clean_up_when_terminated()
     options = options_of(arguments, arguments.volume.name)
-    if arguments.output.exists() and any(arguments.output.iterdir()):
-        raise InputError(f"{arguments.output} exists already; name a new folder.")
+    require_new(arguments.output)
     head_options = head_arguments(arguments)
     head_options += ["--no-skull"] if arguments.no_skull or arguments.check else []
     head_options += ["--no-volume"] if arguments.no_volume or arguments.check else []

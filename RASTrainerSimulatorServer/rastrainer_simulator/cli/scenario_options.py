@@ -11,11 +11,12 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import RAS_LIMIT_MM
 from rastrainer.procedure.plan import Procedure, read_procedure
-from rastrainer.scenario.library import user_library
+from rastrainer.scenario.library import USER_LIBRARY
 from rastrainer.scenario.points import PlannedTarget, PlannedTrajectory
 from rastrainer.scenario.scenario import UNKNOWN_LICENSE
 from rastrainer.scenario.setup import SetUp, read_setup
 from rastrainer.scenario.writer import scenario_name
+from rastrainer_simulator.cli.options import path_of_user
 
 if TYPE_CHECKING:
     from rastrainer_simulator.authoring.make import ScenarioOptions
@@ -42,8 +43,8 @@ def add_library(parser: argparse.ArgumentParser) -> None:
     """Add the folder of the user's own scenarios to an action's parser."""
     parser.add_argument(
         "--library",
-        type=Path,
-        default=user_library(),
+        type=path_of_user,
+        default=f"~/{USER_LIBRARY}",
         metavar="DIR",
         help="folder of your scenarios",
     )

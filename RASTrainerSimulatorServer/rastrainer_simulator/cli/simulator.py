@@ -12,7 +12,13 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DEFAULT_VIEW_PORT
-from rastrainer_simulator.cli.options import add_config, add_records, announce, check_ports
+from rastrainer_simulator.cli.options import (
+    add_config,
+    add_records,
+    announce,
+    check_ports,
+    path_of_user,
+)
 from rastrainer_simulator.ops.log_files import keep_logs
 from rastrainer_simulator.ops.processes import VIEW_KEY_VARIABLE, has_display
 from rastrainer_simulator.ops.system_paths import log_folder
@@ -193,9 +199,9 @@ def add_window_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     parser.add_argument(
         "--pictures",
-        type=Path,
+        type=path_of_user,
         metavar="DIR",
-        default=Path.home() / "RASTrainer" / "pictures",
+        default="~/RASTrainer/pictures",
         help="folder of the pictures that F12 keeps",
     )
     parser.add_argument(

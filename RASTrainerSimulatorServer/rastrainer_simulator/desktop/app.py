@@ -66,20 +66,20 @@ class WindowOptions:
     Attributes:
         url: of the simulator, such as "http://127.0.0.1:18945".
         key: that the simulator knows.
+        pictures: folder of what F12 keeps.
         size: in pixels; None for one that suits the display.
         is_fullscreen: whether to begin without a frame.
         quality: None finds out what the machine can afford.
-        pictures: folder of what F12 keeps.
         picture_quality: of what F12 keeps; another process draws it where it is not what is shown.
         frame_log: file that gets a line for each picture, for measurements.
     """
 
     url: str
     key: str
+    pictures: Path
     size: tuple[int, int] | None = None
     is_fullscreen: bool = False
     quality: Quality | None = None
-    pictures: Path = Path.home() / "RASTrainer" / "pictures"
     picture_quality: Quality = Quality.HIGH
     frame_log: Path | None = None
 

@@ -18,7 +18,9 @@ import numpy as np
 import rastrainer
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.files.point_list import PointList, write_line, write_markups, write_point_cloud
+from rastrainer.files.ply import write_point_cloud
+from rastrainer.files.point_files import write_line, write_markups
+from rastrainer.files.point_list import PointList
 from rastrainer.files.writing import make_empty_folder, make_folder, write_json, write_text
 from rastrainer.motion.trajectory import Trajectory, resample
 from rastrainer.motion.trial_motion import RATE_HZ

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from operator import add
 from typing import Protocol
 
+from rastrainer.command_arguments import deflection
 from rastrainer_simulator.input.bindings import Bindings, Table
 from rastrainer_simulator.input.gamepads import BUTTONS
 from rastrainer_simulator.input.inputs import (
@@ -230,7 +232,12 @@ class Controls:
 DOWN_FROM = 0.6
 UP_BELOW = 0.4
 """An input counts as pressed from the first on, and as released below the second."""
-AT_REST_BELOW = 0.1
+AT_REST_BELOW = 0.15
+"""Released sticks come to rest up to about here, beyond the dead zone of `StickResponse`: one that
+rests at its edge neither moves anything nor keeps the control."""
+DRIFT_BELOW, FURTHER = 0.3, 0.2
+"""What was held less far than the first when it was blocked, such as a worn stick that does not
+return, is free again once it is pushed further by the second."""
 
 STEP_PUSH, FINE_STEP_PUSH = 0.22, 0.4
 """How far a key or a button pushes its stick at first, and in slow motion: both mean 2 mm/s."""
@@ -260,7 +267,7 @@ class InputState:
         self._pressed_s: dict[str, float] = {}
         self._down: set[str] = set()
         self._again: set[str] = set()
-        self._blocked: set[str] = set()
+        self._blocked: dict[str, float] = {}
         self._sticks = _UNUSED
         self._sticks_blocked = False
 
@@ -312,7 +319,7 @@ class InputState:
 
     def block(self) -> None:
         """Ignore what is held now until it is released."""
-        self._blocked = {name for name, value in self._inputs.items() if _is_pushed(value)}
+        self._blocked = {name: value for name, value in self._inputs.items() if _is_pushed(value)}
         self._pressed_s.clear()
         self._sticks_blocked = _are_pushed(self._sticks)
 
@@ -328,34 +335,34 @@ class InputState:
         direct = _UNUSED if self._sticks_blocked else self._sticks
         is_fine = direct.fine or any(self.is_down(name) for name in table[ControlName.FINE])
         step = FINE_STEP_PUSH if is_fine else STEP_PUSH
-
-        def deflection(below: ControlName, above: ControlName, direct: float) -> float:
-            return max(-1.0, min(1.0, self._deflection(table, below, above, step) + direct))
-
+        right, forward, up = map(add, self._pushed(table, TRANSLATION, step), direct.translation)
+        around, over = map(add, self._pushed(table, ROTATION, step), direct.rotation)
         return OperatorInput(
-            translation=(
-                deflection(*TRANSLATION[0], direct.translation[0]),
-                deflection(*TRANSLATION[1], direct.translation[1]),
-                deflection(*TRANSLATION[2], direct.translation[2]),
-            ),
-            rotation=(
-                deflection(*ROTATION[0], direct.rotation[0]),
-                deflection(*ROTATION[1], direct.rotation[1]),
-            ),
+            translation=(deflection(right), deflection(forward), deflection(up)),
+            rotation=(deflection(around), deflection(over)),
             fine=is_fine,
         )
 
     def view(self, bindings: Bindings) -> tuple[float, float, float]:
         """Return what is held to move the view: around to the right, higher, nearer; −1…1 each."""
-        table = bindings.table(self.device)
-        around, higher, nearer = (self._deflection(table, below, above) for below, above in VIEW)
+        around, higher, nearer = self._pushed(bindings.table(self.device), VIEW)
         return around, higher, nearer
 
-    def _deflection(
-        self, table: Table, below: ControlName, above: ControlName, step: float = 1.0
-    ) -> float:
-        """Return how far inputs push a stick, −1…1; `step` is how far keys and buttons do first."""
-        return self._value(table[above], step) - self._value(table[below], step)
+    def _pushed(
+        self, table: Table, axes: Sequence[tuple[ControlName, ControlName]], step: float = 1.0
+    ) -> tuple[float, ...]:
+        """Return how far axes are pushed, −1…1; nothing if all are about at rest.
+
+        Keys and buttons push by `step` at first.
+        """
+        pushed = [
+            self._value(table[above], step) - self._value(table[below], step)
+            for below, above in axes
+        ]
+        is_pushed = any(_is_pushed(abs(value)) for value in pushed)
+        if self.device is InputDevice.GAMEPAD and not is_pushed:
+            return (0.0,) * len(pushed)
+        return tuple(pushed)
 
     def _value(self, names: tuple[str, ...], step: float) -> float:
         """Return how far the farthest of some inputs is pushed that are not blocked."""
@@ -383,8 +390,9 @@ class InputState:
     def _pressed(self) -> list[str]:
         pressed = []
         for name, value in self._inputs.items():
-            if not _is_pushed(value):
-                self._blocked.discard(name)
+            held = self._blocked.get(name, 1.0)
+            if not _is_pushed(value) or (held < DRIFT_BELOW and value > held + FURTHER):
+                self._blocked.pop(name, None)
             if value >= DOWN_FROM and name not in self._down:
                 self._down.add(name)
                 pressed.append(name)

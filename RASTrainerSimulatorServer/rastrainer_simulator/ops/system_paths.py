@@ -10,27 +10,29 @@ from collections.abc import Iterable
 from functools import lru_cache
 from pathlib import Path
 
+from rastrainer.home_folder import home_folder
+
 
 def config_folder() -> Path:
     """Return the user's folder of RASTrainer's settings; it need not exist."""
     if sys.platform == "win32":
         base = os.environ.get("APPDATA")
-        return Path(base or Path.home() / "AppData" / "Roaming") / "RASTrainer"
+        return Path(base or home_folder() / "AppData" / "Roaming") / "RASTrainer"
     if sys.platform == "darwin":
-        return Path.home() / "Library" / "Application Support" / "RASTrainer"
+        return home_folder() / "Library" / "Application Support" / "RASTrainer"
     base = os.environ.get("XDG_CONFIG_HOME")
-    return Path(base or Path.home() / ".config") / "rastrainer"
+    return Path(base or home_folder() / ".config") / "rastrainer"
 
 
 def log_folder() -> Path:
     """Return the user's folder of RASTrainer's logs; it need not exist."""
     if sys.platform == "win32":
         base = os.environ.get("LOCALAPPDATA")
-        return Path(base or Path.home() / "AppData" / "Local") / "RASTrainer" / "Logs"
+        return Path(base or home_folder() / "AppData" / "Local") / "RASTrainer" / "Logs"
     if sys.platform == "darwin":
-        return Path.home() / "Library" / "Logs" / "RASTrainer"
+        return home_folder() / "Library" / "Logs" / "RASTrainer"
     base = os.environ.get("XDG_STATE_HOME")
-    return Path(base or Path.home() / ".local" / "state") / "rastrainer" / "logs"
+    return Path(base or home_folder() / ".local" / "state") / "rastrainer" / "logs"
 
 
 CHINESE = "zh-Hans"

@@ -19,6 +19,7 @@ from pathlib import Path
 
 import rastrainer
 from rastrainer.errors import InputError
+from rastrainer.home_folder import home_folder
 from rastrainer.python_environment import python_command
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.ops.processes import BELOW_NORMAL, environment_without_secrets
@@ -67,11 +68,11 @@ KEPT_FILES = 60
 
 def cache_folder() -> Path:
     """Return the user's cache folder for scenes, made if needed; a temporary one if impossible."""
-    folder = _users_caches() / "rastrainer" / "scenes"
     try:
+        folder = _users_caches() / "rastrainer" / "scenes"
         folder.mkdir(parents=True, exist_ok=True)
         (folder / ".writable").touch()
-    except OSError:
+    except (OSError, InputError):
         return Path(tempfile.mkdtemp(prefix="rastrainer-scenes-"))
     return folder
 
@@ -87,10 +88,10 @@ def forget_oldest(folder: Path) -> None:
 
 def _users_caches() -> Path:
     if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
+        return Path(os.environ.get("LOCALAPPDATA") or home_folder() / "AppData" / "Local")
     if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+        return home_folder() / "Library" / "Caches"
+    return Path(os.environ.get("XDG_CACHE_HOME") or home_folder() / ".cache")
 
 
 NO_TASK = ""

@@ -8,15 +8,8 @@ import slicer
 import vtk
 
 from rastrainer.errors import InputError
-from rastrainer.files.point_list import (
-    SCHEMA,
-    PointList,
-    pair,
-    read_markups,
-    read_points,
-    write_markups,
-    write_point_cloud,
-)
+from rastrainer.files.point_files import SCHEMA, read_markups, read_points, write_markups
+from rastrainer.files.point_list import PointList, pair
 
 XYZ = np.arange(9.0).reshape(3, 3)
 
@@ -144,14 +137,58 @@ def test_points_survive_writing_and_reading_to_the_last_bit(tmp_path):
     np.testing.assert_array_equal(again.points, points)
 
 
-def test_a_point_that_is_not_placed_is_named(tmp_path):
+def test_a_point_that_is_deselected_or_not_placed_is_left_out_or_named(tmp_path):
     scene, _logic, node = slicer_node()
-    node.AddControlPoint(vtk.vtkVector3d(1, 2, 3), "nasion")
+    for row, label in enumerate("abcd"):
+        node.AddControlPoint(vtk.vtkVector3d(row, 2, 3), label)
     node.SetNthControlPointPositionMissing(0)
+    node.UnsetNthControlPointPosition(1)
+    node.SetNthControlPointSelected(2, False)
     path = tmp_path / "F.mrk.json"
     storage(scene, path).WriteData(node)
-    with pytest.raises(InputError, match='point 1 "nasion" is not placed'):
+    point_list = read_points(path)
+    assert point_list.labels == ("d",)
+    assert point_list.left_out == {0: "a", 1: "b", 2: "c"}
+    with pytest.raises(InputError, match="place and select, or delete, a, b, c"):
         read_markups(path)
+    node.SetNthControlPointSelected(3, False)
+    storage(scene, path).WriteData(node)
+    with pytest.raises(InputError, match="All its points are deselected or not placed"):
+        read_points(path)
+
+
+LEFT_OUT = PointList(("a", "c"), XYZ[[0, 2]], {1: "b"})
+
+
+@pytest.mark.parametrize(
+    ("moving", "fixed", "labels", "rows"),
+    [
+        (LEFT_OUT, PointList(("c", "b", "a"), XYZ), ("a", "c"), (2, 0)),
+        (LEFT_OUT, PointList((), XYZ), ("a", "c"), (0, 2)),
+        (PointList((), XYZ[:2], {0: ""}), PointList((), XYZ), ("2", "3"), (1, 2)),
+        (PointList((), XYZ[:2], {0: ""}), PointList((), XYZ[:2], {2: ""}), ("2",), (1,)),
+        (PointList((), XYZ[:2], {0: ""}), PointList((), XYZ[:2]), ("1", "2"), (0, 1)),
+        (
+            PointList(("a", "b"), XYZ[:2], {0: "b"}),
+            PointList(("b", "a"), XYZ[:2]),
+            ("a", "b"),
+            (1, 0),
+        ),
+    ],
+)
+def test_a_point_that_is_left_out_of_one_list_is_left_out_of_both(moving, fixed, labels, rows):
+    for first, second in ((moving, fixed), (fixed, moving)):
+        names, here, there = pair(first, second)
+        assert {*names} == {*labels}
+        assert len(here) == len(there) == len(labels)
+    names, _, points = pair(moving, fixed)
+    assert names == labels
+    np.testing.assert_array_equal(points, fixed.points[list(rows)])
+
+
+def test_lists_of_which_no_pair_is_left_are_refused():
+    with pytest.raises(InputError, match="No pair of points is left"):
+        pair(PointList(("a",), XYZ[:1], {1: "b"}), PointList(("b",), XYZ[:1], {0: "a"}))
 
 
 def test_a_file_without_coordinate_system_is_read_as_lps_and_mm(tmp_path):
@@ -177,6 +214,7 @@ def test_a_file_without_coordinate_system_is_read_as_lps_and_mm(tmp_path):
         (document(controlPoints=[3]), "point 1 must be an object"),
         (document(controlPoints=[{"label": 3, "position": [1, 2, 3]}]), "label of point 1"),
         (document(controlPoints=[{"position": [1, 2]}]), "position of point 1"),
+        (document(controlPoints=[{"positionStatus": "lost"}]), "positionStatus of point 1"),
         (document(controlPoints=[{"position": [1, 2, True]}]), "position of point 1"),
         (document(controlPoints=[{"position": [1, 2, 10**400]}]), "position of point 1"),
         (document(controlPoints=[{"position": [1, 2, "3"]}]), "position of point 1"),
@@ -190,12 +228,3 @@ def test_other_files_are_refused_in_one_sentence_that_names_the_file(content, wo
         read_markups(path)
     assert str(path) in str(caught.value)
     assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize("count", ["0", "2", "9" * 30, "many"])
-def test_a_cloud_with_another_number_of_vertices_is_refused_with_a_message(tmp_path, count):
-    path = tmp_path / "cloud.ply"
-    write_point_cloud(path, np.zeros((1, 3)), "RAS")
-    path.write_bytes(path.read_bytes().replace(b"vertex 1", f"vertex {count}".encode()))
-    with pytest.raises(InputError, match="must be a PLY file"):
-        read_points(path)

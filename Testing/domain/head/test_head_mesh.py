@@ -82,17 +82,24 @@ def test_a_missing_mesh_is_named(tmp_path):
 @pytest.mark.parametrize(
     ("spoil", "sentence"),
     [
-        (lambda _content: b"", "must be a binary little-endian PLY"),
-        (lambda content: bytes(len(content)), "must be a binary little-endian PLY"),
-        (lambda content: content.replace(b"SPACE=RAS", b"SPACE=LPS"), "in RAS"),
-        (lambda content: content.replace(b"float x", b"double x"), "must be a binary"),
+        (lambda _content: b"", "is empty"),
+        (lambda content: bytes(len(content)), "must be a PLY"),
+        (
+            lambda content: content.replace(b"SPACE=RAS", b"SPACE=IJK"),
+            "whether it is in RAS or LPS",
+        ),
+        (lambda content: content.replace(b"comment SPACE=RAS\n", b""), "whether it is in RAS or"),
+        (lambda content: content.replace(b"float x", b"double x"), "cut short"),
+        (lambda content: content.replace(b"float x", b"float a"), "must have vertices x, y and z"),
+        (lambda content: content.replace(b"list uchar int", b"list uchar text"), "must be a PLY"),
         (lambda content: content[:-5], "cut short"),
         (lambda content: content + b"\0", "bytes left over"),
-        (lambda content: content[:-4] + b"\xff\xff\xff\x7f", "not a triangle of its vertices"),
+        (lambda content: content[:-4] + b"\xff\xff\xff\x7f", "not a polygon of its vertices"),
         (lambda content: _first_vertex(content, np.nan), "not within"),
         (lambda content: _first_vertex(content, 1e9), "not within"),
-        (lambda content: content.replace(b"face 320", b"face 999999999"), "must have 4 to"),
-        (lambda content: content.replace(b"vertex 162", b"vertex 999999999"), "cut short"),
+        (lambda content: content.replace(b"face 320", b"face 999999999"), "more than 4000000"),
+        (lambda content: content.replace(b"face 320", b"face 3999999"), "cut short"),
+        (lambda content: content.replace(b"vertex 162", b"vertex 3999999"), "cut short"),
     ],
 )
 def test_a_broken_mesh_is_refused_with_a_message(head_file, spoil, sentence):
@@ -101,11 +108,38 @@ def test_a_broken_mesh_is_refused_with_a_message(head_file, spoil, sentence):
         read_head_mesh(head_file)
 
 
+BOX = 100.0 * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+QUADS = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4]]
+
+
+@pytest.mark.parametrize("name", ["vertex_indices", "vertex_index"])
+@pytest.mark.parametrize("last", [[[1, 5, 7, 3]], [[1, 5, 7], [1, 7, 3]]], ids=["quads", "mixed"])
+@pytest.mark.parametrize("space", ["RAS", "LPS"])
+def test_a_mesh_with_polygons_and_colors_of_another_program_is_read(tmp_path, name, last, space):
+    faces = [*QUADS, *last]
+    shown = BOX * ([1, 1, 1] if space == "RAS" else [-1, -1, 1])
+    lines = [f"{x} {y} {z} 255 0 {number}" for number, (x, y, z) in enumerate(shown)]
+    lines += [" ".join(map(str, (len(face), *face))) for face in faces]
+    path = tmp_path / "head.ply"
+    path.write_text(
+        f"ply\nformat ascii 1.0\ncomment SPACE={space}\nelement vertex 8\nproperty double x\n"
+        "property double y\nproperty double z\nproperty uchar red\nproperty uchar green\n"
+        f"property uchar blue\nelement face {len(faces)}\nproperty list uchar int {name}\n"
+        "end_header\n" + "\n".join(lines)
+    )
+    mesh = read_head_mesh(path)
+    assert mesh.is_closed
+    assert len(mesh.triangles) == 12
+    np.testing.assert_array_equal(mesh.vertices, BOX)
+    np.testing.assert_allclose(mesh.centroid, 0.0, atol=1e-9)
+    assert (mesh.triangle_normals @ mesh.vertices[mesh.triangles[:, 0]].T).diagonal().min() > 0
+
+
 def test_a_too_large_mesh_is_refused_without_being_read(tmp_path):
     path = tmp_path / "head.ply"
     with path.open("wb") as file:
         file.truncate(1_000_000_000)
-    with pytest.raises(InputError, match="larger than 64 MB"):
+    with pytest.raises(InputError, match="larger than 64 MiB"):
         read_head_mesh(path)
 
 

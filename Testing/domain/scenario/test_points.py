@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.files.point_list import PointList, write_markups
+from rastrainer.files.point_files import write_markups
+from rastrainer.files.point_list import PointList
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.json_checks import is_identifier
 from rastrainer.protocol import RegistrationMethod

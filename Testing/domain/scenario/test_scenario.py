@@ -5,7 +5,8 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.files.point_list import PointList, write_markups
+from rastrainer.files.point_files import write_markups
+from rastrainer.files.point_list import PointList
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
 

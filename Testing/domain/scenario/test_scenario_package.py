@@ -35,7 +35,9 @@ def library(tmp_path):
 
 def members(folder):
     """The files of the scenario's package, by name."""
-    package = pack(folder, folder.parent / "good.zip")
+    package = folder.parent / "good.zip"
+    if not package.exists():
+        pack(folder, package)
     with zipfile.ZipFile(package) as archive:
         return {name: archive.read(name) for name in archive.namelist()}
 
@@ -92,14 +94,55 @@ def test_nothing_is_overwritten(folder, library):
         "..\\evil.txt",
         "tasks//x",
         "CON.txt",
-        "a/b/c/d/e/f.txt",
-        "x" * 200,
         "name\n.txt",
+        "Übung/../../böse.txt",
+        "Übung\\..\\..\\böse.txt",
     ],
 )
 def test_a_path_out_of_the_folder_is_refused(folder, library, name):
     bad = zip_of(folder.parent / "bad.zip", {**members(folder), name: b"x"})
     refused(bad, library, "holds a file with the path")
+
+
+BY_HAND = {
+    ".DS_Store": b"x",
+    "__MACOSX/._scenario.json": b"x",
+    "__MACOSX/tasks/._task-1.mrk.json": b"x",
+    "Für Anna, bitte lesen.txt": b"Viel Erfolg!",
+    "a/b/c/d/e/f.txt": b"x",
+    "x" * 200: b"x",
+}
+
+
+@pytest.mark.parametrize("base", ["", "ball/", "Übung 1/Kopf/", "Übung\\Kopf\\"], ids=ascii)
+def test_a_package_that_a_person_zipped_again_is_unpacked_without_what_else_was_in_it(
+    folder, library, base
+):
+    files = {base + name: content for name, content in members(folder).items()}
+    if base.endswith("\\"):
+        files = {name.replace("/", "\\"): content for name, content in files.items()}
+    again = {**BY_HAND, **files, f"{base}Anmerkung für dich.txt": b"x", f"{base}.hidden": b"x"}
+    goal = unpack(zip_of(folder.parent / "again.zip", again), library)
+    unpacked = {path.relative_to(goal).as_posix() for path in goal.rglob("*") if path.is_file()}
+    assert unpacked == {*members(folder)}
+
+
+def test_names_that_a_program_wrote_in_its_own_encoding_are_left_out(folder, library):
+    path = zip_of(folder.parent / "again.zip", {**members(folder), "f?r dich.txt": b"x"})
+    path.write_bytes(path.read_bytes().replace(b"f?r dich.txt", b"f\x81r dich.txt"))
+    goal = unpack(path, library)
+    assert {path.name for path in goal.iterdir() if path.suffix == ".txt"} == set()
+
+
+def test_a_package_of_two_scenarios_is_refused_and_one_with_an_older_copy_inside_is_not(
+    folder, library
+):
+    files = members(folder)
+    two = {f"{base}/{name}": files[name] for base in ("one", "two") for name in files}
+    refused(zip_of(folder.parent / "bad.zip", two), library, "holds several scenarios")
+    with_copy = {**files, **{f"old copy/{name}": content for name, content in files.items()}}
+    goal = unpack(zip_of(folder.parent / "again.zip", with_copy), library)
+    assert not (goal / "old copy").exists()
 
 
 def test_a_link_is_refused(folder, library):

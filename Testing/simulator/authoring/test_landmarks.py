@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.files.point_list import PointList, read_markups, write_markups
+from rastrainer.files.point_files import read_markups, write_markups
+from rastrainer.files.point_list import PointList
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rastrainer.files.point_list import PointList, write_markups
+from rastrainer.files.point_files import write_markups
+from rastrainer.files.point_list import PointList
 from rastrainer.head.mesh import nearest_on_mesh, outward_normals
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.writer import HeadDraft

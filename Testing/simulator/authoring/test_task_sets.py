@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.files.point_list import PointList, write_markups
+from rastrainer.files.point_files import write_markups
+from rastrainer.files.point_list import PointList
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, read_head_mesh
 from rastrainer.scenario.points import LABELS, PlannedTarget, PlannedTrajectory, read_task
 from rastrainer.scenario.setup import SetUp

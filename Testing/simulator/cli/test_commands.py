@@ -16,7 +16,8 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.files.point_list import PointList, write_markups
+from rastrainer.files.point_files import write_markups
+from rastrainer.files.point_list import PointList
 from rastrainer.registration.registration import register
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
@@ -90,6 +91,22 @@ def test_register_pairs_by_order_where_labels_are_left_out(files, tmp_path, run_
     unlabeled = write_csv(tmp_path / "unlabeled.csv", moving)
     result = run_json("register", unlabeled, fixed_file)
     assert result["fre_mm"] == pytest.approx(register(moving, fixed).fre_mm)
+
+
+def test_register_leaves_out_what_is_deselected_in_slicer_and_says_so(files, run_json, capsys):
+    moving, fixed, moving_file, fixed_file = files
+    content = json.loads(fixed_file.read_bytes())
+    point = content["markups"][0]["controlPoints"][4]
+    point["position"], point["selected"] = [500.0, 0.0, 0.0], False
+    fixed_file.write_text(json.dumps(content))
+    result = run_json("register", moving_file, fixed_file)
+    kept = [row for row in range(15) if row != 4]
+    assert result["labels"] == [str(row + 1) for row in reversed(kept)]
+    assert result["fre_mm"] == pytest.approx(register(moving[kept], fixed[kept]).fre_mm)
+    assert result["left_out"] == {str(fixed_file): ["5"]}
+    run("register", moving_file, fixed_file)
+    said = capsys.readouterr().out
+    assert f"Left out of {fixed_file}, deselected or not placed in Slicer: 5" in said
 
 
 def test_register_reports_warnings_in_json_and_as_text(files, tmp_path, run_json, capsys):

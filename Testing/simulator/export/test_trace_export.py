@@ -3,7 +3,8 @@
 import numpy as np
 
 from rastrainer import transforms
-from rastrainer.files.point_list import read_markups, read_point_cloud
+from rastrainer.files.ply import read_point_cloud
+from rastrainer.files.point_files import read_markups
 from rastrainer.registration.registration import register
 from rastrainer.study.database.values import StoredRegistration, StoredTrial
 from rastrainer.trial.record import TrialRecord

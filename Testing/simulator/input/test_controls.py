@@ -299,3 +299,51 @@ def test_a_stick_near_its_middle_is_at_rest(value, is_at_rest):
     hand = InputState(InputDevice.GAMEPAD)
     hand.set_inputs({"+leftx": value})
     assert hand.is_at_rest is is_at_rest
+
+
+DRIFT = {"+leftx": 0.11, "-lefty": 0.12, "-rightx": 0.14}
+
+
+def test_a_stick_that_rests_at_the_edge_of_the_dead_zone_moves_nothing_and_gives_up_the_control(
+    controls, ear
+):
+    controls.set_inputs(GAMEPAD, {"+leftx": 0.9})
+    controls.set_inputs(GAMEPAD, DRIFT)
+    assert controls.sticks.translation == (0.0, 0.0, 0.0)
+    assert controls.sticks.rotation == (0.0, 0.0)
+    assert controls.view == (0.0, 0.0, 0.0)
+    controls.advance(IDLE_S + 1.0)
+    tap(controls, PAGE, "KeyM")
+    assert (controls.holder, ear.takers) == (PAGE, [PAGE])
+
+
+@pytest.mark.parametrize("drift", [0.11, 0.14, 0.2, 0.28])
+def test_a_stick_that_does_not_return_is_not_blocked_for_the_whole_trial(controls, drift):
+    controls.set_inputs(GAMEPAD, {"a": 1.0, "+leftx": drift})
+    controls.enter(ControlContext.MENU)
+    controls.set_inputs(GAMEPAD, {"a": 0.0})
+    controls.enter(ControlContext.WORK)
+    controls.set_inputs(GAMEPAD, {"+leftx": drift + 0.005})
+    assert controls.sticks.translation[0] == 0.0
+    controls.set_inputs(GAMEPAD, {"+leftx": 0.8})
+    assert controls.sticks.translation[0] == 0.8
+
+
+def test_a_stick_that_was_pushed_through_a_change_stays_blocked_however_far_it_is_pushed():
+    hand = InputState(InputDevice.GAMEPAD)
+    hand.set_inputs({"+leftx": 0.4})
+    hand.block()
+    hand.set_inputs({"+leftx": 1.0})
+    assert right(hand) == 0.0
+
+
+def test_a_diagonal_push_keeps_its_direction_though_one_axis_is_hardly_pushed(controls):
+    controls.set_inputs(GAMEPAD, {"+leftx": 0.6, "-lefty": 0.05})
+    assert controls.sticks.translation[:2] == (0.6, 0.05)
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), -float("inf")])
+def test_what_is_no_number_moves_nothing(controls, value):
+    controls.set_sticks(GAMEPAD, OperatorInput((value, 0.0, 0.0), (0.0, value)))
+    assert controls.sticks.translation == (0.0, 0.0, 0.0)
+    assert controls.sticks.rotation == (0.0, 0.0)

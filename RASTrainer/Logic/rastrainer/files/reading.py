@@ -1,14 +1,10 @@
-"""Read untrusted files: only regular ones of limited size, as text, JSON, XML or CSV."""
+"""Read untrusted files: only regular ones of limited size, as text, JSON or XML."""
 
 from __future__ import annotations
 
-import csv
-import io
-import math
 import os
 import re
 import stat
-from collections.abc import Sequence
 from typing import Any
 from xml.parsers import expat
 
@@ -62,9 +58,9 @@ def decode_text(content: bytes, what: str) -> str:
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise InputError(f"{what} is not UTF-8 text.") from None
+        raise InputError(f"{what} is not UTF-8 text; save it as UTF-8.") from None
     if "\0" in text:
-        raise InputError(f"{what} is not a text file.")
+        raise InputError(f"{what} is not a text file in UTF-8: it has bytes that are zero.")
     return text
 
 
@@ -163,64 +159,3 @@ class _Check:
 
     def _refuse_type(self, *_declaration: Any) -> None:
         raise InputError(f"{self._what} declares a document type or entities; remove them.")
-
-
-CSV_LIMIT_BYTES = 4 * 2**20
-
-
-def read_rows(
-    path: str | os.PathLike[str], required: Sequence[str], optional: Sequence[str] = ()
-) -> list[tuple[int, dict[str, str]]]:
-    """Return the line number and the named, stripped cells of each row of a CSV file.
-
-    Args:
-        path: UTF-8, comma-separated, at most 4 MiB; empty lines are ignored.
-        required: Columns that the header must have, in any order.
-        optional: Columns that it may have; others are ignored.
-
-    Raises:
-        InputError: the file is unreadable or empty, its header is wrong, or a row does not match
-            it.
-    """
-    reader = csv.reader(io.StringIO(read_text(path, CSV_LIMIT_BYTES)), strict=True)
-    try:
-        lines = [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
-    except csv.Error as error:
-        raise InputError(
-            f"The file {path} is not a CSV file: line {reader.line_num}: {error}."
-        ) from None
-    lines = [(number, cells) for number, cells in lines if any(cells)]
-    wanted = ",".join([*optional, *required] if optional else required)
-    header = [name.lower() for name in lines[0][1]] if lines else []
-    if not set(required) <= set(header) or len(set(header)) < len(header):
-        raise InputError(f"The file {path} must be a CSV file with the header {wanted}.")
-    if len(lines) == 1:
-        raise InputError(f"The file {path} has a header but no rows.")
-    rows = []
-    for number, cells in lines[1:]:
-        if len(cells) != len(header):
-            raise InputError(
-                f"Line {number} of {path} has {len(cells)} cells; the header has {len(header)}."
-            )
-        rows.append((number, dict(zip(header, cells, strict=True))))
-    return rows
-
-
-def number_in(
-    path: object, line: int, cells: dict[str, str], column: str, minimum: float, maximum: float
-) -> float:
-    """Return the number in a cell.
-
-    Raises:
-        InputError: it is not a finite number from `minimum` to `maximum`.
-    """
-    try:
-        value = float(cells[column])
-    except ValueError:
-        value = math.nan
-    if not minimum <= value <= maximum:
-        raise InputError(
-            f"Line {line} of {path}: {column} must be a number from {minimum:g} to {maximum:g}, "
-            f"not {cells[column][:40]!r}."
-        )
-    return value

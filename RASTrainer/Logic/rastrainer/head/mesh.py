@@ -1,6 +1,6 @@
 """The head's surface as triangles: its file, nearest points, outward normals and visibility.
 
-The file is a binary PLY in RAS mm.
+The file is a PLY in mm; ours are binary, in RAS.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.files.ply import read_ply
 from rastrainer.files.writing import write_bytes
 from rastrainer.head.triangle_tree import TriangleTree
 
-MAX_BYTES = 64_000_000
 MAX_TRIANGLES = 1_000_000
 RAS_LIMIT_MM = 2000.0
 """Limit of coordinates; scanners may have a distant origin."""
@@ -175,7 +175,7 @@ def write_head_mesh(path: Path, mesh: HeadMesh) -> None:
 
 
 def read_head_mesh(path: Path) -> HeadMesh:
-    """Read a mesh that `write_head_mesh` wrote.
+    """Read a mesh from a PLY file that says that it is in RAS or LPS; faces become triangles.
 
     Raises:
         InputError: missing, unreadable, too large, or not such a file.
@@ -183,44 +183,48 @@ def read_head_mesh(path: Path) -> HeadMesh:
     path = Path(path)
     if not path.is_file():
         raise InputError(f"The mesh {path} does not exist.")
-    if path.stat().st_size > MAX_BYTES:
-        raise InputError(f"The mesh {path} is larger than {MAX_BYTES // 1_000_000} MB.")
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"The mesh {path} cannot be read: {error.strerror}.") from None
-    head, end, body = content.partition(b"end_header\n")
-    vertex_count, triangle_count = (_count(head, element) for element in (b"vertex", b"face"))
-    expected = _HEADER.format(vertices=vertex_count, triangles=triangle_count).encode()
-    if not end or head + end != expected:
+    content = read_ply(path)
+    if content.space not in ("RAS", "LPS"):
         raise InputError(
-            f"The mesh {path} must be a binary little-endian PLY file in RAS (comment "
-            "SPACE=RAS) with float vertices x, y, z and triangles."
+            f"The mesh {path} must say whether it is in RAS or LPS: add the line "
+            '"comment SPACE=RAS" or "comment SPACE=LPS" to its header.'
         )
-    return _checked(path, vertex_count, triangle_count, body)
-
-
-def _count(head: bytes, element: bytes) -> int:
-    for line in head.splitlines():
-        words = line.split()
-        if words[:2] == [b"element", element] and len(words) == 3 and words[2].isdigit():
-            return min(int(words[2][:9]), 10**9)
-    return 0
-
-
-def _checked(path: Path, vertex_count: int, triangle_count: int, body: bytes) -> HeadMesh:
-    if not 4 <= triangle_count <= MAX_TRIANGLES or vertex_count < 4:
+    faces = content.elements.get("face", {})
+    try:
+        vertices = content.vertices
+        polygons = faces["vertex_indices"] if "vertex_indices" in faces else faces["vertex_index"]
+        sizes = [len(polygon) for polygon in polygons]
+    except (LookupError, ValueError, TypeError):
+        raise InputError(
+            f"The mesh {path} must have vertices x, y and z and faces with vertex_indices."
+        ) from None
+    if not 4 <= sum(sizes) - 2 * len(sizes) <= MAX_TRIANGLES or len(vertices) < 4:
         raise InputError(f"The mesh {path} must have 4 to {MAX_TRIANGLES} triangles.")
-    if len(body) != 12 * vertex_count + _FACE.itemsize * triangle_count:
-        raise InputError(f"The mesh {path} is cut short or has bytes left over.")
-    vertices = np.frombuffer(body, "<f4", 3 * vertex_count).reshape(-1, 3)
-    faces = np.frombuffer(body, _FACE, triangle_count, 12 * vertex_count)
-    corners = faces["corners"]
     if not np.all(np.abs(vertices) <= RAS_LIMIT_MM):
         raise InputError(f"The mesh {path} has a vertex that is not within ±{RAS_LIMIT_MM:g} mm.")
-    if (faces["count"] != 3).any() or corners.min() < 0 or corners.max() >= vertex_count:
-        raise InputError(f"The mesh {path} has a face that is not a triangle of its vertices.")
-    return HeadMesh(vertices.astype(float), corners.astype(np.int32))
+    triangles = _triangles(polygons)
+    if triangles is None or triangles.min() < 0 or triangles.max() >= len(vertices):
+        raise InputError(f"The mesh {path} has a face that is not a polygon of its vertices.")
+    return HeadMesh(vertices, triangles.astype(np.int32))
+
+
+def _triangles(polygons: np.ndarray | list[np.ndarray]) -> np.ndarray | None:
+    """Return polygons as triangles, (n, 3) int, which fan out from each one's first corner.
+
+    None if one has fewer than three corners.
+    """
+    if isinstance(polygons, np.ndarray):
+        alike = [polygons]
+    else:
+        by_size: dict[int, list[np.ndarray]] = {}
+        for polygon in polygons:
+            by_size.setdefault(len(polygon), []).append(polygon)
+        alike = [np.array(same) for same in by_size.values()]
+    if min(same.shape[1] for same in alike) < 3:
+        return None
+    fans = [same[:, [0, i, i + 1]] for same in alike for i in range(1, same.shape[1] - 1)]
+    triangles = np.concatenate(fans)
+    return triangles if triangles.dtype.kind in "iu" else None
 
 
 POINTS_AT_ONCE = 8

@@ -259,6 +259,7 @@ class MessageReader:
     Attributes:
         taken: number of processed messages and stretches of garbage between them.
         errors: number of errors of each kind.
+        version: of the last header, whether or not its message is usable; None before the first.
         refusal: why reading stopped, the message to close the connection with; empty while reading.
     """
 
@@ -269,6 +270,7 @@ class MessageReader:
         self._to_skip = 0
         self._garbage = 0
         self.taken = 0
+        self.version: int | None = None
         self.errors: Counter[StreamError] = Counter()
         self.refusal = ""
 
@@ -296,6 +298,7 @@ class MessageReader:
         header = read_header(self._buffer)
         if header is None:
             return self._find_next_header()
+        self.version = header.version
         if header.body_size > MAX_BODY_BYTES:
             self.refusal = f"A message claims more than {MAX_BODY_BYTES} bytes."
             return False

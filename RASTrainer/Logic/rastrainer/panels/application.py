@@ -13,6 +13,7 @@ import qt
 import slicer
 
 from rastrainer.errors import InputError
+from rastrainer.home_folder import home_folder
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.sample_data import assetsFolder
 from rastrainer.scenario.library import user_library
@@ -37,7 +38,7 @@ def findPlaces(moduleFile: Path, settings: Settings) -> ModulePaths:
         python=pythonSlicer(Path(slicer.app.slicerHome)),
         simulator=data / "RASTrainer" / "simulator",
         study=Path(study) if study else documents / "RASTrainer" / "study.db",
-        records=Path.home() / "RASTrainer" / "trials",
+        records=home_folder() / "RASTrainer" / "trials",
         library=user_library(),
         package=SimulatorPackage.of(moduleFile.parent),
         studyAddress=_studyAddress(settings),

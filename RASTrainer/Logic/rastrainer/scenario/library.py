@@ -18,8 +18,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rastrainer.errors import InputError
+from rastrainer.files.reading import printable_name
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.volume import check_place, read_head_volume
+from rastrainer.home_folder import home_folder
 from rastrainer.procedure.checks import unusable_lines
 from rastrainer.procedure.plan import read_all_no_go, read_procedure_meshes
 from rastrainer.scenario.scenario import FILE_NAME, PREVIEW_NAME, Scenario, load_scenario
@@ -51,9 +53,12 @@ class ListedScenario:
     problem: str
 
 
+USER_LIBRARY = "RASTrainer/scenarios"
+
+
 def user_library() -> Path:
     """Return the folder of the user's scenarios, which may not exist."""
-    return Path.home() / "RASTrainer" / "scenarios"
+    return home_folder() / USER_LIBRARY
 
 
 def list_scenarios(
@@ -255,28 +260,44 @@ def _read_archive(package: Path, folder: Path, progress: Progress) -> None:
 
 
 def _extract(package: Path, archive: zipfile.ZipFile, folder: Path, progress: Progress) -> None:
-    members = [info for info in archive.infolist() if not info.is_dir()]
-    if not 1 <= len(members) <= MAX_FILES:
-        raise _refused(package, f"holds {len(members)} files; a scenario has 1 to {MAX_FILES}")
-    for info in members:
-        _check_member(package, info)
-    if len({info.filename.lower() for info in members}) != len(members):
-        raise _refused(package, "holds a file twice")
+    taken = _members(package, archive)
+    if not 1 <= len(taken) <= MAX_FILES:
+        raise _refused(package, f"holds {len(taken)} files; a scenario has 1 to {MAX_FILES}")
     left = MAX_BYTES
-    for number, info in enumerate(members):
-        progress(UNPACKING, UNPACKED_SHARE * number / len(members))
-        left = _extract_member(package, archive, info, folder / info.filename, left)
+    for number, (name, info) in enumerate(taken.items()):
+        progress(UNPACKING, UNPACKED_SHARE * number / len(taken))
+        left = _extract_member(package, archive, info, folder / name, left)
 
 
-def _check_member(package: Path, info: zipfile.ZipInfo) -> None:
-    parts = info.filename.split("/")
-    if not _NAME.fullmatch(info.filename) or any(
-        _DEVICES.fullmatch(part) or part.endswith(".") for part in parts
-    ):
-        raise _refused(package, f"holds a file with the path {info.filename[:80]!a}")
+def _members(package: Path, archive: zipfile.ZipFile) -> dict[str, zipfile.ZipInfo]:
+    """Return the files of a scenario in a package, by their paths in the scenario's folder.
+
+    The folder may lie in others. Whoever packs it by hand also packs notes, and what the system
+    keeps in it: files with other names than ours are left where they are.
+    """
+    infos = [info for info in archive.infolist() if not info.is_dir()]
+    # Some programs for Windows part folders by backslashes.
+    named = [(info.filename.replace("\\", "/"), info) for info in infos]
+    for name, info in named:
+        _check_member(package, name, info)
+    if len({name.casefold() for name, _ in named}) != len(named):
+        raise _refused(package, "holds a file twice")
+    bases = [name.removesuffix(FILE_NAME) for name, _ in named if name.split("/")[-1] == FILE_NAME]
+    base = min(bases, key=lambda each: each.count("/"), default="")
+    if [each.count("/") for each in bases].count(base.count("/")) > 1:
+        raise _refused(package, "holds several scenarios")
+    inside = {name[len(base) :]: info for name, info in named if name.startswith(base)}
+    return {name: info for name, info in inside.items() if _NAME.fullmatch(name)}
+
+
+def _check_member(package: Path, name: str, info: zipfile.ZipInfo) -> None:
+    parts = name.split("/")
+    is_odd = not name.isprintable() or ":" in name or not {"", ".", ".."}.isdisjoint(parts)
+    if is_odd or any(_DEVICES.fullmatch(part) or part.endswith(".") for part in parts):
+        raise _refused(package, f"holds a file with the path {name[:80]!a}")
     kind = stat.S_IFMT(info.external_attr >> 16)
     if kind not in (0, stat.S_IFREG):
-        raise _refused(package, f"holds a link or a device, {info.filename}")
+        raise _refused(package, f"holds a link or a device, {printable_name(name[:80])}")
     if info.flag_bits & 0x1:
         raise _refused(package, "is encrypted")
 

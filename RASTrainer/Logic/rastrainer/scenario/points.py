@@ -16,7 +16,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields
-from rastrainer.files.point_list import read_markups
+from rastrainer.files.point_files import read_markups
 from rastrainer.head.mesh import RAS_LIMIT_MM, HeadMesh, nearest_on_mesh
 from rastrainer.protocol import COARSE_LANDMARKS, FIDUCIAL_COUNT
 

@@ -18,7 +18,8 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import json_object, read_fields
-from rastrainer.files.point_list import PointList, write_markups
+from rastrainer.files.point_files import write_markups
+from rastrainer.files.point_list import PointList
 from rastrainer.files.writing import make_private_folder, write_json
 from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
 from rastrainer.head.volume import HeadVolume, read_head_volume, read_volume_file, write_head_volume
@@ -31,6 +32,16 @@ HEAD_NAME, SKULL_NAME, VOLUME_NAME = "head.ply", "skull.ply", "volume.nrrd"
 _DECIMALS = 4
 
 
+def require_new(folder: Path) -> None:
+    """Check that a folder can be made.
+
+    Raises:
+        InputError: there is a file, a link or a folder that is not empty.
+    """
+    if folder.is_symlink() or folder.is_file() or (folder.is_dir() and any(folder.iterdir())):
+        raise InputError(f"{folder} already exists; name a new or empty folder.")
+
+
 @contextlib.contextmanager
 def new_folder(folder: Path) -> Iterator[Path]:
     """Yield a temporary folder that becomes `folder` at the end, or is deleted on failure.
@@ -39,8 +50,7 @@ def new_folder(folder: Path) -> Iterator[Path]:
         InputError: `folder` is not empty, or cannot be made.
     """
     folder = Path(folder).absolute()
-    if folder.is_symlink() or folder.is_file() or (folder.is_dir() and any(folder.iterdir())):
-        raise InputError(f"{folder} already exists; name a new or empty folder.")
+    require_new(folder)
     partial = folder.parent / f".{uuid.uuid4().hex}.partial"
     try:
         # The head may have a recognizable face.

@@ -19,8 +19,8 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.files.csv_table import number_in, read_rows
 from rastrainer.files.json_fields import Fields, read_fields
-from rastrainer.files.reading import number_in, read_rows
 
 PUBLISHED_STUDY = ("studies", "published.csv")
 """Place among the assets of the published study's trials, with which CTPS compares."""

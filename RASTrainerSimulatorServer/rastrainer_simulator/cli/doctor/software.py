@@ -13,6 +13,7 @@ from importlib import metadata
 from pathlib import Path
 
 from rastrainer.errors import InputError
+from rastrainer.home_folder import home_folder
 from rastrainer_simulator.assets import page_folder
 from rastrainer_simulator.cli.doctor.check_result import CheckResult, CheckStatus
 
@@ -134,8 +135,16 @@ def _judged(home: Path) -> CheckResult:
     return CheckResult("slicer", CheckStatus.WARNING, sentence, GET_SLICER)
 
 
+def _home() -> Path:
+    """Return the home folder; "~", where no Slicer is, if there is none."""
+    try:
+        return home_folder()
+    except InputError:
+        return Path("~")
+
+
 def _usual_places() -> tuple[Path, ...]:
-    home = Path.home()
+    home = _home()
     if sys.platform == "win32":
         names = ("LOCALAPPDATA", "ProgramData", "ProgramFiles")
         bases = [Path(os.environ[name]) for name in names if name in os.environ]
@@ -165,9 +174,9 @@ def _homes(places: tuple[Path, ...]) -> Iterator[Path]:
 
 def _extension(home: Path) -> Iterator[Path]:
     """Yield the folders of the extension: beside Slicer, or in the user's folder."""
-    users = Path.home() / ".config" / "slicer.org"
+    users = _home() / ".config" / "slicer.org"
     if sys.platform == "win32":
-        users = Path(os.environ.get("APPDATA", Path.home())) / "slicer.org"
+        users = Path(os.environ.get("APPDATA", _home())) / "slicer.org"
     for base in (home / "slicer.org", home / "Extensions", home, users, users.parent / "NA-MIC"):
         yield from sorted(base.glob(f"Extensions-*/{EXTENSION}"))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from rastrainer.command_arguments import deflection
 from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
@@ -133,7 +134,7 @@ def _draw_axis(
     canvas.box(Box(place.left, top, place.width, height), theme.FIELD, height / 2)
     middle = place.left + place.width // 2
     try:
-        position = max(-1.0, min(1.0, float(item.value.replace("−", "-"))))
+        position = deflection(float(item.value.replace("−", "-")))
     except ValueError:
         position = 0.0
     length = round(abs(position) * place.width / 2)

@@ -134,8 +134,8 @@ class ClientConnection(asyncio.BufferedProtocol):
     """One peer.
 
     Messages go out with the header version that the peer speaks. A peer of version 1 could not
-    even pass over one of version 2: so nothing is sent before the peer's first message, or some
-    tenths of a second in which a mere listener has sent none.
+    even pass over one of version 2: so nothing is sent before the peer's first header, whatever
+    follows it, or some tenths of a second in which a mere listener has sent none.
 
     Attributes:
         name: what the peer called itself, at first its address.
@@ -224,10 +224,12 @@ class ClientConnection(asyncio.BufferedProtocol):
             self._read_on = self._loop.call_later(pause, transport.resume_reading)
 
     def _read(self, nbytes: int) -> None:
-        for message in self._reader.feed(bytes(self._piece[:nbytes])):
-            self.header_version = message.version
-            self.is_silent = False
+        messages = self._reader.feed(bytes(self._piece[:nbytes]))
+        if self._reader.version is not None:
+            self.header_version = self._reader.version
             self._open()
+        for message in messages:
+            self.is_silent = False
             self._owner.received(self, message)
         if self._reader.errors:
             self._owner.bad_bytes(self, self._reader.errors)

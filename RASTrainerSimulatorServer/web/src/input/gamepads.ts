@@ -1,4 +1,4 @@
-/** A gamepad that the browser reads, in the W3C's standard layout. */
+/** The gamepads that the browser reads, in the W3C's standard layout. */
 
 import type { Connection } from "../stream/connection";
 import type { ControlNews, EventNews } from "../stream/messages";
@@ -7,15 +7,24 @@ const AXES = 4;
 const BUTTONS = 17;
 const START = 9;
 const CHANGE = 0.004;
-const AT_REST = 0.05;
+/** As far as released sticks may rest from their middle. */
+const AT_REST = 0.15;
+/** A pad that is pushed this far takes the place of one that is not. */
+const PUSHED = 0.5;
 
 export class Gamepads {
   private readonly axes = new Array<number>(AXES).fill(0);
   private readonly buttons = new Array<number>(BUTTONS).fill(0);
   private control: ControlNews | null = null;
+  private used = -1;
   isHolding = false;
+  /** Whether there are only pads whose layout the browser does not know. */
+  isUnknown = false;
 
-  constructor(private readonly connection: Connection) {}
+  constructor(
+    private readonly connection: Connection,
+    private readonly onKnown: () => void,
+  ) {}
 
   takeControl(control: ControlNews): void {
     this.control = control;
@@ -23,7 +32,7 @@ export class Gamepads {
 
   /** Look at the pad, and tell what has changed. */
   poll(): void {
-    const pad = firstPad();
+    const pad = this.choose();
     if (pad === null) {
       if (this.isHolding) this.tellRest();
       return;
@@ -46,7 +55,7 @@ export class Gamepads {
     if (!drives || event.rumble <= 0) return;
     const strength = { weakMagnitude: event.rumble, strongMagnitude: event.rumble };
     const duration = event.data.rumbleMs ?? 100;
-    void firstPad()?.vibrationActuator?.playEffect("dual-rumble", { duration, ...strength });
+    void this.choose()?.vibrationActuator?.playEffect("dual-rumble", { duration, ...strength });
   }
 
   /** Take the positions; return whether they differ from those that were sent. */
@@ -71,6 +80,22 @@ export class Gamepads {
     return true;
   }
 
+  /** Return the pad that is used: another one takes its place by being pushed while it rests. */
+  private choose(): Gamepad | null {
+    const all = navigator.getGamepads().filter((pad) => pad?.connected) as Gamepad[];
+    const pads = all.filter((pad) => pad.mapping === "standard");
+    const isUnknown = all.length > 0 && pads.length === 0;
+    if (isUnknown !== this.isUnknown) {
+      this.isUnknown = isUnknown;
+      this.onKnown();
+    }
+    const before = pads.find((pad) => pad.index === this.used);
+    const pushed = before !== undefined && isPushed(before) ? before : pads.find(isPushed);
+    const chosen = pushed ?? before ?? pads[0] ?? null;
+    this.used = chosen?.index ?? -1;
+    return chosen;
+  }
+
   private tellRest(): void {
     this.axes.fill(0);
     this.buttons.fill(0);
@@ -79,11 +104,8 @@ export class Gamepads {
   }
 }
 
-function firstPad(): Gamepad | null {
-  for (const pad of navigator.getGamepads()) {
-    if (pad?.connected && pad.mapping === "standard") return pad;
-  }
-  return null;
+function isPushed(pad: Gamepad): boolean {
+  return pad.axes.some((value) => Math.abs(value) >= PUSHED) || pad.buttons.some(({ value }) => value >= PUSHED);
 }
 
 function rounded(value: number): number {

@@ -43,7 +43,7 @@ export class Page {
   private readonly speech = new Speech();
   private readonly keyboard = new Keyboard(this.connection);
   private readonly mouse = new ViewMouse(byId("picture"), this.connection);
-  private readonly pads = new Gamepads(this.connection);
+  private readonly pads = new Gamepads(this.connection, () => this.sayNotice());
   private readonly touch = new TouchControls(this.connection);
   private readonly sounds = new Sounds();
   private readonly frames = new FrameCount(this.connection);
@@ -98,11 +98,16 @@ export class Page {
   }
 
   private connected(isConnected: boolean): void {
-    if (!isConnected) this.overlay.setNotice("lost");
-    else this.overlay.setNotice(this.stage === null ? "noPicture" : "");
+    this.sayNotice();
     this.headset?.setNotice(isConnected ? "" : say("lost"));
     if (isConnected) void this.keyboard.tellNames();
     this.lastEvent = 0;
+  }
+
+  private sayNotice(): void {
+    if (!this.connection.isConnected) this.overlay.setNotice("lost");
+    else if (this.stage === null) this.overlay.setNotice("noPicture");
+    else this.overlay.setNotice(this.pads.isUnknown ? "unknownPad" : "");
   }
 
   private take(news: News): void {

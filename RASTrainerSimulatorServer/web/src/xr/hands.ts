@@ -33,10 +33,12 @@ const LONGEST_STEP_S = 0.1;
 /** Of the gamepad in the mapping "xr-standard". */
 const TRIGGER = 0;
 const SQUEEZE = 1;
+const TOUCHPAD = 2;
+const THUMBSTICK = 3;
 const NEAR_BUTTON = 4;
 const FAR_BUTTON = 5;
-const STICK_X = 2;
-const STICK_Y = 3;
+/** A wand without these two has its touchpad or stick pressed: at its upper end for the far one. */
+const UPPER_END = -0.5;
 
 interface Hand {
   readonly ray: XRTargetRaySpace;
@@ -109,8 +111,8 @@ export class Hands {
       }
       const pad = hand.source?.gamepad;
       if (!pad) continue;
-      this.takeSticks(hand, pad);
       this.takeButtons(hand, pad);
+      this.takeSticks(hand, pad);
       step = step || stepOf(pad);
     }
     if (hovered !== this.hovered) {
@@ -169,8 +171,11 @@ export class Hands {
   }
 
   private takeSticks(hand: Hand, pad: Gamepad): void {
-    const x = alive(pad.axes[STICK_X] ?? 0);
-    const y = -alive(pad.axes[STICK_Y] ?? 0);
+    const [across, down] = stickOf(pad);
+    // Where a touchpad is pressed to touch, the finger must not move the tip.
+    const isClicked = isWand(pad) && (hand.down[NEAR_BUTTON]! || hand.down[FAR_BUTTON]!);
+    const x = isClicked ? 0 : alive(across);
+    const y = isClicked ? 0 : -alive(down);
     const isTriggered = hand.pointed === "" && (pad.buttons[TRIGGER]?.value ?? 0) > PRESSED;
     const { translation, rotation } = this.message;
     if (hand.source?.handedness === "left") {
@@ -195,7 +200,7 @@ export class Hands {
 
   /** Return whether a button has just been pressed. */
   private pressed(hand: Hand, pad: Gamepad, index: number): boolean {
-    const value = pad.buttons[index]?.value ?? 0;
+    const value = valueOf(pad, index);
     const was = hand.down[index]!;
     hand.down[index] = was ? value > RELEASED : value > PRESSED;
     return hand.down[index]! && !was;
@@ -268,9 +273,26 @@ function alive(position: number): number {
   return size < DEAD ? 0 : Math.sign(position) * Math.min(1, (size - DEAD) / (1 - DEAD));
 }
 
+function isWand(pad: Gamepad): boolean {
+  return pad.buttons.length <= NEAR_BUTTON;
+}
+
+/** Return how far a button is pressed, 0 to 1; on a wand also one that it does not have. */
+function valueOf(pad: Gamepad, index: number): number {
+  if (!isWand(pad) || index < NEAR_BUTTON) return pad.buttons[index]?.value ?? 0;
+  const isFar = stickOf(pad)[1] < UPPER_END;
+  if (isFar !== (index === FAR_BUTTON)) return 0;
+  return Math.max(pad.buttons[TOUCHPAD]?.value ?? 0, pad.buttons[THUMBSTICK]?.value ?? 0);
+}
+
+/** Return where the stick is, or the finger on the touchpad of a wand without one: right, down. */
+function stickOf(pad: Gamepad): readonly [number, number] {
+  const first = pad.axes.length > 2 ? 2 : 0;
+  return [pad.axes[first] ?? 0, pad.axes[first + 1] ?? 0];
+}
+
 function stepOf(pad: Gamepad): string {
-  const x = pad.axes[STICK_X] ?? 0;
-  const y = pad.axes[STICK_Y] ?? 0;
+  const [x, y] = stickOf(pad);
   if (Math.max(Math.abs(x), Math.abs(y)) < PRESSED) return "";
   if (Math.abs(y) >= Math.abs(x)) return y > 0 ? "down" : "up";
   return x > 0 ? "right" : "left";

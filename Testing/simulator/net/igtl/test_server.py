@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import logging
+import math
 import random
 import socket
 import struct
@@ -13,7 +14,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Command, Point, Points, Status, String, Transform
-from rastrainer.igtl.message import MAX_BODY_BYTES, Message, pack
+from rastrainer.igtl.message import MAX_BODY_BYTES, Message, crc64, pack
 from rastrainer_simulator.net.igtl.connection import Outgoing
 from Testing.free_port import free_port
 from Testing.simulator.net.igtl.servers import HOST, LinkServer, LoopThread, PlainServer
@@ -94,6 +95,31 @@ def test_client_that_speaks_header_version_1_is_answered_in_it(link_server):
             if device.startswith(b"Echo"):
                 break
         assert (version, kind.rstrip(b"\0"), body) == (1, b"TRANSFORM", PROBE.content.pack())
+
+
+def of_version_1(content: bytes, checksum: int | None = None, kind: bytes = b"TRANSFORM") -> bytes:
+    checksum = crc64(content) if checksum is None else checksum
+    return struct.pack(">H12s20sIIQQ", 1, kind, b"", 0, 0, len(content), checksum) + content
+
+
+@pytest.mark.parametrize(
+    "useless",
+    [
+        of_version_1(b"", 0, b"GET_STATUS"),
+        of_version_1(bytes(70_000), 0, b"IMAGE"),
+        of_version_1(bytes(70_000), 0, b"IMAGE")[:58],
+        of_version_1(PROBE.content.pack(), 0),
+        of_version_1(struct.pack(">12f", *[math.nan] * 12)),
+        of_version_1(b"odd", kind=b"STATUS"),
+    ],
+    ids=["asks", "image", "image begun", "without checksum", "not a number", "too short"],
+)
+def test_what_speaks_header_version_1_is_answered_in_it_whatever_it_sends(start, useless):
+    server = start(LinkServer, first_message_s=3600.0)
+    with connect(server.port) as peer, peer.makefile("rb") as stream:
+        peer.sendall(useless)
+        version, *_rest = struct.unpack(">H12s20sIIQQ", stream.read(58))
+    assert version == 1
 
 
 @pytest.mark.parametrize(

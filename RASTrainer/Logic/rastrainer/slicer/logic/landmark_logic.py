@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.point_list import PointList, read_markups, write_markups
+from rastrainer.files.point_files import read_markups, write_markups
+from rastrainer.files.point_list import PointList
 from rastrainer.scenario.points import FACE_LANDMARKS, Landmark
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.logic.scenario_logic import ScenarioFiles

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError
-from rastrainer.files.point_list import PointList, write_markups
+from rastrainer.files.point_files import write_markups
 from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.scenario.points import touch_order
 from rastrainer.scenario.scenario import UNKNOWN_LICENSE, Scenario, load_scenario
@@ -25,7 +25,14 @@ from rastrainer.slicer.logic.scenario_cache import ScenarioCache
 from rastrainer.slicer.logic.scenario_logic import planArguments
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
 from rastrainer.slicer.program.child_process import Run, runChild
-from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, labelsOf, nodesOfClass, worldPoints
+from rastrainer.slicer.scene.nodes import (
+    ROLE_ATTRIBUTE,
+    isUsed,
+    labelsOf,
+    nodesOfClass,
+    usedPoints,
+    worldPoints,
+)
 from rastrainer.slicer.translation import _
 from rastrainer.work_progress import Progress, no_progress
 
@@ -215,7 +222,7 @@ def _tasks(lists: list[Any], folder: Path) -> list[str]:
     """Return the arguments for manually placed fiducials, whose files go into `folder`."""
     paths = [folder / f"task-{index}.mrk.json" for index in range(len(lists))]
     for path, node in zip(paths, lists, strict=True):
-        write_markups(path, PointList(labelsOf(node), worldPoints(node)))
+        write_markups(path, usedPoints(node, worldPoints(node), labelsOf(node)))
     return ["--tasks", *map(str, paths)] if paths else []
 
 
@@ -237,10 +244,11 @@ def handPlacedLists(scene: Any, targets: Any) -> tuple[list[Any], list[str]]:
     for node in nodesOfClass(scene, "vtkMRMLMarkupsFiducialNode"):
         if node is targets or node.GetAttribute(ROLE_ATTRIBUTE) is not None:
             continue
-        count = node.GetNumberOfDefinedControlPoints()
-        if count != FIDUCIAL_COUNT or count != node.GetNumberOfControlPoints():
+        count = sum(isUsed(node, row) for row in range(node.GetNumberOfControlPoints()))
+        if count != FIDUCIAL_COUNT:
             reason = _(
-                "The point list {name} is left out: it has {count} placed points, not {all}."
+                "The point list {name} is left out: it has {count} points that are placed and "
+                "selected, not {all}."
             )
             leftOut.append(reason.format(name=node.GetName(), count=count, all=FIDUCIAL_COUNT))
         elif len(taken) == MAX_LISTS:
@@ -256,7 +264,8 @@ def handPlacedLists(scene: Any, targets: Any) -> tuple[list[Any], list[str]]:
 
 def _checked(node: Any) -> Any:
     try:
-        touch_order(labelsOf(node))
+        used = usedPoints(node, worldPoints(node), labelsOf(node))
+        touch_order(used.labels or [""] * len(used.points))
     except InputError as error:
         raise InputError(
             _("The point list {name} cannot be used: {reason}").format(

@@ -12,6 +12,7 @@ import slicer
 import vtk
 
 from rastrainer.errors import InputError
+from rastrainer.files.point_list import PointList
 from rastrainer.protocol import DeviceName
 
 ROLE_ATTRIBUTE = "RASTrainer.role"
@@ -146,6 +147,12 @@ def labelOf(node: Any, index: int) -> str:
     return shownText(node.GetNthControlPointLabel(index))
 
 
+def isUsed(node: Any, index: int) -> bool:
+    """Return whether Slicer would use one point: whether it is placed and selected."""
+    isPlaced = node.GetNthControlPointPositionStatus(index) == node.PositionDefined
+    return isPlaced and bool(node.GetNthControlPointSelected(index))
+
+
 def localPoints(node: Any) -> np.ndarray:
     """Return the points as they were received or placed, (n, 3) float, mm, in the node's frame."""
     return slicer.util.arrayFromMarkupsControlPoints(node)
@@ -154,6 +161,22 @@ def localPoints(node: Any) -> np.ndarray:
 def worldPoints(node: Any) -> np.ndarray:
     """Return the points where Slicer shows them, (n, 3) float, RAS mm."""
     return slicer.util.arrayFromMarkupsControlPoints(node, world=True)
+
+
+def usedPoints(node: Any, points: np.ndarray, labels: tuple[str, ...]) -> PointList:
+    """Return the points of a list that Slicer would use; the others are left out.
+
+    Args:
+        node: the list.
+        points: (n, 3) float, mm, in the frame to be used.
+        labels: of all points.
+
+    Raises:
+        InputError: it would use none, or the labels are ambiguous.
+    """
+    unused = {row: label for row, label in enumerate(labels) if not isUsed(node, row)}
+    rows = [row for row in range(len(labels)) if row not in unused]
+    return PointList(tuple(labels[row] for row in rows), points[rows], unused)
 
 
 def setPoints(node: Any, labels: Sequence[str], points: np.ndarray) -> None:

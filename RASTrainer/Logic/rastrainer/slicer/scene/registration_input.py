@@ -13,13 +13,20 @@ import numpy as np
 import slicer
 
 from rastrainer.errors import InputError
-from rastrainer.files.point_list import PointList, pair
+from rastrainer.files.point_list import pair
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, normal_at
 from rastrainer.registration.fits import extents
 from rastrainer.registration.localization_error import LocalizationError, error_along_surface
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.warnings import SAME_PLACE, RegistrationWarning, find_order
-from rastrainer.slicer.scene.nodes import labelsOf, localPoints, surfaceOf, worldPoints
+from rastrainer.slicer.scene.nodes import (
+    isUsed,
+    labelsOf,
+    localPoints,
+    surfaceOf,
+    usedPoints,
+    worldPoints,
+)
 from rastrainer.slicer.translation import _
 
 USUAL_FLE_MM = 1.0
@@ -75,7 +82,8 @@ class Pairs:
         moving: (n, 3) float, in the moving list's own frame.
         fixed: (n, 3) float, RAS.
         missing: labels of fixed points that have no partner yet.
-        excluded: labels of the pairs that were left out.
+        excluded: labels of the pairs that were left out, by the user's choices or because Slicer
+            would not use one of the points.
     """
 
     labels: tuple[str, ...]
@@ -98,15 +106,17 @@ def readPairs(moving: Any, fixed: Any, choices: Choices) -> Pairs:
             raise InputError(_("Choose the list of {which} points.").format(which=words))
         if node.GetNumberOfControlPoints() == 0:
             raise InputError(_("The list of {which} points is empty.").format(which=words))
-    movingList = PointList(_renamed(labelsOf(moving), choices), localPoints(moving))
-    fixedList = PointList(labelsOf(fixed), worldPoints(fixed))
+    movingList = usedPoints(moving, localPoints(moving), _renamed(labelsOf(moving), choices))
+    fixedList = usedPoints(fixed, worldPoints(fixed), labelsOf(fixed))
+    leftOut = (*movingList.left_out_names, *fixedList.left_out_names)
     missing: tuple[str, ...] = ()
     if movingList.labels and fixedList.labels:
-        touched = set(movingList.labels)
+        touched = {*movingList.labels, *leftOut}
         missing = tuple(label for label in fixedList.labels if label not in touched)
         kept = [row for row, label in enumerate(fixedList.labels) if label in touched]
         if kept:
-            fixedList = PointList(tuple(fixedList.labels[r] for r in kept), fixedList.points[kept])
+            fixedLabels = tuple(fixedList.labels[row] for row in kept)
+            fixedList = replace(fixedList, labels=fixedLabels, points=fixedList.points[kept])
     labels, movingPoints, fixedPoints = pair(movingList, fixedList)
     rows = [row for row, label in enumerate(labels) if label not in choices.excluded]
     return Pairs(
@@ -114,15 +124,16 @@ def readPairs(moving: Any, fixed: Any, choices: Choices) -> Pairs:
         movingPoints[rows],
         fixedPoints[rows],
         missing,
-        tuple(label for label in labels if label in choices.excluded),
+        tuple(dict.fromkeys((*leftOut, *(each for each in labels if each in choices.excluded)))),
     )
 
 
 def snapshot(node: Any, pointsOf: Callable[[Any], np.ndarray] = worldPoints) -> tuple:
-    """Return a value that changes with a list: its ID, labels and positions."""
+    """Return a value that changes with a list: its ID, labels, positions, and what is used."""
     if node is None:
         return ()
-    return node.GetID(), labelsOf(node), pointsOf(node).tobytes()
+    used = tuple(isUsed(node, row) for row in range(node.GetNumberOfControlPoints()))
+    return node.GetID(), labelsOf(node), pointsOf(node).tobytes(), used
 
 
 def _renamed(labels: tuple[str, ...], choices: Choices) -> tuple[str, ...]:

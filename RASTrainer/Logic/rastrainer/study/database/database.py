@@ -20,6 +20,7 @@ from urllib.parse import parse_qsl, quote, unquote, urlencode, urlsplit
 
 from rastrainer.errors import InputError
 from rastrainer.files.writing import make_folder
+from rastrainer.home_folder import home_folder
 
 SCHEMES = ("postgresql://", "postgres://")
 EXAMPLE = "postgresql://USER@HOST/DATABASE"
@@ -153,7 +154,7 @@ def path_beside_study(place: StudyPlace) -> Path:
     """
     if isinstance(place, Path):
         return place
-    folder = Path.home() / "RASTrainer" / "studies"
+    folder = home_folder() / "RASTrainer" / "studies"
     make_folder(folder, is_private=True)
     # Not by the role or the options: another one leads to the same study.
     where = f"{place.host}:{place.port or 5432}/{place.database}"

@@ -1,0 +1,187 @@
+"""Tables in CSV files, as spreadsheets and 3D Slicer write them."""
+
+from __future__ import annotations
+
+import codecs
+import contextlib
+import csv
+import math
+import os
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from rastrainer.errors import InputError
+from rastrainer.files.reading import decode_text, read_bytes
+
+CSV_LIMIT_BYTES = 4 * 2**20
+
+POSITION_STATUS = "positionstatus"
+"""The cell behind those that `.fcsv` names, which old versions of Slicer do not write."""
+
+_DELIMITERS = ",;\t"
+_SHOWN = 60
+_SEPARATOR = re.compile(r"sep=([,;\t])", re.IGNORECASE)
+"""The line by which a spreadsheet says what separates the cells."""
+_COMMA_NUMBER = re.compile(r"[+-]?\d*,\d+(e[+-]?\d+)?", re.IGNORECASE)
+_POINT_NUMBER = re.compile(r"[+-]?\d*\.\d+(e[+-]?\d+)?", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class CsvTable:
+    """The cells of a CSV file.
+
+    Attributes:
+        path: of the file.
+        remarks: what its first lines say as "# name = value", by name in lower case.
+        first: the line that should be the header, as it is written.
+        header: the names of the columns in lower case; empty for those without a name.
+        lines: number and stripped cells of each further line that is not empty.
+    """
+
+    path: str | os.PathLike[str]
+    remarks: Mapping[str, str]
+    first: str
+    header: tuple[str, ...]
+    lines: tuple[tuple[int, list[str]], ...]
+
+    def rows(
+        self, required: Sequence[str], optional: Sequence[str] = ()
+    ) -> list[tuple[int, dict[str, str]]]:
+        """Return the line number and the named cells of each row.
+
+        Args:
+            required: Columns that the header must have, in any order. Decimal commas in them become
+                points.
+            optional: Columns that it may have; others do not matter.
+
+        Raises:
+            InputError: the header is wrong, or a row does not match it.
+        """
+        wanted = [*optional, *required]
+        twice = next((name for name in wanted if self.header.count(name) > 1), None)
+        if twice is not None:
+            raise InputError(f"The file {self.path} has two columns {twice}.")
+        if not set(required) <= set(self.header):
+            raise InputError(
+                f"The file {self.path} must be a CSV file with the header {','.join(wanted)}; its "
+                f"first line is {self.first[:_SHOWN]!r}."
+            )
+        if not self.lines:
+            raise InputError(f"The file {self.path} has a header but no rows.")
+        rows = [(number, self._row(number, cells)) for number, cells in self.lines]
+        self._replace_decimal_commas([cells for _, cells in rows], required)
+        return rows
+
+    def _row(self, number: int, cells: list[str]) -> dict[str, str]:
+        columns = len(self.header)
+        if len(cells) < columns or any(cells[columns:]):
+            hint = " A comma in a number needs semicolons between the cells, in a text quotes."
+            raise InputError(
+                f"Line {number} of {self.path} has {len(cells)} cells; the header has {columns}."
+                f"{hint if len(cells) > columns else ''}"
+            )
+        return dict(zip(self.header, cells, strict=False))
+
+    def _replace_decimal_commas(self, rows: list[dict[str, str]], columns: Sequence[str]) -> None:
+        cells = [row[column] for row in rows for column in columns]
+        comma = next(filter(_COMMA_NUMBER.fullmatch, cells), None)
+        point = next(filter(_POINT_NUMBER.fullmatch, cells), None)
+        if comma is None:
+            return
+        if point is not None:
+            raise InputError(
+                f"The file {self.path} has numbers with commas and with points, {comma[:40]!r} and "
+                f"{point[:40]!r}: write all with decimal points."
+            )
+        for row in rows:
+            for column in columns:
+                if _COMMA_NUMBER.fullmatch(row[column]):
+                    row[column] = row[column].replace(",", ".")
+
+
+def read_table(path: str | os.PathLike[str]) -> CsvTable:
+    """Return the cells of a CSV file of at most 4 MiB.
+
+    It may be in UTF-8 or, with its byte order mark, in UTF-16, and separated by commas, semicolons
+    or tabs. A remark "# columns = …", as in Slicer's `.fcsv`, replaces the header.
+
+    Raises:
+        InputError: the file is unreadable, empty or no CSV file.
+    """
+    lines = _text(path).replace("\r\n", "\n").replace("\r", "\n").rstrip("\n").split("\n")
+    remarks, start = _remarks(lines)
+    separator = _SEPARATOR.fullmatch(lines[start]) if start < len(lines) else None
+    if separator:
+        start += 1
+    first = lines[start] if start < len(lines) else ""
+    delimiter = separator[1] if separator else max(_DELIMITERS, key=first.count)
+    reader = csv.reader(lines[start:], delimiter=delimiter, strict=True)
+    try:
+        read = [(start + reader.line_num, [cell.strip() for cell in row]) for row in reader]
+    except csv.Error as error:
+        raise InputError(
+            f"The file {path} is not a CSV file: line {start + reader.line_num}: {error}."
+        ) from None
+    read = [(number, cells) for number, cells in read if any(cells)]
+    if "columns" in remarks:
+        header = [*remarks["columns"].split(delimiter), POSITION_STATUS]
+        blank = [""] * len(header)
+        read = [(number, [*cells, *blank][: len(header)]) for number, cells in read]
+    else:
+        header = read.pop(0)[1] if read else []
+    while header and not header[-1].strip():
+        header.pop()
+    names = tuple(name.strip().lower() for name in header)
+    return CsvTable(path, remarks, first, names, tuple(read))
+
+
+def _remarks(lines: list[str]) -> tuple[dict[str, str], int]:
+    """Return what the first lines say behind #, and where the lines below them start."""
+    remarks: dict[str, str] = {}
+    for start, line in enumerate(lines):
+        if line.strip() and not line.startswith("#"):
+            return remarks, start
+        name, _, value = line.lstrip("# ").partition("=")
+        remarks[name.strip().lower()] = value.strip()
+    return remarks, len(lines)
+
+
+def _text(path: str | os.PathLike[str]) -> str:
+    content = read_bytes(path, CSV_LIMIT_BYTES)
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        with contextlib.suppress(UnicodeDecodeError):
+            content = content.decode("utf-16").encode()
+    return decode_text(content, f"The file {path}")
+
+
+def read_rows(
+    path: str | os.PathLike[str], required: Sequence[str], optional: Sequence[str] = ()
+) -> list[tuple[int, dict[str, str]]]:
+    """Return the line number and the named cells of each row of a CSV file; see `CsvTable.rows`.
+
+    Raises:
+        InputError: the file is unreadable or empty, its header is wrong, or a row does not match
+            it.
+    """
+    return read_table(path).rows(required, optional)
+
+
+def number_in(
+    path: object, line: int, cells: dict[str, str], column: str, minimum: float, maximum: float
+) -> float:
+    """Return the number in a cell.
+
+    Raises:
+        InputError: it is not a finite number from `minimum` to `maximum`.
+    """
+    try:
+        value = float(cells[column])
+    except ValueError:
+        value = math.nan
+    if not minimum <= value <= maximum:
+        raise InputError(
+            f"Line {line} of {path}: {column} must be a number from {minimum:g} to {maximum:g}, "
+            f"not {cells[column][:40]!r}."
+        )
+    return value

@@ -1,0 +1,277 @@
+"""PLY files: their elements as columns of numbers; clouds of points are read and written.
+
+Text and both binary forms are read, with any elements, properties and lists, in any order.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import re
+import struct
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.files.reading import read_bytes
+from rastrainer.files.writing import write_bytes
+
+LIMIT_BYTES = 64 * 2**20
+MAX_ROWS = 4_000_000
+LPS_TO_RAS = np.array([-1.0, -1.0, 1.0])
+
+_HEADER_BYTES = 64 * 2**10
+_LINE_BYTES = 64 * 2**10
+_HEADER = re.compile(rb"ply *(\r\n|\n|\r).*?\1end_header *\1", re.DOTALL)
+_SPACE = re.compile(r"comment\b.*\bSPACE=(\w+)", re.IGNORECASE)
+_BYTE_ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
+_TYPES = {
+    **dict.fromkeys(("char", "int8"), "b"),
+    **dict.fromkeys(("uchar", "uint8"), "B"),
+    **dict.fromkeys(("short", "int16"), "h"),
+    **dict.fromkeys(("ushort", "uint16"), "H"),
+    **dict.fromkeys(("int", "int32"), "i"),
+    **dict.fromkeys(("uint", "uint32"), "I"),
+    **dict.fromkeys(("float", "float32"), "f"),
+    **dict.fromkeys(("double", "float64"), "d"),
+}
+
+Column = np.ndarray | list[np.ndarray]
+"""The numbers of a property, (n,); of one that holds lists, (n, k) if all are equally long."""
+
+
+@dataclass(frozen=True)
+class PlyFile:
+    """The content of a PLY file.
+
+    Attributes:
+        space: the frame that a comment names, in capitals, such as RAS or LPS; empty without one.
+        elements: by the names of element and property, its column.
+    """
+
+    space: str
+    elements: dict[str, dict[str, Column]]
+
+    @property
+    def vertices(self) -> np.ndarray:
+        """(n, 3) float, in RAS if the file says that it is in LPS, otherwise as they are.
+
+        Raises:
+            LookupError: there are none with x, y and z.
+        """
+        columns = self.elements["vertex"]
+        points = np.stack([np.asarray(columns[axis], float) for axis in ("x", "y", "z")], axis=1)
+        return points * LPS_TO_RAS if self.space == "LPS" else points
+
+
+@dataclass(frozen=True)
+class _Property:
+    """A column of an element: types as in `struct`; `length` is empty unless it holds lists."""
+
+    name: str
+    type: str
+    length: str = ""
+
+
+@dataclass(frozen=True)
+class _Element:
+    name: str
+    rows: int
+    properties: list[_Property]
+
+
+def read_ply(path: str | os.PathLike[str]) -> PlyFile:
+    """Return the content of a PLY file.
+
+    Raises:
+        InputError: it cannot be read, is no such file, or does not hold what its header says.
+    """
+    content = read_bytes(path, LIMIT_BYTES)
+    header = _HEADER.match(content, 0, _HEADER_BYTES)
+    try:
+        if header is None:
+            raise ValueError
+        lines = header[0].decode("latin-1").splitlines()
+        order, elements = _described(lines)
+    except (ValueError, LookupError):
+        raise InputError(
+            f"The file {path} must be a PLY file, whose header describes its elements."
+        ) from None
+    crowded = next((each.name for each in elements if each.rows > MAX_ROWS), None)
+    if crowded is not None:
+        raise InputError(f"The file {path} has more than {MAX_ROWS} of its element {crowded}.")
+    spaces = [match[1].upper() for match in map(_SPACE.match, lines) if match]
+    try:
+        body = content[header.end() :]
+        columns = _binary(elements, body, order) if order else _text(elements, body)
+    except (ValueError, LookupError, OverflowError, struct.error):
+        raise InputError(
+            f"The PLY file {path} is cut short, damaged or has bytes left over: it does not hold "
+            "what its header says."
+        ) from None
+    return PlyFile(spaces[0] if spaces else "", columns)
+
+
+def _described(lines: list[str]) -> tuple[str, list[_Element]]:
+    """Return the order of the bytes, empty for text, and the elements.
+
+    Raises:
+        ValueError, LookupError: the header is not one.
+    """
+    orders, elements = [], []
+    for words in (line.split() for line in lines):
+        if words[:1] == ["format"]:
+            orders.append(_BYTE_ORDERS[words[1]])
+        elif words[:1] == ["element"]:
+            elements.append(_Element(words[1], int(words[2]), []))
+        elif words[:2] == ["property", "list"]:
+            length, type_, name = words[2:]
+            elements[-1].properties.append(_Property(name, _TYPES[type_], _TYPES[length]))
+        elif words[:1] == ["property"]:
+            elements[-1].properties.append(_Property(words[2], _TYPES[words[1]]))
+    (order,) = orders
+    if len({each.name for each in elements}) < len(elements):
+        raise ValueError
+    for each in elements:
+        has_odd_list = any(column.length in tuple("fd") for column in each.properties)
+        if each.rows < 0 or (each.rows and not each.properties) or has_odd_list:
+            raise ValueError
+    return order, elements
+
+
+def _text(elements: list[_Element], body: bytes) -> dict[str, dict[str, Column]]:
+    lines = _words(io.TextIOWrapper(io.BytesIO(body), "latin-1"))
+    read: dict[str, dict[str, Column]] = {}
+    for element in elements:
+        table: list[list] = [[] for _ in element.properties]
+        for _ in range(element.rows):
+            words = next(lines, [])
+            at = 0
+            for column, cells in zip(element.properties, table, strict=True):
+                number = float if column.type in "fd" else int
+                if column.length:
+                    count = int(words[at])
+                    at += 1 + count
+                    if not 0 <= count < at <= len(words):
+                        raise ValueError
+                    values = [number(word) for word in words[at - count : at]]
+                    cells.append(np.array(values, column.type))
+                else:
+                    cells.append(number(words[at]))
+                    at += 1
+        read[element.name] = _columns(element, table)
+    if next(lines, None) is not None:
+        raise ValueError
+    return read
+
+
+def _words(text: io.TextIOBase) -> Iterator[list[str]]:
+    """Yield the words of each line that is not empty; raise ValueError for an endless one."""
+    while line := text.readline(_LINE_BYTES):
+        if len(line) == _LINE_BYTES:
+            raise ValueError
+        if words := line.split():
+            yield words
+
+
+def _binary(elements: list[_Element], body: bytes, order: str) -> dict[str, dict[str, Column]]:
+    at = 0
+    read: dict[str, dict[str, Column]] = {}
+    for element in elements:
+        table = _even_table(element, body, at, order)
+        if table is not None:
+            at += table.nbytes
+            read[element.name] = {
+                column.name: table[f"values{number}"]
+                for number, column in enumerate(element.properties)
+            }
+        else:
+            read[element.name], at = _uneven_table(element, body, at, order)
+    if body[at:].strip():
+        raise ValueError
+    return read
+
+
+def _even_table(element: _Element, body: bytes, at: int, order: str) -> np.ndarray | None:
+    """Return the rows as one structured array; None if lists of a property differ in length."""
+    fields: list[tuple] = []
+    lists: list[tuple[str, int]] = []
+    end = at
+    for number, column in enumerate(element.properties):
+        shape: tuple[int, ...] = ()
+        if column.length and element.rows:
+            count = struct.unpack_from(order + column.length, body, end)[0]
+            end += struct.calcsize(column.length)
+            lists.append((f"length{number}", count))
+            fields.append((f"length{number}", order + column.length))
+            shape = (count,)
+            if not 0 <= count <= len(body):
+                raise ValueError
+        fields.append((f"values{number}", order + column.type, shape))
+        end += struct.calcsize(column.type) * int(np.prod(shape))
+    size = (end - at) * element.rows
+    if at + size > len(body):
+        if lists:
+            return None
+        raise ValueError
+    if not element.rows:
+        return np.empty(0, fields)
+    table = np.frombuffer(body, np.dtype(fields), element.rows, at)
+    return table if all((table[name] == count).all() for name, count in lists) else None
+
+
+def _uneven_table(
+    element: _Element, body: bytes, at: int, order: str
+) -> tuple[dict[str, Column], int]:
+    """Return the columns read row by row, and where they end."""
+    table: list[list] = [[] for _ in element.properties]
+    for _ in range(element.rows):
+        for column, cells in zip(element.properties, table, strict=True):
+            count = 1
+            if column.length:
+                (count,) = struct.unpack_from(order + column.length, body, at)
+                at += struct.calcsize(column.length)
+            values = np.frombuffer(body, order + column.type, count, at) if count else _NO_NUMBERS
+            at += values.nbytes
+            cells.append(values if column.length else values[0])
+    return _columns(element, table), at
+
+
+_NO_NUMBERS = np.empty(0, "i4")
+
+
+def _columns(element: _Element, table: list[list]) -> dict[str, Column]:
+    columns: dict[str, Column] = {}
+    for column, cells in zip(element.properties, table, strict=True):
+        is_even = not column.length or len({len(cell) for cell in cells}) == 1
+        columns[column.name] = np.array(cells, column.type) if is_even else cells
+    return columns
+
+
+def write_point_cloud(path: str | os.PathLike[str], points: np.ndarray, frame: str) -> None:
+    """Write points (n, 3) in mm as PLY, whole or not at all; a comment names their frame.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    header = (
+        f"ply\nformat binary_little_endian 1.0\ncomment SPACE={frame}\ncomment mm\n"
+        f"element vertex {len(points)}\n"
+        "property double x\nproperty double y\nproperty double z\nend_header\n"
+    )
+    write_bytes(path, header.encode("ascii") + np.asarray(points, dtype="<f8").tobytes())
+
+
+def read_point_cloud(path: str | os.PathLike[str]) -> np.ndarray:
+    """Return the vertices of a PLY file, (n, 3) float, in its own unit; see `PlyFile.vertices`.
+
+    Raises:
+        InputError: it cannot be read, or has no vertices.
+    """
+    content = read_ply(path)
+    try:
+        return content.vertices
+    except (LookupError, ValueError):
+        raise InputError(f"The PLY file {path} must have vertices with x, y and z.") from None
