@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, GhostRule, Guidance, Phase
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
-from rastrainer_simulator.flow.pages.introduction import TutorialDonePage
+from rastrainer_simulator.flow.pages.introduction import PracticedPage, TutorialDonePage
 from rastrainer_simulator.flow.pages.procedure import (
     ProcedureErrorsPage,
     ProcedureLinesPage,
@@ -228,7 +228,8 @@ class Flow:
             session.pages.show_start()
             session.pages.open(ExperimentPage(session))
             if outcome is not None:
-                session.pages.open(TutorialDonePage(session, outcome), has_grace=True)
+                page = PracticedPage if tutorial.practiced else TutorialDonePage
+                session.pages.open(page(session, outcome), has_grace=True)
 
     def _follow(self, before: tuple[str, Phase]) -> None:
         """Show what belongs to the trial's new phase."""
