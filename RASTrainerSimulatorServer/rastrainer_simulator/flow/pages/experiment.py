@@ -6,7 +6,7 @@ With it the lists that it opens: of heads, and of the assignments of a trainee's
 from __future__ import annotations
 
 from rastrainer.errors import InputError
-from rastrainer.protocol import Mode, StepKind, TutorialRule
+from rastrainer.protocol import TRIAL_RUN, Mode, StepKind, TutorialRule
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.scenario import method_of, playable_methods
 from rastrainer.study.curriculum.curriculum_message import AssignmentMessage
@@ -244,6 +244,9 @@ class ExperimentPage(SessionPage):
 
     def _is_to_do(self, name: str, outcomes: tuple[str, ...]) -> bool:
         session = self.session
+        trainee, head = session.trainee.strip(), session.scenario.name
+        if name == TRIAL_RUN and session.progress.needs_no_trial_run(trainee, head):
+            return False
         return session.outcome_of(name) in outcomes and not obstacle(session, name)
 
     def _step(self) -> StudyStep | None:

@@ -155,7 +155,10 @@ class ResultPage(FinishedPage):
         )
 
     def items(self) -> tuple[MenuItem, ...]:
-        """Return where the trainee can go: after a failure first to what helps."""
+        """Return where the trainee can go: after a failure first to what helps.
+
+        A study goes on all the same.
+        """
         items = {item.name: item for item in super().items()}
         items |= {name: self.button(name) for name in ("errors", "worst", "replay")}
         if procedure_details(self._result):
@@ -163,7 +166,8 @@ class ResultPage(FinishedPage):
         worst = self._worst_point()
         if worst:
             items["practice"] = self.button("practice", self.say("result.practice", point=worst))
-        order = _HELPFUL if self._is_passed is False else _ONWARD
+        is_helped = self._is_passed is False and self._step() is None
+        order = _HELPFUL if is_helped else _ONWARD
         return tuple(items[name] for name in order if name in items)
 
     def accept(self, item: str) -> None:

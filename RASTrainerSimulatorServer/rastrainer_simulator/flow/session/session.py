@@ -86,6 +86,9 @@ class TrainingSession:
         screen_sticks: those that views draw for a mouse.
         lock: what needs the instructor's PIN.
         notices: what is said beside the instruction.
+        picture_share: how much of its picture the trainee's view has, 0 to 1, while it is awaited;
+            else None.
+        goes_on_blind: the trial that the trainee wants to go on without its picture; "" for none.
         setting_up: has the simulation continue with other settings, or on another head.
         languages: those that can be chosen.
     """
@@ -135,6 +138,8 @@ class TrainingSession:
         self._asked: list[tuple[str, Future[Answer]]] = []
         self._practiced = TRIAL_RUN, ""
         self.notices = Notices()
+        self.picture_share: float | None = None
+        self.goes_on_blind = ""
         self._noted: CurriculumMessage | None = None
         self.state: SimulationState = control_loop.latest
 
@@ -342,6 +347,14 @@ class TrainingSession:
         task, point = self._practiced
         key = "tutorial.practice" if point else "tutorial.title"
         return self.texts.say(key, task=self.task_title(task), point=point)
+
+    def preparing(self) -> str:
+        """Return how far the awaited picture is; "" where none is awaited."""
+        share = self.picture_share
+        if share is None:
+            return ""
+        key = "preparing.loaded" if share > 0.0 else "preparing.built"
+        return self.texts.say(key, share=100.0 * share)
 
     def step_sentence(self, step: StudyStep) -> str:
         """Return the sentence about a study's step."""

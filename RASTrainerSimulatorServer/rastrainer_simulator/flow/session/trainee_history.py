@@ -70,6 +70,11 @@ class DoneTasks:
         """Have a trainee's tasks in a scenario not wait for the trial run."""
         self._skipped.add((trainee, scenario))
 
+    def needs_no_trial_run(self, trainee: str, scenario: str) -> bool:
+        """Return whether a trainee has skipped the trial run: by going on, at the latest."""
+        head = trainee, scenario
+        return head in self._skipped or bool(self._done.get(head))
+
     def latest_trainees(self, count: int) -> tuple[str, ...]:
         """Return at most this many trainees, the most recent first."""
         known = (trainee for trainee, journals in self.journals.items() if journals)
@@ -80,10 +85,8 @@ class DoneTasks:
         self, trainee: str, scenario: str, task: str, order: Sequence[str]
     ) -> str | None:
         """Return the first task that has to be done before another; None where none is missing."""
-        done = set(self._done.get((trainee, scenario), ()))
-        # Who has done a task since has skipped the trial run.
-        if done or (trainee, scenario) in self._skipped:
-            done.add(TRIAL_RUN)
+        done = {*self._done.get((trainee, scenario), ())}
+        done |= {TRIAL_RUN} if self.needs_no_trial_run(trainee, scenario) else set()
         return next((name for name in order[: order.index(task)] if name not in done), None)
 
     def _take(self, path: Path) -> None:
