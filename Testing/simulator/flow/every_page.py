@@ -86,6 +86,7 @@ AT_PROCEDURE = replace(
 )
 PROCEDURE_SCORED = replace(
     SCORED,
+    touches=(),
     procedure=ProcedureState(
         "biopsy",
         Phase.REGISTERED,
@@ -252,11 +253,19 @@ def _pages(session) -> Iterator[SessionPage]:
     yield trainee_id.CharacterPage(session, lambda *_: None, trainee_id.ROWS[0])
     yield experiment.ScenarioPage(session)
     yield QuestionnairePage(session, QUESTIONNAIRE)
-    for over_a_trial in (trial.TrialPage, trial.AbortPage, trial.PracticePage, trial.CompletePage):
+    for over_a_trial in (
+        trial.TrialPage,
+        trial.PreparingPage,
+        trial.AbortPage,
+        trial.PracticePage,
+        trial.CompletePage,
+    ):
         yield over_a_trial(session)
     yield trial.MatchPage(session, _matched())
     yield result.WaitingPage(session)
     yield result.ResultPage(session)
+    # No trial has been played here in which the point could lie.
+    session.state = replace(session.state, training=replace(SCORED, touches=()))
     yield trial_review.ErrorsPage(session)
     session.state = replace(session.state, training=AT_PROCEDURE)
     yield procedure.ProcedurePage(session)

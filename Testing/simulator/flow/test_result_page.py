@@ -68,10 +68,10 @@ def test_each_value_that_is_scored_stands_beside_its_limit(result_of):
     assert menu.title == "P07, Task 1: passed"
     assert [(fact.label, fact.value, fact.tone) for fact in menu.facts[:5]] == [
         ("Score", "95 / 100 (pass mark 70)", Tone.GOOD),
-        ("True error in the brain (TRE)", "0.73 mm (limit 1.5 mm)", Tone.GOOD),
-        ("Bias that all touches share", "0.41 mm (limit 1.5 mm)", Tone.GOOD),
-        ("Unintended contact", "1.2 s (limit 8 s)", Tone.GOOD),
-        ("Pressed into the head", "0.30 mm (limit 1.5 mm)", Tone.GOOD),
+        ("True error in the brain (TRE)", "0.73 mm (max. 1.5)", Tone.GOOD),
+        ("Bias that all touches share", "0.41 mm (max. 1.5)", Tone.GOOD),
+        ("Unintended contact", "1.2 s (max. 8)", Tone.GOOD),
+        ("Pressed into the head", "0.30 mm (max. 1.5)", Tone.GOOD),
     ]
     assert menu.focus == "next"
 
@@ -79,7 +79,7 @@ def test_each_value_that_is_scored_stands_beside_its_limit(result_of):
 def test_the_limit_of_a_study_is_shown_in_place_of_the_usual_one(result_of):
     menu = result_of(**{**WITHIN, "isAccurate": False}, regionLimitMm=0.7, passMark=70.0)
     fact = facts_of(menu)["True error in the brain (TRE)"]
-    assert (fact.value, fact.tone) == ("0.73 mm (limit 0.7 mm)", Tone.WARNING)
+    assert (fact.value, fact.tone) == ("0.73 mm (max. 0.7)", Tone.WARNING)
 
 
 @pytest.mark.parametrize(

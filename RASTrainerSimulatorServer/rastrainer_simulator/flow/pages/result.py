@@ -44,7 +44,7 @@ _MEASURED = (
     ("result.region tre", "regionTreMm", LIMIT_MM, "result.mm of"),
     ("result.common bias", "commonBiasMm", COMMON_BIAS_LIMIT_MM, "result.mm of"),
     ("result.contact", "contactTimeS", CONTACT_LIMIT_S, "result.seconds of"),
-    ("result.contact path", "contactPathMm", CONTACT_PATH_LIMIT_MM, "result.mm of"),
+    ("result.contact path", "contactPathMm", CONTACT_PATH_LIMIT_MM, "result.millimeters of"),
     ("result.depth", "pressingDepthMm", DEPTH_LIMIT_MM, "result.mm of"),
 )
 """What is scored: its label, its member of the score's details, its limit, and its text."""
