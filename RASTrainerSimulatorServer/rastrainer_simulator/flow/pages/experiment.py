@@ -138,8 +138,8 @@ class ExperimentPage(SessionPage):
     def write(self, item: str, value: str) -> None:
         """Set the trainee's ID; what is typed at first replaces the usual one."""
         if item == "trainee" and value != self._usual_id:
-            typed = value.removeprefix(self._usual_id) if self._usual_id else value
-            is_deleted = bool(self._usual_id) and self._usual_id.startswith(value)
+            typed = value.removeprefix(self._usual_id)
+            is_deleted = bool(self._usual_id) and value == self._usual_id[:-1]
             self.session.trainee = "" if is_deleted else typed.lstrip()[:LONGEST_ID]
             self._usual_id = ""
 
