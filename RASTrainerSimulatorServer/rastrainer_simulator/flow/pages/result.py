@@ -217,10 +217,10 @@ class ResultPage(FinishedPage):
         return training.touches[residuals.index(max(residuals))].label
 
     def _reasons(self) -> tuple[str, ...]:
-        """Return why the trial is not passed."""
-        reasons = beyond_limits(self._result.details)
-        is_below = not reasons and self._is_passed is False and self._mark is not None
-        if is_below and self._result.score < (self._mark or 0.0):
+        """Return the first reason why the trial is not passed; the values show the others."""
+        reasons = beyond_limits(self._result.details)[:1]
+        mark = self._mark
+        if not reasons and mark is not None and self._result.score < mark:
             reasons = ["result.below"]
         return tuple(self.say(key) for key in reasons)
 
