@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer.protocol import Phase, Proximity, RegistrationMethod
+from rastrainer.protocol import PROCEDURE_PHASES, Phase, Proximity, RegistrationMethod
 from rastrainer_simulator.trial_state import (
     FinalRegistration,
     GuideAlignment,
@@ -195,6 +195,13 @@ class TrainingState:
         return self.trace is not None and self.next_point is None and is_open
 
     @property
+    def is_touched(self) -> bool:
+        """Whether all points are touched or traced, so that the completion time is known."""
+        stage = self.phase if self.procedure is None else self.procedure.stage
+        is_open = self.phase in (Phase.IDLE, Phase.RUNNING, Phase.PAUSED)
+        return not is_open or stage in PROCEDURE_PHASES
+
+    @property
     def completed_s(self) -> float:
         """The trial's time at the last point that was touched or traced, s."""
         traced = () if self.trace is None else self.trace.points
@@ -234,6 +241,19 @@ class SimulationState:
     touch: TouchStage = TouchStage.FAR
     feed: float = 0.0
     tip_clearance: float = 0.0
+
+    @property
+    def completion_time(self) -> float:
+        """What the trial's clock shows: it stops at the last point, s."""
+        return self.training.completed_s if self.training.is_touched else self.elapsed
+
+    @property
+    def procedure_time(self) -> float | None:
+        """How long the trial's procedure has taken since the registration, s; None before."""
+        procedure = self.training.procedure
+        if procedure is None or procedure.stage is Phase.RUNNING:
+            return None
+        return self.elapsed - procedure.times_s.get(Phase.RUNNING, 0.0)
 
     @property
     def tool(self) -> Tool:

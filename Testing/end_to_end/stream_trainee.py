@@ -13,6 +13,7 @@ import numpy as np
 from rastrainer_simulator.desktop.connection import screen_from_json
 from rastrainer_simulator.desktop.inbox import Viewpoint
 from rastrainer_simulator.desktop.shown_scene import pose_matrix
+from rastrainer_simulator.flow.flow import PICTURE_GRACE_S
 from rastrainer_simulator.presentation.screen import Menu, Screen
 from rastrainer_simulator.teleoperation.steering import camera_axes
 from Testing.end_to_end.window_process import wait_until
@@ -237,11 +238,25 @@ class StreamTrainee:
     def begin_task(self, task: str) -> None:
         """Choose a task in the experiment's menu, and wait until its scene is loaded.
 
-        It is built while the trial has begun, the first time on a machine.
+        It is built once the trial has begun, the first time on a machine: the trial waits until
+        its view has drawn it.
         """
         self.choose(task)
         self.until_menu(None)
         self.until(lambda: self.view.scene["task"] == task, f"the scene of {task}")
+        self.until_running()
+
+    def until_running(self) -> None:
+        """Wait until the trial no longer waits for its picture."""
+        since = [self.view.state["time"]]
+
+        def has_run() -> bool:
+            now = self.view.state
+            if now["phase"] != "running" or self.menu is not None:
+                since[0] = now["time"]
+            return now["time"] - since[0] > 2.0 * PICTURE_GRACE_S
+
+        self.until(has_run, "the trial with its picture")
 
     def press_away_from_fiducials(self) -> None:
         """Push the tip against the skin where no fiducial is, as an error, and release."""

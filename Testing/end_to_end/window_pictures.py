@@ -11,6 +11,8 @@ import tempfile
 import time
 from pathlib import Path
 
+from PIL import Image
+
 from rastrainer.igtl.client import Client
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
@@ -35,8 +37,10 @@ TOUCHED = 6
 class Photographer:
     """Has the window save pictures in the best quality."""
 
-    def __init__(self, lab: Lab, window: WindowProcess):
+    def __init__(self, lab: Lab, window: WindowProcess, folder: Path = FOLDER, colors: int = 0):
+        """Save in a folder; a small picture has only so many colors, 0 for all of them."""
         self._lab, self._window = lab, window
+        self._folder, self._colors = folder, colors
 
     def keep(self, name: str) -> None:
         """Save what is shown, once the view has arrived."""
@@ -46,8 +50,12 @@ class Photographer:
         time.sleep(TRANSITION_S + 0.5)
         known = set(self._window.folder.glob("*.png"))
         self._lab.keyboard.tap("F12")
-        shutil.copyfile(self._window.next_picture(known, DRAWN_S), FOLDER / f"{name}.png")
-        print(name, flush=True)
+        kept, path = self._window.next_picture(known, DRAWN_S), self._folder / f"{name}.png"
+        if self._colors:
+            Image.open(kept).convert("RGB").quantize(self._colors).save(path, optimize=True)
+        else:
+            shutil.copyfile(kept, path)
+        print(name, path.stat().st_size, flush=True)
 
 
 def main() -> None:

@@ -20,6 +20,7 @@ from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.flow.session.chosen_trial import FIRST_ID
 from Testing.end_to_end.onto_skin import lowered
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.end_to_end.stream_trainee import StreamTrainee, WatchingView
@@ -180,7 +181,7 @@ class Trainee(StreamTrainee):
         The ID is typed on the page, or without one on the keyboard that the simulator shows.
         """
         self.go_to_experiment()
-        if not self.value("trainee"):
+        if self.value("trainee") in ("", FIRST_ID):
             self.type_id(page)
         self.begin_task(task)
         self.until(lambda: self.view.state["phase"] == "running", "the trial")

@@ -62,6 +62,9 @@ def test_arrows_appear_and_disappear_with_the_screen(page, served):
     page.click("#hints button:has-text('Result')")
     (view,) = {call[1] for call in served.presenter.calls if call[0] == "view_joined"}
     served.wait_for_call("on_item", view, "back")
+    pictures = [call[2:] for call in served.presenter.calls if call[0] == "on_picture"]
+    # How much of it was loaded before depends on the pieces in which it came.
+    assert (pictures[0], pictures[-1]) == (("", 0), ("", 1))
     served.tell(Screen())
     wait_for(page, "page.errors.group.children.length === 0")
 

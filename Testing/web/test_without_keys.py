@@ -7,6 +7,7 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 
+from rastrainer_simulator.flow.session.chosen_trial import FIRST_ID
 from rastrainer_simulator.flow.tutorial.steps import steps_for
 from rastrainer_simulator.input.inputs import SourceKind
 from Testing.end_to_end.stream_trainee import LONGEST_WAY_S
@@ -34,7 +35,7 @@ class ClickingTrainee(OnPage, Trainee):
 
     def click_id(self) -> None:
         """Add P7 to the ID, a character at a time."""
-        before = self.value("trainee")
+        before = self.value("trainee").removeprefix(FIRST_ID)
         self.choose("clicked")
         for row, character in (("row 1", "P"), ("row 3", "7")):
             self.choose(row)

@@ -8,6 +8,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from rastrainer.errors import InputError
 from rastrainer.files.writing import write_json
 from rastrainer.scenario.library import list_scenarios, unpack
 from rastrainer.scenario.writer import require_new

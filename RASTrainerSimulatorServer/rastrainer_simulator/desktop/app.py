@@ -155,6 +155,8 @@ class DesktopWindow:
             # They were made while the previous picture was still visible.
             pygame.event.clear(pygame.MOUSEBUTTONDOWN)
         self._frames.shown()
+        if self._inbox.scene is not None and not self._inbox.problem:
+            self._connection.tell_drawn(self._inbox.scene.task)
         self._log_frame(log)
         self._lower_quality_if_slow(time.monotonic() - begin)
         self._frames.report(begin)

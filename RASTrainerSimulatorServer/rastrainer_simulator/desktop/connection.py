@@ -19,7 +19,7 @@ from rastrainer.json_checks import decode_finite_json
 from rastrainer_simulator.desktop.head_marks import ShownTrace
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, SoundEvent, Viewpoint, read_parts
 from rastrainer_simulator.desktop.panels.canvas import Thumbnail
-from rastrainer_simulator.net.views.incoming import HELLO, LAYOUT, SUBPROTOCOL
+from rastrainer_simulator.net.views.incoming import HELLO, LAYOUT, PICTURE, SUBPROTOCOL
 from rastrainer_simulator.presentation.screen import (
     DepthRuler,
     ErrorArrow,
@@ -61,6 +61,13 @@ class ServerConnection:
         self._stream: aiohttp.ClientWebSocketResponse | None = None
         self._outgoing: asyncio.Queue[Mapping[str, Any]] = asyncio.Queue()
         self._last_event = 0
+        self._told: str | None = None
+
+    def tell_drawn(self, task: str) -> None:
+        """Say, once, that the scene of a task is drawn."""
+        if task != self._told:
+            self._told = task
+            self.send(PICTURE, task=task, share=1.0)
 
     def send(self, message: str, /, **members: Any) -> None:
         """Send a message of that type; without a connection it is dropped."""
@@ -148,6 +155,8 @@ class ServerConnection:
         self._inbox.pairing = str(message["code"]), addresses
 
     def _take_welcome(self, message: Mapping[str, Any]) -> None:
+        self._told = None
+        self.send(PICTURE, task="", share=0.0)
         self._inbox.bodies = tuple(message["bodies"])
         self._inbox.trace = ShownTrace()
 
@@ -184,6 +193,7 @@ class ServerConnection:
             {name: Viewpoint.from_json(value) for name, value in message["cameras"].items()},
             {str(label): tuple(place) for label, place in message["fiducials"].items()},
             {str(name): tuple(nodes) for name, nodes in message["noGo"].items()},
+            str(message["task"]),
         )
 
     async def _content(self, session: aiohttp.ClientSession, path: str, most: int) -> bytes:

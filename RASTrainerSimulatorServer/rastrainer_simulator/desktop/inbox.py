@@ -169,13 +169,14 @@ _log = logging.getLogger(__name__)
 class LoadedScene:
     """A scene to be shown, its cameras by name, and its fiducials in the head's frame (m).
 
-    `no_go` names the nodes of the no-go structures of each procedure.
+    `no_go` names the nodes of the no-go structures of each procedure; `task` is whose scene it is.
     """
 
     parts: list[Part]
     cameras: Mapping[str, Viewpoint]
     fiducials: Mapping[str, tuple[float, float, float]]
     no_go: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    task: str = ""
 
 
 @dataclass(frozen=True)

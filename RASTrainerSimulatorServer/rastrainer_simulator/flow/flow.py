@@ -4,17 +4,25 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, GhostRule, Guidance, Phase
+from rastrainer.protocol import (
+    OPEN_PHASES,
+    PROCEDURE_PHASES,
+    TRIAL_RUN,
+    CommandName,
+    GhostRule,
+    Guidance,
+    Phase,
+)
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
-from rastrainer_simulator.flow.pages.introduction import TutorialDonePage
+from rastrainer_simulator.flow.pages.introduction import PracticedPage, TutorialDonePage
 from rastrainer_simulator.flow.pages.procedure import (
     ProcedureErrorsPage,
     ProcedureLinesPage,
 )
 from rastrainer_simulator.flow.pages.result import FinishedPage, ResultPage, WaitingPage
-from rastrainer_simulator.flow.pages.session_page import clickable_hint
+from rastrainer_simulator.flow.pages.session_page import SessionPage, clickable_hint
 from rastrainer_simulator.flow.pages.start import StartPage
-from rastrainer_simulator.flow.pages.trial import PracticePage, TrialPage
+from rastrainer_simulator.flow.pages.trial import PracticePage, PreparingPage, TrialPage
 from rastrainer_simulator.flow.pages.trial_review import ErrorsPage, ReplayPage
 from rastrainer_simulator.flow.procedure_screen import ProcedureScreen
 from rastrainer_simulator.flow.session.chosen_trial import begin_ghost, needs_tutorial
@@ -31,6 +39,8 @@ from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.state import Answer, SimulationState, StepResult, TouchStage, TrialResult
 from rastrainer_simulator.texts.texts import LocalizedText
 
+PICTURE_GRACE_S = 0.5
+"""A picture that is there so soon is no reason to pause a trial."""
 OF_A_RESULT = (FinishedPage, ReplayPage, ErrorsPage, ProcedureErrorsPage, ProcedureLinesPage)
 
 NOT_RECORDED = "not recorded"
@@ -54,6 +64,8 @@ class Flow:
         self._seen_result: TrialResult | None = None
         self._touch = TouchStage.FAR
         self._had_slicer = False
+        self._without_picture_s = 0.0
+        self._waits_for_picture = False
         self._unseen = ""
         session.pages.home = lambda: StartPage(session)
         session.pages.show_start()
@@ -106,6 +118,7 @@ class Flow:
             session.history.changed(training.trainee, training.trial_id)
         if session.ghost.has_just_loaded():
             self._note_ghost()
+        self._wait_for_picture(dt)
         if session.pages.top is not None:
             session.pages.advance(dt)
         elif session.tutorial is not None:
@@ -116,7 +129,9 @@ class Flow:
     def pressed(self, control: ControlName) -> None:
         """Process a press of a control."""
         if self._session.pages.top is None:
-            self._screen_of_work.pressed(control)
+            is_menu = control in (ControlName.MENU, ControlName.PAUSE)
+            if is_menu or self._session.picture_share is None:
+                self._screen_of_work.pressed(control)
         else:
             self._session.pages.pressed(control)
 
@@ -130,6 +145,10 @@ class Flow:
         if self.playback is not None:
             self.playback.pause(True)
         session = self._session
+        # A view that loads its picture may be too busy to say anything.
+        if isinstance(session.pages.top, PreparingPage) and why != "unseen.still":
+            self._unseen = why
+            session.pages.replace(TrialPage(session))
         is_running = session.training.phase in (Phase.RUNNING, *PROCEDURE_PHASES)
         if (is_running or session.tutorial is not None) and session.pages.top is None:
             self._unseen = why
@@ -141,6 +160,9 @@ class Flow:
         page, menu = session.pages.top, session.pages.menu()
         notices = session.notices
         lasting = notices.lasting(session.texts)
+        preparing = ScreenMessage(session.preparing())
+        if preparing.text and menu is not None and menu.name != PreparingPage.name:
+            lasting = (preparing, *lasting)
         warnings = (*lasting, *self._link_warnings(), *notices.brief())
         work = self._screen_of_work
         shown = None if page is None else page.screen()
@@ -159,7 +181,7 @@ class Flow:
                 is_private=page is not None and page.is_private,
             )
         return Screen(
-            instruction=work.instruction(),
+            instruction=preparing if preparing.text else work.instruction(),
             warnings=(*work.warnings(), *warnings),
             status=work.status(),
             hints=work.hints(),
@@ -217,6 +239,8 @@ class Flow:
         """Advance the tutorial; leave it at its end, or if its head is gone."""
         session = self._session
         self._unseen = ""
+        if session.picture_share is not None and tutorial.setup is self._control_loop.setup:
+            return
         if tutorial.setup is not self._control_loop.setup:
             session.end_tutorial()
             session.notices.add(session.texts.say("tutorial.head is gone"), Tone.WARNING)
@@ -228,7 +252,8 @@ class Flow:
             session.pages.show_start()
             session.pages.open(ExperimentPage(session))
             if outcome is not None:
-                session.pages.open(TutorialDonePage(session, outcome), has_grace=True)
+                page = PracticedPage if tutorial.practiced else TutorialDonePage
+                session.pages.open(page(session, outcome), has_grace=True)
 
     def _follow(self, before: tuple[str, Phase]) -> None:
         """Show what belongs to the trial's new phase."""
@@ -243,9 +268,9 @@ class Flow:
         if training.phase in (Phase.RUNNING, Phase.COMPLETE, *PROCEDURE_PHASES):
             session.pages.show(None)
         elif training.phase is Phase.PAUSED:
-            is_over = self._trial_screen.is_practice_over
-            page = (PracticePage if is_over else TrialPage)(session)
-            session.pages.show(page, has_grace=not is_requested)
+            page: type[SessionPage] = PreparingPage if self._waits_for_picture else TrialPage
+            page = PracticePage if self._trial_screen.is_practice_over else page
+            session.pages.show(page(session), has_grace=not is_requested)
         elif training.phase is Phase.REGISTERED:
             session.note_done()
             session.study.note_registered(training.trainee, training.task, training.mode)
@@ -281,6 +306,19 @@ class Flow:
             session.mode = training.mode
         if training.phase is Phase.COMPLETE and training.task == TRIAL_RUN:
             session.note_done()
+
+    def _wait_for_picture(self, dt: float) -> None:
+        """Pause a trial whose picture is not there, so that its clock waits for it."""
+        session = self._session
+        is_running = session.training.phase in (Phase.RUNNING, *PROCEDURE_PHASES)
+        if session.picture_share is None or not is_running:
+            self._without_picture_s = 0.0
+            self._waits_for_picture = False
+            return
+        self._without_picture_s += dt
+        if self._without_picture_s > PICTURE_GRACE_S and not self._waits_for_picture:
+            self._waits_for_picture = True
+            session.do(CommandName.PAUSE)
 
     def _note_ghost(self) -> None:
         """Have the journal say that a ghost is shown from now on, or the trainee that none is."""

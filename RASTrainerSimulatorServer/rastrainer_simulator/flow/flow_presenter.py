@@ -9,7 +9,7 @@ import numpy as np
 
 from rastrainer.protocol import Mode
 from rastrainer_simulator.flow.flow import Flow
-from rastrainer_simulator.flow.operated_views import OperatedView, ViewSources
+from rastrainer_simulator.flow.operated_views import AwaitedPictures, OperatedView, ViewSources
 from rastrainer_simulator.flow.seat import instruct, seat_of
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.flow.session.services import FlowServices
@@ -88,6 +88,7 @@ class FlowPresenter:
         self._results: list[StepResult] = []
         self._subscribers: Subscribers[ViewUpdate] = Subscribers()
         self._views = ViewSources()
+        self._pictures = AwaitedPictures()
         self._number = 0
         self._sent_sticks = HANDS_OFF
         self._is_changed = True
@@ -116,6 +117,7 @@ class FlowPresenter:
             self._flow.take(result)
             self._is_changed = True
         self.controls.advance(dt)
+        self._await_picture(dt, newest)
         self._flow.advance(dt, newest)
         self._view.advance(dt)
         self._settle()
@@ -174,6 +176,10 @@ class FlowPresenter:
         self._lose_sight(view, "unseen.left")
         self._session.layouts.pop(view, None)
         self._choose_mode(self._views.leave(view))
+        self._pictures.forget(view)
+        if self._views.is_empty:
+            # The trial may wait for the picture of a view that had fallen silent.
+            self._flow.pause("unseen.left")
         self._settle()
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
@@ -262,6 +268,10 @@ class FlowPresenter:
         )
         self._control_loop.note_display(report)
 
+    def on_picture(self, view: int, task: str, share: float) -> None:
+        """Note how much of its picture a view has: a task waits for that of the trainee's view."""
+        self._pictures.take(view, task, share)
+
     def on_visibility(self, view: int, is_visible: bool) -> None:
         """Pause the trial when the operator no longer sees it, and release control."""
         if not is_visible:
@@ -336,6 +346,20 @@ class FlowPresenter:
             self._flow.pause(why)
         for kind in SourceKind:
             self.controls.forget(self._views.source(kind, view))
+
+    def _await_picture(self, dt: float, newest: SimulationState) -> None:
+        """Have the flow wait for the picture of what the trainee's view is to show."""
+        session, view = self._session, self._views.watched(self.controls.holder)
+        if view is None and not self._views.is_empty:
+            return
+        # What is shown of the newest state follows only when it has been processed.
+        is_replayed = self._flow.playback is not None
+        shown = self.shown.latest if is_replayed else self._flow.shown(newest)
+        training = shown.training
+        task = training.task if training.is_marked else ""
+        share = self._pictures.advance(dt, view, task)
+        is_blind = session.goes_on_blind == session.training.trial_id != ""
+        session.picture_share = None if is_blind else share
 
     def _choose_mode(self, changed: Hello | None) -> None:
         """Let the next trial be one in a headset while there is one; people may choose again."""

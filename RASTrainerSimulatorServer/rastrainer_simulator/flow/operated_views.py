@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from rastrainer.protocol import Mode
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.controls import Controls
@@ -15,6 +17,42 @@ from rastrainer_simulator.viewpoint.view_control import Pictures, ViewMotion
 
 NOTED_S = 0.2
 """How often a moving view is noted in the journal."""
+
+
+LONGEST_WAIT_S = 300.0
+"""A picture that has made no progress for so long is not waited for: the view may be broken."""
+
+
+@dataclass
+class _LoadedScene:
+    task: str
+    share: float
+    since_s: float = 0.0
+
+
+class AwaitedPictures:
+    """Knows what each view has drawn, as far as views say so; one that says nothing is ready."""
+
+    def __init__(self) -> None:
+        self._loaded: dict[int, _LoadedScene] = {}
+
+    def take(self, view: int, task: str, share: float) -> None:
+        """Note how much of a task's scene a view has loaded."""
+        self._loaded[view] = _LoadedScene(task, share)
+
+    def forget(self, view: int) -> None:
+        """Forget a view that has left."""
+        self._loaded.pop(view, None)
+
+    def advance(self, dt: float, view: int | None, task: str) -> float | None:
+        """Return what a view has loaded, 0 to 1, while its picture of a task is to be awaited."""
+        loaded = None if view is None else self._loaded.get(view)
+        if loaded is None or (loaded.task, loaded.share) == (task, 1.0):
+            return None
+        loaded.since_s += dt
+        if loaded.since_s > LONGEST_WAIT_S:
+            return None
+        return loaded.share if loaded.task == task else 0.0
 
 
 class ViewSources:
@@ -40,6 +78,11 @@ class ViewSources:
     def hello(self, view: int) -> Hello | None:
         """Return a view; None if it is unknown."""
         return self._views.get(view)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether no view has joined."""
+        return not self._views
 
     @property
     def has_headset(self) -> bool:

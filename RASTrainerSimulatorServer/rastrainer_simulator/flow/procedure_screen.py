@@ -113,7 +113,8 @@ class ProcedureScreen(ArmScreen):
             last = procedure.checkpoints[-1]
             error_mm = MM_PER_M * last.error
             facts.append(say("status.checkpoint", name=last.name, error=error_mm))
-        facts.append(session.duration(session.state.elapsed))
+        took = session.duration(session.state.procedure_time or 0.0)
+        facts.append(say("status.procedure time", time=took))
         return (*facts, *self._figures())
 
     def hints(self) -> tuple[Hint, ...]:
@@ -139,7 +140,7 @@ class ProcedureScreen(ArmScreen):
             checkpoints = session.scenario.procedure(procedure.name).checkpoints
             places = {each.name: session.truly_in_world(each.position) for each in checkpoints}
             return checkpoint_marks(procedure, places)
-        return plan_marks(procedure, session.planned_bone)
+        return plan_marks(procedure, session.planned_bone(procedure.name))
 
     @property
     def is_head_clear(self) -> bool:
@@ -151,7 +152,7 @@ class ProcedureScreen(ArmScreen):
         procedure = self._procedure
         if procedure.stage not in FED or procedure.present is None:
             return None
-        bone = self._session.planned_bone
+        bone = self._session.planned_bone(procedure.name)
         number = procedure.trajectory
         here = bone[number] if number < len(bone) else None
         return depth_ruler(procedure.present, here, self._session.texts)

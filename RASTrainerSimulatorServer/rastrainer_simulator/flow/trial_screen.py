@@ -16,6 +16,7 @@ from rastrainer.protocol import (
     StepKind,
 )
 from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.arm_screen import (
     BACK_WITHIN,
     FARTHEST,
@@ -27,6 +28,7 @@ from rastrainer_simulator.flow.arm_screen import (
 from rastrainer_simulator.flow.pages.session_page import stick_hints
 from rastrainer_simulator.flow.pages.start import StartPage
 from rastrainer_simulator.flow.pages.trial import CompletePage, TrialPage
+from rastrainer_simulator.flow.pages.trial_review import POOR_MM
 from rastrainer_simulator.flow.session.chosen_trial import guidance_of
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
@@ -186,8 +188,27 @@ class TrialScreen(ArmScreen):
                 "work.off the way", trainee=training.trainee, point=training.next_point
             )
             return ScreenMessage(text, Tone.WARNING)
+        slip = self._slip()
+        if slip:
+            return ScreenMessage(slip, Tone.WARNING)
         tone = Tone.GOOD if training.touches else Tone.PLAIN
         return ScreenMessage(session.texts.again(training.instruction), tone)
+
+    def _slip(self) -> str:
+        """Return that the last touch of the trial run was poor; "" else.
+
+        Where touches are scored, nothing says how exact they are before the registration.
+        """
+        session, training = self._session, self._session.training
+        last = training.touches[-1] if training.touches else None
+        if training.task != TRIAL_RUN or last is None or last.label not in self._points:
+            return ""
+        error_mm = MM_PER_M * distance(last.position, self._points[last.label])
+        if error_mm < POOR_MM:
+            return ""
+        undo = session.operator.label(ControlName.UNDO)
+        said = {"label": last.label, "error": error_mm, "undo": undo, "point": training.next_point}
+        return session.texts.say("tutorial.slipped", **said)
 
     def status(self) -> tuple[str, ...]:
         """Return the short facts at the edge."""
@@ -246,11 +267,10 @@ class TrialScreen(ArmScreen):
 
     def _clock(self) -> str:
         session = self._session
-        elapsed = session.state.elapsed
         if session.training.task != TRIAL_RUN:
-            return session.duration(elapsed)
+            return session.duration(session.state.completion_time)
         # What is rounded up must not be a whole second and a float's last digit.
-        left = math.ceil(max(0.0, round(self._practice_s - elapsed, 6)))
+        left = math.ceil(max(0.0, round(self._practice_s - session.state.elapsed, 6)))
         return session.texts.say("status.left", time=session.duration(left))
 
     def _is_off_the_path(self) -> bool:

@@ -10,7 +10,7 @@ from rastrainer_simulator.core.arm import start_tip
 from rastrainer_simulator.flow.arm_screen import ArmScreen
 from rastrainer_simulator.flow.pages.introduction import TutorialPage
 from rastrainer_simulator.flow.pages.session_page import clickable_hint, stick_hints
-from rastrainer_simulator.flow.pages.trial_review import error_arrow, error_tone
+from rastrainer_simulator.flow.pages.trial_review import POOR_MM, error_arrow, error_tone
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.tutorial.steps import TutorialObservation, TutorialStep
 from rastrainer_simulator.flow.tutorial.tutorial import CENTERED_M, Tutorial
@@ -46,9 +46,16 @@ _CONTROLS: Mapping[TutorialStep, tuple[ControlName, ...]] = {
         ControlName.FINE,
         ControlName.BEST_VIEW,
     ),
+    TutorialStep.AGAIN: (ControlName.TOUCH, ControlName.FINE, ControlName.BEST_VIEW),
 }
 """The controls of each step; its sentence names the first, or the first two as a pair."""
-_FREE = (TutorialStep.SLOW, TutorialStep.LOWER, TutorialStep.TOUCH, TutorialStep.GUIDED)
+_FREE = (
+    TutorialStep.SLOW,
+    TutorialStep.LOWER,
+    TutorialStep.TOUCH,
+    TutorialStep.GUIDED,
+    TutorialStep.AGAIN,
+)
 """Steps in which the tip may go anywhere: all that moves it is among the hints."""
 MOVES = tuple(TutorialStep)[:6]
 """Steps that move the tip in one direction."""
@@ -60,7 +67,8 @@ _AMOUNTS: Mapping[TutorialStep, str] = {
     TutorialStep.GUIDED: "tutorial.done points",
 }
 """Key of the text that says how much of a step is done."""
-_HEARD_ANYWAY = (TutorialStep.TOUCH, TutorialStep.UNDO, TutorialStep.GUIDED)
+_TOUCHED = (TutorialStep.TOUCH, TutorialStep.GUIDED, TutorialStep.AGAIN)
+_HEARD_ANYWAY = (*_TOUCHED, TutorialStep.UNDO)
 NEAR_M = 0.02
 """Within this distance the arm counts as arrived."""
 SPEED_MM_S = 250.0
@@ -155,7 +163,9 @@ class TutorialScreen(ArmScreen):
         practice, errors = tutorial.practice.state, tutorial.practice.errors_mm()
         if tutorial.step is TutorialStep.GUIDED and errors:
             touched, point = practice.touches[-1].label, practice.next_point
-            text = say("tutorial.touched", label=touched, error=errors[-1], point=point)
+            undo = session.operator.label(ControlName.UNDO)
+            key = "tutorial.slipped" if errors[-1] >= POOR_MM else "tutorial.touched"
+            text = say(key, label=touched, error=errors[-1], point=point, undo=undo)
             return ScreenMessage(text, _banner(errors[-1]))
         is_on_point = self._state.touch in (TouchStage.ON_SKIN, TouchStage.PRESSED)
         is_lifted = tutorial.step is TutorialStep.TOUCH and not is_on_point
@@ -165,7 +175,8 @@ class TutorialScreen(ArmScreen):
         """Return the short facts at the edge."""
         tutorial, say = self._tutorial, self._session.texts.say
         step, steps = tutorial.place
-        facts: list[str] = [say("tutorial.title"), say("tutorial.place", step=step, steps=steps)]
+        place = () if tutorial.practiced else (say("tutorial.place", step=step, steps=steps),)
+        facts: list[str] = [self._session.practice_title, *place]
         key = _AMOUNTS.get(tutorial.step) if tutorial.step is not None else None
         if key is not None and tutorial.praised is None:
             done, goal = tutorial.amount
@@ -238,7 +249,7 @@ class TutorialScreen(ArmScreen):
     def _praise(self, step: TutorialStep) -> ScreenMessage:
         say = self._session.texts.say
         errors = self._tutorial.practice.errors_mm()
-        if step in (TutorialStep.TOUCH, TutorialStep.GUIDED) and errors:
+        if step in _TOUCHED and errors:
             return ScreenMessage(say("tutorial.recorded", error=errors[-1]), _banner(errors[-1]))
         return ScreenMessage(say("tutorial.praise"), Tone.GOOD)
 

@@ -233,6 +233,9 @@ class Presenter(Protocol):
     def on_frames(self, view: int, frames: Frames) -> None:
         """Process how smoothly a view draws, once a second."""
 
+    def on_picture(self, view: int, task: str, share: float) -> None:
+        """Process how much of a task's scene a view has loaded, 0 to 1; 1 once it is drawn."""
+
     def on_visibility(self, view: int, is_visible: bool) -> None:
         """Process whether the trainee sees the view: the headset was doffed, the page hidden."""
 

@@ -215,6 +215,9 @@ class RatingPresenter:
     def on_frames(self, view: int, frames: Frames) -> None:
         """Ignore it: nothing is recorded."""
 
+    def on_picture(self, view: int, task: str, share: float) -> None:
+        """Ignore it: no clock runs."""
+
     def on_visibility(self, view: int, is_visible: bool) -> None:
         """Pause while no one is watching."""
         self._replay.on_visibility(view, is_visible)

@@ -277,6 +277,9 @@ class ReplayPresenter:
     def on_frames(self, view: int, frames: Frames) -> None:
         """Ignore it: nothing is recorded."""
 
+    def on_picture(self, view: int, task: str, share: float) -> None:
+        """Ignore it: no clock runs."""
+
     def on_visibility(self, view: int, is_visible: bool) -> None:  # noqa: ARG002
         """Ignore it: nothing is missed."""
         if not is_visible:

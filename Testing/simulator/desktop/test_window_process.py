@@ -83,6 +83,8 @@ def session(loop_thread, control_loop, tmp_path_factory):
             served.tell(Feedback(number, name, name, 0.8))
             time.sleep(PAUSE_S)
         served.tell(Feedback(len(PLAYED) + 1, "touch", "touch", volume=0.0))
+        served.wait_for_call("on_picture", joined[0][1], "", 1.0)
+        pictures = [call[2:] for call in served.presenter.calls if call[0] == "on_picture"]
         port = served.port
         served.close()
         again = ServedViews(loop_thread, control_loop, port=port)
@@ -93,7 +95,7 @@ def session(loop_thread, control_loop, tmp_path_factory):
     finally:
         window.process.send_signal(signal.SIGKILL)
         said = window.process.communicate()[0]
-    return {"joined": joined, "said": said, "heard": window.heard}
+    return {"joined": joined, "said": said, "heard": window.heard, "pictures": pictures}
 
 
 def _wait_for_last_sound(window):
@@ -132,6 +134,10 @@ def test_a_computer_without_a_sound_card_is_told_so_in_one_line():
     )
     (line,) = done.stderr.splitlines()
     assert line.startswith("There will be no sound: ")
+
+
+def test_the_window_says_once_that_its_picture_is_drawn(session):
+    assert session["pictures"] == [("", 0.0), ("", 1.0)]
 
 
 def test_the_window_prints_no_warnings_or_errors(session):

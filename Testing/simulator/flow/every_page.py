@@ -11,6 +11,7 @@ from rastrainer.protocol import MAX_ASSIGNMENTS, Phase
 from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
 from rastrainer.study.protocol.steps import StudyStep
 from rastrainer.study.ratings import FORMS
+from rastrainer.trial.trial_feedback import PastTrial
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.pages import (
     controls,
@@ -23,25 +24,61 @@ from rastrainer_simulator.flow.pages import (
     trial,
     trial_review,
 )
+from rastrainer_simulator.flow.pages.own_trials import MOST_TRIALS, OwnTrialsPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.trainee_id import QuestionnairePage
 from rastrainer_simulator.flow.pages.trial import MatchReport
 from rastrainer_simulator.flow.session.preferences import InstructorLock
+from rastrainer_simulator.flow.session.trainee_history import OwnTrial
 from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.presentation.screen import Screen, without_secrets
 from rastrainer_simulator.rating.rating_pages import DomainPage, LoadingPage, RatedPage
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.state import FinalRegistration, TrainingState, TrialResult
-from rastrainer_simulator.trial_state import PlannedLine, ProcedureState, TrajectoryState
+from rastrainer_simulator.trial_state import (
+    PlannedLine,
+    ProcedureState,
+    TouchState,
+    TrajectoryState,
+)
 
 QUESTIONNAIRE = StudyStep("P07", "questionnaire", 2, 19, questionnaire="nasa-tlx")
+FAILED = {
+    "isAccurate": False,
+    "isUnbiased": False,
+    "isSafe": False,
+    "isOwnScore": True,
+    "residualsMm": [5.12],
+    "regionTreMm": 2.91,
+    "commonBiasMm": 1.83,
+    "contactTimeS": 9.4,
+    "contactPathMm": 171.0,
+    "pressingDepthMm": 2.1,
+    "feedback": [
+        {
+            "key": "touch",
+            "text": "Point 12 was off.",
+            "values": {
+                "label": "12",
+                "residual": 5.12,
+                "where": {"key": "touch aside", "text": ""},
+                "hurry": {"key": "touch hurry", "text": ""},
+                "tremor": "",
+            },
+        },
+        {"key": "depth", "text": "Most of the error is in depth.", "values": {}},
+        {"key": "first trial", "text": "This is your first trial.", "values": {}},
+    ],
+}
+"""Details of a trial beyond every limit: nothing is longer."""
 SCORED = TrainingState(
     phase=Phase.SCORED,
     trainee="P07",
     task="task-1",
     mode="desktop",
     trial_id="none",
-    result=TrialResult(FinalRegistration((1.0,) * 16, 1.25, 1.5), 1.4, 81.0, {"ctps": 62.5}),
+    touches=(TouchState("12", (0.0, 0.0, 0.0), 183.2, 183.2),),
+    result=TrialResult(FinalRegistration((1.0,) * 16, 1.25, 1.5), 1.4, 0.0, FAILED),
 )
 
 AT_PROCEDURE = replace(
@@ -49,6 +86,7 @@ AT_PROCEDURE = replace(
 )
 PROCEDURE_SCORED = replace(
     SCORED,
+    touches=(),
     procedure=ProcedureState(
         "biopsy",
         Phase.REGISTERED,
@@ -91,6 +129,15 @@ PROCEDURE_SCORED = replace(
     ),
 )
 
+OWN_TRIALS = tuple(
+    OwnTrial(
+        PastTrial(f"trial-{number}", "task-1", "desktop", 183.2, 61.0 + number, acceptable=True),
+        "test-head",
+        f"2026-11-{number + 1:02d}T15:04:05Z",
+        is_passed=number % 2 == 0,
+    )
+    for number in range(MOST_TRIALS)
+)
 LEARNED = TutorialOutcome("P07", "gamepad", "desktop", 112.0, 2.34, (1.2, 0.8, 0.6))
 
 
@@ -206,11 +253,19 @@ def _pages(session) -> Iterator[SessionPage]:
     yield trainee_id.CharacterPage(session, lambda *_: None, trainee_id.ROWS[0])
     yield experiment.ScenarioPage(session)
     yield QuestionnairePage(session, QUESTIONNAIRE)
-    for over_a_trial in (trial.TrialPage, trial.AbortPage, trial.PracticePage, trial.CompletePage):
+    for over_a_trial in (
+        trial.TrialPage,
+        trial.PreparingPage,
+        trial.AbortPage,
+        trial.PracticePage,
+        trial.CompletePage,
+    ):
         yield over_a_trial(session)
     yield trial.MatchPage(session, _matched())
     yield result.WaitingPage(session)
     yield result.ResultPage(session)
+    # No trial has been played here in which the point could lie.
+    session.state = replace(session.state, training=replace(SCORED, touches=()))
     yield trial_review.ErrorsPage(session)
     session.state = replace(session.state, training=AT_PROCEDURE)
     yield procedure.ProcedurePage(session)
@@ -220,4 +275,7 @@ def _pages(session) -> Iterator[SessionPage]:
     session.state = replace(session.state, training=SCORED)
     yield introduction.TutorialPage(session)
     yield introduction.TutorialDonePage(session, LEARNED)
+    yield introduction.PracticedPage(session, LEARNED)
+    session.history.own = lambda _trainee: OWN_TRIALS
+    yield OwnTrialsPage(session)
     yield trial_review.ReplayPage(session, _Loading(), begins_at_worst=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import re
 
@@ -19,7 +20,10 @@ from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
+from rastrainer_simulator.net.igtl.publisher import sim_state
 from rastrainer_simulator.net.views import outgoing
+from rastrainer_simulator.net.views.boards import seat_text
+from rastrainer_simulator.presentation.presenter import Seat
 from rastrainer_simulator.presentation.screen import Tone
 from rastrainer_simulator.rendering.procedure_picture import (
     PLACED,
@@ -258,6 +262,23 @@ def shown_in_world(operation: Operation, point_ras) -> np.ndarray:
     """Return where the registration shows a point of the plan, (3,) m."""
     matrix = np.reshape(operation.registration["matrix"], (4, 4))
     return transforms.apply(transforms.inverse(matrix), np.array(point_ras)) / MM_PER_M
+
+
+def test_the_trials_clock_stops_at_the_last_touch_and_the_procedures_runs_apart(operation):
+    screen, _message, state = operation.seen["inserted 1"]
+    completed, procedure = state.training.touches[-1].elapsed, state.procedure_time
+    assert state.completion_time == completed < state.elapsed - procedure
+    duration = operation.trainee.presenter._session.duration
+    assert f"Procedure: {duration(procedure)}" in screen.status
+    told = json.loads(outgoing.state(state, 0, operation.trainee.presenter.pictures(state)))
+    assert told["elapsed"] == pytest.approx(completed, abs=1e-5)
+    sent = json.loads(sim_state({}, state, 1).content.text)
+    assert sent["elapsedS"] == pytest.approx(completed, abs=1e-3)
+    assert json.loads(seat_text(state, Seat()))["elapsed"] == int(completed)
+    facts = {fact.label: fact.value for fact in operation.seen["result"].facts}
+    ended = operation.trainee.state
+    assert facts["Time"] == duration(completed)
+    assert facts["Time of the procedure"] == duration(ended.procedure_time)
 
 
 def test_procedures_are_offered_beside_the_tasks(operation):

@@ -295,7 +295,7 @@ def test_the_result_says_what_a_study_asks_for_next_and_offers_nothing_else(resu
     study = result.outside.services.study
     study.take(StudyStep("P07", "break", 4, 9, minutes=5.0))
     result.step(20)
-    assert result.menu.facts[0].value == "81 / 100"
+    assert result.menu.facts[0].value.startswith("81 / 100")
     paragraph = result.menu.paragraphs[-1]
     assert paragraph.startswith("Step 4 of 9: take a break of at least 5 minutes, 0")
     names = [item.name for item in result.menu.items]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.presentation.screen import Tone
-from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from Testing.simulator.flow.conftest import Outside, put_back
 from Testing.simulator.flow.trainee import RATE_HZ, Keys, Trainee
 
@@ -17,12 +17,6 @@ REGISTRATION = {
     "matrix": (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0),
     "freMm": 1.2,
     "expectedTreMm": 0.8,
-}
-GENERAL = {
-    "key": "unacceptable",
-    "values": {},
-    "text": "Not passed: the true error in the brain, or the contact with the head, is beyond what "
-    "is acceptable.",
 }
 
 
@@ -34,6 +28,7 @@ def registered(shared, tmp_path_factory):
     with ControlLoop(shared, folder / "records", rate_hz=RATE_HZ, speed=None) as loop:
         presenter = FlowPresenter(loop, Outside(folder).services, DEFAULT_BINDINGS, Preferences())
         trainee = Trainee(loop, presenter, Keys)
+        trainee.records = folder / "records"
         trainee.until_menu("start")
         trainee.start("task-1")
         trainee.play("task-1")
@@ -64,87 +59,118 @@ def facts_of(menu):
     return {fact.label: fact for fact in menu.facts}
 
 
-def test_the_true_error_in_the_brain_is_shown_beside_the_others(result_of):
-    menu = result_of(regionTreMm=0.73, isAccurate=True, isSafe=True, passMark=70.0)
-    assert [fact.label for fact in menu.facts][:5] == [
-        "Score",
-        "Registration error (FRE)",
-        "Expected error at the target (TRE)",
-        "True error at the target (TRE)",
-        "True error in the brain (TRE)",
+WITHIN = {"regionTreMm": 0.73, "isAccurate": True, "isUnbiased": True, "isSafe": True}
+
+
+def test_each_value_that_is_scored_stands_beside_its_limit(result_of):
+    measured = {"commonBiasMm": 0.41, "contactTimeS": 1.25, "pressingDepthMm": 0.3}
+    menu = result_of(**WITHIN, **measured, contactPathMm=12.0, passMark=70.0)
+    assert menu.title == "P07, Task 1: passed"
+    assert [(fact.label, fact.value, fact.tone) for fact in menu.facts[:5]] == [
+        ("Score", "95 / 100 (pass mark 70)", Tone.GOOD),
+        ("True error in the brain (TRE)", "0.73 mm (max. 1.5)", Tone.GOOD),
+        ("Bias that all touches share", "0.41 mm (max. 1.5)", Tone.GOOD),
+        ("Unintended contact", "1.2 s (max. 8)", Tone.GOOD),
+        ("Pressed into the head", "0.30 mm (max. 1.5)", Tone.GOOD),
     ]
-    region = facts_of(menu)["True error in the brain (TRE)"]
-    assert (region.value, region.tone) == ("0.73 mm", Tone.GOOD)
-    score = facts_of(menu)["Score"]
-    assert (score.value, score.tone) == ("95 / 100", Tone.GOOD)
-    assert not any("acceptable" in sentence for sentence in menu.paragraphs)
+    assert menu.focus == "next"
 
 
-def test_the_common_bias_is_shown_with_a_warning_beyond_its_limit(result_of):
-    within = facts_of(result_of(commonBiasMm=0.41, isAccurate=True, isUnbiased=True, isSafe=True))
-    fact = within["Bias that all touches share"]
-    assert (fact.value, fact.tone) == ("0.41 mm", Tone.PLAIN)
-    beyond = result_of(commonBiasMm=1.81, isAccurate=True, isUnbiased=False, isSafe=True)
-    assert facts_of(beyond)["Bias that all touches share"].tone is Tone.WARNING
+def test_the_limit_of_a_study_is_shown_in_place_of_the_usual_one(result_of):
+    menu = result_of(**{**WITHIN, "isAccurate": False}, regionLimitMm=0.7, passMark=70.0)
+    fact = facts_of(menu)["True error in the brain (TRE)"]
+    assert (fact.value, fact.tone) == ("0.73 mm (max. 0.7)", Tone.WARNING)
 
 
 @pytest.mark.parametrize(
-    ("mark", "tone"), [(70.0, Tone.GOOD), (99.0, Tone.PLAIN), (None, Tone.PLAIN)]
+    ("mark", "title", "tone"),
+    [
+        (70.0, "P07, Task 1: passed", Tone.GOOD),
+        (99.0, "P07, Task 1: not passed", Tone.WARNING),
+        (None, "P07: Task 1", Tone.PLAIN),
+    ],
+    ids=["reached", "missed", "none"],
 )
-def test_a_score_is_shown_as_good_only_where_it_reaches_a_pass_mark(result_of, mark, tone):
-    assert facts_of(result_of(passMark=mark))["Score"].tone is tone
+def test_the_headline_says_whether_the_mark_is_reached(result_of, mark, title, tone):
+    menu = result_of(passMark=mark)
+    assert (menu.title, facts_of(menu)["Score"].tone) == (title, tone)
 
 
 def test_a_score_without_the_error_in_the_brain_has_no_line_for_it(result_of):
     assert "True error in the brain (TRE)" not in facts_of(result_of())
 
 
-@pytest.mark.parametrize(
-    ("details", "sentence"),
-    [
-        pytest.param(
-            {"isAccurate": False, "isSafe": True},
-            "Not acceptable: an instrument guided by this registration would miss its target.",
-            id="inaccurate",
-        ),
-        pytest.param(
-            {"isAccurate": True, "isUnbiased": False, "isSafe": True},
-            "Not acceptable: all touches are off in the same direction, by more than the limit.",
-            id="biased",
-        ),
-        pytest.param(
-            {"isAccurate": True, "isSafe": False},
-            "Not acceptable: the tool rested on the head too long or was pressed in too deeply.",
-            id="unsafe",
-        ),
-    ],
-)
-def test_a_trial_beyond_a_limit_is_called_not_acceptable_and_nothing_in_it_looks_good(
-    result_of, details, sentence
-):
-    menu = result_of(regionTreMm=1.6, passMark=10.0, feedback=[GENERAL], **details)
-    score = facts_of(menu)["Score"]
-    assert (score.value, score.tone) == ("95 / 100, not acceptable", Tone.WARNING)
+BEYOND = {
+    "inaccurate": (
+        {"isAccurate": False, "regionTreMm": 1.6},
+        "An instrument guided by this registration could miss its target.",
+    ),
+    "biased": (
+        {"isUnbiased": False, "commonBiasMm": 1.81},
+        "All touches are off in the same direction, which the registration error cannot show.",
+    ),
+    "unsafe": (
+        {"isSafe": False, "contactPathMm": 170.0},
+        "The tool rested on the head too long, or was pressed in too deeply.",
+    ),
+    "below the mark": ({"passMark": 96.0}, "Within all limits, but below the pass mark."),
+}
+
+
+@pytest.mark.parametrize("name", BEYOND)
+def test_a_failure_says_why_and_leads_to_what_helps(result_of, name):
+    details, reason = BEYOND[name]
+    residuals = [0.4] * 6 + [4.1] + [0.4] * 8
+    placed = {"procedure": {"score": 59.0, "acceptable": True}}
+    menu = result_of(**{**WITHIN, "passMark": 10.0, **placed, **details}, residualsMm=residuals)
+    assert menu.title == "P07, Task 1: not passed"
+    assert menu.paragraphs[0] == reason
+    tones = [fact.tone for fact in menu.facts]
+    assert Tone.GOOD not in tones
+    assert Tone.WARNING in tones
+    names = [item.name for item in menu.items]
+    assert names[:3] == ["worst", "practice", "again"]
+    assert names.index("next") > names.index("replay")
+    assert menu.focus == "worst"
+    assert menu.items[1].label == "Practice point 7"
+
+
+def test_a_procedure_beyond_its_limits_is_not_passed(result_of):
+    menu = result_of(**WITHIN, procedure={"score": 31.0, "acceptable": False}, passMark=70.0)
+    assert menu.title == "P07, Task 1: not passed"
     assert not any(fact.tone is Tone.GOOD for fact in menu.facts)
-    assert menu.paragraphs[0].startswith(sentence)
-    # The reason takes the place of the sentence that has none.
-    assert GENERAL["text"] not in menu.paragraphs
 
 
-def test_an_error_in_the_brain_beyond_the_limit_is_a_warning_however_small_it_looks(result_of):
-    menu = result_of(regionTreMm=1.6, isAccurate=False, isSafe=True)
-    assert facts_of(menu)["True error in the brain (TRE)"].tone is Tone.WARNING
+def test_trainees_read_no_terms_of_statistics(result_of):
+    menu = result_of(**WITHIN, ctps=-54.5, passMark=70.0)
+    said = " ".join((menu.title, *menu.paragraphs, *(fact.label for fact in menu.facts)))
+    assert not any(term in said for term in ("CTPS", "CUSUM", "independent, unbiased"))
 
 
-def test_the_page_is_shown_in_german_too():
-    texts = Texts(LANGUAGES["de"])
-    for key in (
-        "region tre",
-        "unacceptable score",
-        "not accurate",
-        "not safe",
-        "not unbiased",
-        "common bias",
-    ):
-        assert f"result.{key}" in LANGUAGES["de"]
-    assert texts.say("result.unacceptable score", score=12.4) == "12 / 100, nicht zulässig"
+def test_the_worst_point_is_practiced_again_and_nothing_is_recorded(registered, result_of):
+    residuals = [0.4] * 6 + [4.1] + [0.4] * 8
+    result_of(**{**WITHIN, "isAccurate": False}, residualsMm=residuals)
+    trial, records = registered.state.training.trial_id, registered.records
+    before = sorted(path.name for path in records.iterdir())
+    registered.choose("practice")
+    registered.until_menu(None)
+    shown = lambda: registered.presenter.shown.latest.training  # noqa: E731
+    assert shown().next_point == "7"
+    screen = registered.presenter.screen
+    assert screen.status[0] == "Task 1: practice of point 7"
+    registered.until(lambda: not registered.presenter._flow._tutorial_screen._is_homing, "the arm")
+    truth = registered.loop.truth
+    place, center = (truth.in_world(p) / MM_PER_M for p in (truth.fiducials["7"], truth.target))
+    registered.touch(place, center)
+    registered.until_menu("practiced")
+    assert registered.menu.facts[0].label == "Error of your touch"
+    assert registered.state.training.trial_id == trial
+    assert sorted(path.name for path in records.iterdir()) == before
+    registered.step(50)
+    registered.choose("again")
+    registered.until_menu(None)
+    assert shown().touches == ()
+    registered.tap("menu")
+    registered.until_menu("tutorial")
+    registered.choose("leave")
+    registered.until_menu("experiment")

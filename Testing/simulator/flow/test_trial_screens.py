@@ -62,7 +62,9 @@ def test_a_trial_is_aborted_only_after_the_trainee_confirms(trainee):
     assert trainee.state.training.phase == "idle"
 
 
-def test_tasks_wait_for_the_previous_one_unless_the_instructor_disables_that(trainee):
+def test_tasks_wait_for_the_previous_one_unless_the_instructor_disables_that(trainee, outside):
+    # Where Slicer is connected, an instructor gives each trainee an ID.
+    outside.has_slicer = True
     trainee.choose("train")
     trainee.until_menu("introduction")
     trainee.choose("skip")

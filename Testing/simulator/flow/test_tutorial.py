@@ -273,7 +273,7 @@ def test_the_tutorials_menu_lets_it_wait_restart_or_be_left(learner):
     learner.tap("menu")
     learner.until_menu("tutorial")
     assert learner.menu.paragraphs == ("The tutorial is paused at step 5 of 14.",)
-    assert learner.item("leave").label == "Leave the tutorial"
+    assert learner.item("leave").label == "Skip the tutorial"
     learner.tap("pause")
     learner.until_menu(None)
     assert status(learner)[1] == "Step 5 of 14"
@@ -286,7 +286,7 @@ def test_the_tutorials_menu_lets_it_wait_restart_or_be_left(learner):
     learner.until_menu("tutorial")
     learner.choose("leave")
     learner.until_menu("experiment")
-    assert not learner.item("trial-run").is_enabled
+    assert learner.item("trial-run").is_enabled
     assert session_of(learner).tutorial is None
 
 

@@ -173,7 +173,7 @@ def test_slicers_feedback_is_shown_in_the_language_with_its_decimal_sign():
 
 
 def test_a_negative_number_has_a_true_minus_sign_and_a_text_keeps_its_hyphens():
-    assert Texts(LANGUAGES["de"]).say("result.points", points=-3.25) == "−3,2"
+    assert Texts(LANGUAGES["de"]).say("tutorial.mm", error=-3.25) == "−3,2 mm"
     assert Texts().say("start", trainee="P-01", point="1") == "P-01, touch point 1."
 
 

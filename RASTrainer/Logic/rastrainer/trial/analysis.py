@@ -286,7 +286,7 @@ def score_arguments(analysis: TrialAnalysis) -> dict[str, Any]:
     procedure = {} if analysis.procedure is None else {"procedure": analysis.procedure.summary()}
     # What was analyzed with its truth has a score.
     assert score is not None
-    published = analysis.published_score
+    published, measures = analysis.published_score, score.measures
     # A trial run has no progress, and no mark; null is a study's without a mark for this method.
     mark = {} if progress is None else {"passMark": progress.pass_mark}
     return {
@@ -296,8 +296,12 @@ def score_arguments(analysis: TrialAnalysis) -> dict[str, Any]:
             "scoreVersion": score.version,
             "residualsMm": analysis.rigid.residuals_mm.tolist(),
             "treIntervalMm": list(analysis.expected_tre.interval_mm),
-            "regionTreMm": score.measures.tre_mm,
-            "commonBiasMm": score.measures.common_bias_mm,
+            "regionTreMm": measures.tre_mm,
+            "regionLimitMm": score.reference.limit_mm,
+            "commonBiasMm": measures.common_bias_mm,
+            "contactTimeS": measures.contact_time_s,
+            "contactPathMm": measures.contact_path_mm,
+            "pressingDepthMm": measures.pressing_depth_mm,
             "timeDesirability": score.time_desirability,
             "accuracyDesirability": score.accuracy_desirability,
             "safetyDesirability": score.safety_desirability,

@@ -172,8 +172,8 @@ def _about_competence(chart: LcCusum, trials: int) -> Sentence:
     )
 
 
-MAX_SHORT = 6
-"""Sentences that fit beside the figures of a result at 1280 × 720."""
+MAX_SHORT = 4
+"""Sentences that are read at a glance beside the figures of a result."""
 
 
 @dataclass(frozen=True)
@@ -241,14 +241,13 @@ class TrialFeedback:
 
     @property
     def short_sentences(self) -> list[Sentence]:
-        """The sentences that fit beside the score: worst touch, advice, and progress.
+        """What helps a trainee at the next trial: the worst touch, the first advice, the trend.
 
-        Pass mark and competence come last and are always included.
+        Whether the trial is passed is said above them, and competence is for instructors.
         """
-        progress = () if self.progress is None else self.progress.sentences
-        touch = self.touch_sentences[:1]
-        others = [*self.skin_sentences, *touch, *(a.sentence for a in self.advice)]
-        return [*others, *progress[max(0, len(others) + len(progress) - MAX_SHORT) :]]
+        trend = () if self.progress is None else self.progress.sentences[:1]
+        first = (each.sentence for each in self.advice[:1])
+        return [*self.skin_sentences, self.touch_sentences[0], *first, *trend]
 
 
 def trial_feedback(

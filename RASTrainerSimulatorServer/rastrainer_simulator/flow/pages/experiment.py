@@ -6,12 +6,13 @@ With it the lists that it opens: of heads, and of the assignments of a trainee's
 from __future__ import annotations
 
 from rastrainer.errors import InputError
-from rastrainer.protocol import Mode, StepKind, TutorialRule
+from rastrainer.protocol import TRIAL_RUN, Mode, StepKind, TutorialRule
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.scenario import method_of, playable_methods
 from rastrainer.study.curriculum.curriculum_message import AssignmentMessage
 from rastrainer.study.protocol.steps import StudyStep
 from rastrainer.trial.scoring import PASS_MARK
+from rastrainer_simulator.flow.pages.own_trials import OwnTrialsPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.trainee_id import (
     ClickedIdPage,
@@ -23,9 +24,12 @@ from rastrainer_simulator.flow.session.chosen_trial import (
     needs_tutorial,
     obstacle,
     offered_method,
+    skip,
+    skippable,
     start_task,
     tutorial_obstacle,
     tutorial_rule,
+    usual_id,
 )
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import SourceKind
@@ -48,6 +52,8 @@ class ExperimentPage(SessionPage):
 
     def __init__(self, session: TrainingSession, first: str = "") -> None:
         super().__init__(session)
+        self._usual_id = "" if session.trainee.strip() else usual_id(session)
+        session.trainee = self._usual_id or session.trainee
         self.first = first or self._next_task()
 
     def menu(self) -> Menu:
@@ -82,33 +88,37 @@ class ExperimentPage(SessionPage):
                 *choices,
                 *self._assignments(),
                 *self._tutorial(),
+                *self._skip(),
                 *tasks,
+                *self._own_trials(),
                 self.button("back"),
             ),
             trend=trend,
         )
 
     def accept(self, item: str) -> None:
-        """Begin a task, or type."""
+        """Begin a task, open a list, or type."""
+        session = self.session
+        lists = {"scenario": ScenarioPage, "assignments": AssignmentsPage, "trials": OwnTrialsPage}
         if item == "back":
             self.back()
-        elif item == "scenario":
-            self.session.pages.open(ScenarioPage(self.session))
+        elif item in lists:
+            session.pages.open(lists[item](session))
         elif item == "clicked":
-            self.session.pages.open(ClickedIdPage(self.session, self.write))
+            session.pages.open(ClickedIdPage(session, self.write))
         elif item == "answer":
             self._answer()
-        elif item == "assignments":
-            self.session.pages.open(AssignmentsPage(self.session))
         elif item == "tutorial":
-            self.session.begin_tutorial()
-        elif item == "trainee":
-            if self.session.operator.is_one_of(_TYPES):
-                self.session.pages.move(1)
-            else:
-                self.session.pages.open(KeyboardPage(self.session, self.write))
+            session.begin_tutorial()
+        elif item == "skip":
+            skip(session)
+            session.pages.focus(self._next_task())
+        elif item != "trainee":
+            start_task(session, item)
+        elif session.operator.is_one_of(_TYPES):
+            session.pages.move(1)
         else:
-            start_task(self.session, item)
+            session.pages.open(KeyboardPage(session, self.write))
 
     def step(self, item: str, direction: int) -> None:
         """Change the mode, by what is registered, or what follows that."""
@@ -126,9 +136,12 @@ class ExperimentPage(SessionPage):
             self.session.procedure = names[(names.index(present) + direction) % len(names)]
 
     def write(self, item: str, value: str) -> None:
-        """Set the trainee's ID."""
-        if item == "trainee":
-            self.session.trainee = value.lstrip()[:LONGEST_ID]
+        """Set the trainee's ID; what is typed at first replaces the usual one."""
+        if item == "trainee" and value != self._usual_id:
+            typed = value.removeprefix(self._usual_id)
+            is_deleted = bool(self._usual_id) and value == self._usual_id[:-1]
+            self.session.trainee = "" if is_deleted else typed.lstrip()[:LONGEST_ID]
+            self._usual_id = ""
 
     def _trend(self) -> ScoreTrend | None:
         """Return the trainee's scores in the chosen mode; a study may have its own pass mark."""
@@ -184,21 +197,35 @@ class ExperimentPage(SessionPage):
         help_ = reason or self.say("experiment.tutorial help")
         return (self.button("tutorial", value=value, is_enabled=not reason, help=help_),)
 
+    def _skip(self) -> tuple[MenuItem, ...]:
+        """Return what skips the tutorial, then the trial run, where nobody requires them."""
+        what = skippable(self.session)
+        if not what:
+            return ()
+        return (self.button("skip", self.say(f"experiment.skip {what}")),)
+
+    def _own_trials(self) -> tuple[MenuItem, ...]:
+        """Return the button of the trainee's own trials; none before the first."""
+        count = len(self.session.history.own(self.session.trainee.strip()))
+        return (self.button("trials", value=str(count)),) if count else ()
+
     def _task(self, name: str) -> MenuItem:
         """Return a task's button: a disabled one says why."""
         session = self.session
         reason = obstacle(session, name)
-        is_done = session.progress.has_done(session.trainee.strip(), session.scenario.name, name)
+        outcome = session.outcome_of(name)
         return MenuItem(
             name,
             session.task_title(name),
-            value=self.say("experiment.done") if is_done else "",
+            value=self.say(f"experiment.{outcome}") if outcome else "",
             is_enabled=not reason,
             help=reason or self.say("experiment.task help"),
         )
 
     def _next_task(self) -> str:
-        """Return the first task that can be started and is not done; "" without a trainee.
+        """Return the first task that can be started and is to be done; "" without a trainee.
+
+        One that is not passed is to be done again, outside of a study.
 
         With the focus there, a stray key does not change the ID of a known trainee.
         """
@@ -210,10 +237,17 @@ class ExperimentPage(SessionPage):
         best = self.session.next_assignment
         if best is not None and not assignment_obstacle(self.session, best):
             return "assignments"
-        tasks = [self._task(task.name) for task in self.session.scenario.tasks]
-        open_tasks = [task for task in tasks if task.is_enabled and not task.value]
+        names = [task.name for task in self.session.scenario.tasks]
+        to_do = ("", "failed") if step is None else ("",)
         known = "mode" if self.session.trainee.strip() else ""
-        return open_tasks[0].name if open_tasks else known
+        return next((name for name in names if self._is_to_do(name, to_do)), known)
+
+    def _is_to_do(self, name: str, outcomes: tuple[str, ...]) -> bool:
+        session = self.session
+        trainee, head = session.trainee.strip(), session.scenario.name
+        if name == TRIAL_RUN and session.progress.needs_no_trial_run(trainee, head):
+            return False
+        return session.outcome_of(name) in outcomes and not obstacle(session, name)
 
     def _step(self) -> StudyStep | None:
         return self.session.study.step_of(self.session.trainee.strip())

@@ -6,7 +6,13 @@ from rastrainer.protocol import TRIAL_RUN, TutorialRule
 from rastrainer_simulator.flow.pages.controls import ControlsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
-from rastrainer_simulator.flow.session.chosen_trial import obstacle, start_task, tutorial_rule
+from rastrainer_simulator.flow.pages.trial_review import error_tone
+from rastrainer_simulator.flow.session.chosen_trial import (
+    may_skip,
+    obstacle,
+    start_task,
+    tutorial_rule,
+)
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.screen import Fact, Menu
@@ -31,11 +37,18 @@ class IntroductionPage(SessionPage):
             self.name,
             self.say(f"introduction.title.{self._sheet}"),
             (
-                self.say(f"introduction.text.{self._sheet}"),
+                self.say(self._text),
                 self.say("introduction.sheet", sheet=self._sheet, sheets=SHEETS),
             ),
             items=(self.button("next"), self.button("skip"), self.button("back")),
         )
+
+    @property
+    def _text(self) -> str:
+        """The key of the sheet's text: 3D Slicer is spoken of only where it is connected."""
+        key, alone = f"introduction.text.{self._sheet}", ".alone"
+        is_alone = not self.session.is_slicer_connected()
+        return f"{key}{alone}" if is_alone and f"{key}{alone}" in self.session.texts else key
 
     def accept(self, item: str) -> None:
         """Turn the sheet."""
@@ -63,12 +76,12 @@ class TutorialPage(SessionPage):
         """Return the choices for the tutorial."""
         tutorial = self.session.tutorial
         step, steps = (1, 1) if tutorial is None else tutorial.place
-        may_skip = tutorial_rule(self.session) is not TutorialRule.REQUIRED
-        leave = self.say("tutorial.skip" if may_skip else "tutorial.leave")
+        leave = self.say("tutorial.skip" if self._is_skipped else "tutorial.leave")
+        paused = (self.say("tutorial.paused", step=step, steps=steps),)
         return Menu(
             self.name,
-            self.say("tutorial.title"),
-            (self.say("tutorial.paused", step=step, steps=steps),),
+            self.session.practice_title,
+            () if self._is_practice else paused,
             items=(
                 self.button("resume", self.say("trial.resume")),
                 self.button("controls"),
@@ -85,11 +98,24 @@ class TutorialPage(SessionPage):
         elif item == "controls":
             session.pages.open(ControlsPage(session))
         elif item == "restart":
-            session.begin_tutorial()
+            session.restart_practice()
         else:
+            if self._is_skipped:
+                session.tutorials.skip(session.trainee.strip())
             session.end_tutorial()
             session.pages.show_start()
             session.pages.open(ExperimentPage(session))
+
+    @property
+    def _is_practice(self) -> bool:
+        tutorial = self.session.tutorial
+        return tutorial is not None and bool(tutorial.practiced)
+
+    @property
+    def _is_skipped(self) -> bool:
+        """Whether who leaves the tutorial skips it."""
+        is_optional = tutorial_rule(self.session) is not TutorialRule.REQUIRED
+        return not self._is_practice and (is_optional or may_skip(self.session))
 
     def pressed(self, control: ControlName) -> bool:
         """The control that pauses also resumes."""
@@ -135,5 +161,29 @@ class TutorialDonePage(SessionPage):
             start_task(self.session, TRIAL_RUN)
         elif item == "again":
             self.session.begin_tutorial()
+        else:
+            self.back()
+
+
+class PracticedPage(SessionPage):
+    """Says how exact the touch of a practiced point was, and offers another one."""
+
+    name = "practiced"
+
+    def __init__(self, session: TrainingSession, outcome: TutorialOutcome) -> None:
+        super().__init__(session)
+        self._title, self._error_mm = session.practice_title, outcome.errors_mm[-1]
+
+    def menu(self) -> Menu:
+        """Return the error and what comes next."""
+        error = self.say("tutorial.mm", error=self._error_mm)
+        facts = (Fact(self.say("practiced.error"), error, error_tone(self._error_mm)),)
+        items = (self.button("again"), self.button("menu", self.say("tutorial-done.menu")))
+        return Menu(self.name, self._title, (), facts, items)
+
+    def accept(self, item: str) -> None:
+        """Practice the point again, or go to the menu."""
+        if item == "again":
+            self.session.restart_practice()
         else:
             self.back()

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import contextlib
 import math
-from dataclasses import replace
 from typing import Any, TypeGuard
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import is_number
 from rastrainer.study.protocol.steps import StudyStep
-from rastrainer.trial.scoring import PASS_MARK
+from rastrainer.trial.scoring import (
+    COMMON_BIAS_LIMIT_MM,
+    CONTACT_LIMIT_S,
+    CONTACT_PATH_LIMIT_MM,
+    DEPTH_LIMIT_MM,
+    LIMIT_MM,
+)
 from rastrainer.trial.trial_feedback import MAX_SHORT
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.procedure import (
@@ -19,16 +24,34 @@ from rastrainer_simulator.flow.pages.procedure import (
     procedure_facts,
 )
 from rastrainer_simulator.flow.pages.session_page import SessionPage
-from rastrainer_simulator.flow.pages.trial_review import GOOD_MM, POOR_MM, ErrorsPage, ReplayPage
+from rastrainer_simulator.flow.pages.trial_review import ErrorsPage, ReplayPage
 from rastrainer_simulator.flow.session.own_score import OWN_SCORE
 from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.flow.session.verdict import (
+    beyond_limits,
+    detail_number,
+    is_passed,
+    pass_mark,
+)
 from rastrainer_simulator.presentation.screen import Fact, Menu, MenuItem, Tone
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
 from rastrainer_simulator.state import TrialResult
 from rastrainer_simulator.texts.texts import Texts
 
-POOR_SCORE = 40.0
 LONGEST_SENTENCE = 300
+MAX_WARNINGS = 2
+_MEASURED = (
+    ("result.region tre", "regionTreMm", LIMIT_MM, "result.mm of"),
+    ("result.common bias", "commonBiasMm", COMMON_BIAS_LIMIT_MM, "result.mm of"),
+    ("result.contact", "contactTimeS", CONTACT_LIMIT_S, "result.seconds of"),
+    ("result.contact path", "contactPathMm", CONTACT_PATH_LIMIT_MM, "result.millimeters of"),
+    ("result.depth", "pressingDepthMm", DEPTH_LIMIT_MM, "result.mm of"),
+)
+"""What is scored: its label, its member of the score's details, its limit, and its text."""
+_ONLY_IF_BEYOND = ("contactPathMm",)
+_HELPFUL = ("worst", "practice", "again", "errors", "replay", "procedure", "next", "menu")
+_ONWARD = ("next", "procedure", "errors", "worst", "replay", "again", "menu")
+"""The order of what is offered: first what helps after a failure, else what comes next."""
 
 
 class FinishedPage(SessionPage):
@@ -93,7 +116,7 @@ class WaitingPage(FinishedPage):
 
 
 class ResultPage(FinishedPage):
-    """The score, its parts, and the trial again."""
+    """Whether the trial is passed, why, what helps, and the trial again."""
 
     name = "result"
 
@@ -101,53 +124,68 @@ class ResultPage(FinishedPage):
         super().__init__(session)
         self._loading: TrialLoading | None = None
 
-    def menu(self) -> Menu:
-        """Return the results with their units."""
-        training = self.session.training
-        result = training.result
+    @property
+    def _result(self) -> TrialResult:
+        result = self.session.training.result
         assert result is not None, "The page is only opened for a scored trial."
+        return result
+
+    @property
+    def _is_passed(self) -> bool | None:
+        result = self._result
+        return is_passed(self.session.training.task, result.score, result.details)
+
+    def menu(self) -> Menu:
+        """Return the verdict, each value with its limit, and what helps."""
+        training, result, texts = self.session.training, self._result, self.session.texts
+        verdict = {True: "passed", False: "failed", None: "title"}[self._is_passed]
         task = self.session.task_title(training.task)
         return Menu(
             self.name,
-            self.say("result.title", trainee=training.trainee, task=task),
+            self.say(f"result.{verdict}", trainee=training.trainee, task=task),
             (
-                *(self.say(key) for key in _beyond_limits(result)),
-                *((self.say("result.own"),) if result.details.get(OWN_SCORE) is True else ()),
-                *_sentences(self.session.texts, result, "warnings", 3),
-                *_feedback(self.session.texts, result),
-                self.say("result.interval note"),
+                *self._reasons(),
+                *_sentences(texts, result, "feedback", MAX_SHORT),
+                *_sentences(texts, result, "warnings", MAX_WARNINGS),
                 *self._what_comes_next(),
+                *((self.say("result.own"),) if result.details.get(OWN_SCORE) is True else ()),
             ),
-            (
-                *procedure_facts(self.session, result),
-                *self._facts_of_result(result),
-                *_facts_of_trial(self.session),
-            ),
+            tuple(self._facts()),
             self.items(),
         )
 
     def items(self) -> tuple[MenuItem, ...]:
-        """Return where the trainee can go, and what can be shown again."""
+        """Return where the trainee can go: after a failure first to what helps.
+
+        A study goes on all the same.
+        """
         items = {item.name: item for item in super().items()}
-        has_procedure = bool(procedure_details(self.session.training.result))
-        shown = tuple(
-            self.button(name)
-            for name in ("procedure", "errors", "worst", "replay")
-            if name != "procedure" or has_procedure
-        )
-        onward = [items.pop("next")] if "next" in items else []
-        return (*onward, *shown, *items.values())
+        items |= {name: self.button(name) for name in ("errors", "worst", "replay")}
+        if procedure_details(self._result):
+            items["procedure"] = self.button("procedure")
+        worst = self._worst_point()
+        if worst:
+            items["practice"] = self.button("practice", self.say("result.practice", point=worst))
+        is_helped = self._is_passed is False and self._step() is None
+        order = _HELPFUL if is_helped else _ONWARD
+        return tuple(items[name] for name in order if name in items)
 
     def accept(self, item: str) -> None:
-        """Show the trial again, or continue."""
+        """Show the trial again, practice its worst point, or continue."""
         if item in ("replay", "worst"):
             self._show_again(begins_at_worst=item == "worst")
         elif item == "errors":
             self.session.pages.open(ErrorsPage(self.session))
         elif item == "procedure":
             self.session.pages.open(ProcedureErrorsPage(self.session))
+        elif item == "practice":
+            self.session.begin_practice(self.session.training.task, self._worst_point())
         else:
             super().accept(item)
+
+    def back(self) -> None:
+        """Go to the experiment menu: to the task again, unless it is passed."""
+        self.accept("again" if self._is_passed is False else "next")
 
     def closed(self) -> None:
         """Stop loading the trial."""
@@ -158,100 +196,93 @@ class ResultPage(FinishedPage):
         """Load the trial once, when it is first asked for."""
         session = self.session
         try:
-            self._loading = self._loading or session.load_trial()
+            self._loading = self._loading or session.load_trial(session.training.trial_id)
         except InputError as error:
             session.complain(str(error))
         else:
             session.pages.open(ReplayPage(session, self._loading, begins_at_worst))
+
+    def _worst_point(self) -> str:
+        """Return the marked point with the largest residual; "" where it is not known.
+
+        In a study, practice comes where the study has it.
+        """
+        training = self.session.training
+        residuals = self._result.details.get("residualsMm")
+        is_known = isinstance(residuals, list) and len(residuals) == len(training.touches)
+        if self._step() is not None or not training.is_marked or not is_known or not residuals:
+            return ""
+        if not all(map(is_number, residuals)):
+            return ""
+        return training.touches[residuals.index(max(residuals))].label
+
+    def _reasons(self) -> tuple[str, ...]:
+        """Return the first reason why the trial is not passed; the values show the others."""
+        reasons = beyond_limits(self._result.details)[:1]
+        mark = self._mark
+        if not reasons and mark is not None and self._result.score < mark:
+            reasons = ["result.below"]
+        return tuple(self.say(key) for key in reasons)
 
     def _what_comes_next(self) -> tuple[str, ...]:
         """Return what a study requires after this trial."""
         step = self._step()
         return () if step is None else (self.session.step_sentence(step),)
 
-    def _facts_of_result(self, result: TrialResult) -> list[Fact]:
-        is_unacceptable = bool(_beyond_limits(result))
-        key = "result.unacceptable score" if is_unacceptable else "result.of 100"
-        tone = _tone_of_score(result)
-        facts = [
-            Fact(self._score_label(result), self.say(key, score=result.score), tone),
-            self._error("result.fre", result.registration.fre_mm),
-            self._error("result.expected tre", result.registration.expected_tre_mm),
-            self._error("result.true tre", result.true_tre_mm),
-        ]
-        region = result.details.get("regionTreMm")
-        if _is_number(region):
-            fact = self._error("result.region tre", float(region))
-            is_beyond = result.details.get("isAccurate") is False
-            facts.append(replace(fact, tone=Tone.WARNING) if is_beyond else fact)
-        bias = result.details.get("commonBiasMm")
-        if _is_number(bias):
-            text = self.say("result.mm", error=float(bias))
-            is_biased = result.details.get("isUnbiased") is False
-            tone = Tone.WARNING if is_biased else Tone.PLAIN
-            facts.append(Fact(self.say("result.common bias"), text, tone))
-        if is_unacceptable:
+    @property
+    def _mark(self) -> float | None:
+        return pass_mark(self.session.training.task, self._result.details)
+
+    def _facts(self) -> list[Fact]:
+        """Return each value with its limit; nothing looks good in a trial that is not passed."""
+        session, result = self.session, self._result
+        facts = [*procedure_facts(session, result), self._score(), *self._measured()]
+        if self._is_passed is not True:
             facts = [_not_good(fact) for fact in facts]
-        ctps = result.details.get("ctps")
-        if _is_number(ctps):
-            facts.append(
-                Fact(self.say("result.ctps"), self.say("result.points", points=float(ctps)))
-            )
-        return facts
+        errors = (
+            ("result.true tre", result.true_tre_mm),
+            ("result.expected tre", result.registration.expected_tre_mm),
+            ("result.fre", result.registration.fre_mm),
+        )
+        shown = (Fact(self.say(key), self.say("result.mm", error=mm)) for key, mm in errors)
+        return [*facts, *_facts_of_trial(session), *shown]
 
-    def _score_label(self, result: TrialResult) -> str:
-        """Return what the score is for: a procedure has its own."""
+    def _score(self) -> Fact:
+        result, mark = self._result, self._mark
         has_procedure = bool(procedure_details(result))
-        return self.say("procedure-errors.touches" if has_procedure else "result.score")
+        label = self.say("procedure-errors.touches" if has_procedure else "result.score")
+        key = "result.of 100" if mark is None else "result.of mark"
+        is_low = bool(beyond_limits(result.details)) or (mark is not None and result.score < mark)
+        tone = Tone.WARNING if is_low else Tone.GOOD
+        return Fact(label, self.say(key, score=result.score, mark=mark), tone)
 
-    def _error(self, key: str, error_mm: float) -> Fact:
-        tone = Tone.GOOD if error_mm <= GOOD_MM else Tone.PLAIN
-        tone = Tone.WARNING if error_mm >= POOR_MM else tone
-        return Fact(self.say(key), self.say("result.mm", error=error_mm), tone)
-
-
-def _beyond_limits(result: TrialResult) -> list[str]:
-    """Return the keys of the sentences that say why a trial is not acceptable."""
-    limits = (
-        ("isAccurate", "result.not accurate"),
-        ("isUnbiased", "result.not unbiased"),
-        ("isSafe", "result.not safe"),
-    )
-    return [key for name, key in limits if result.details.get(name) is False]
+    def _measured(self) -> list[Fact]:
+        details, facts = self._result.details, []
+        for label, name, usual, key in _MEASURED:
+            value = detail_number(details, name)
+            # A study sets its own limit of the error in the brain.
+            own = detail_number(details, "regionLimitMm") if name == "regionTreMm" else None
+            limit = own or usual
+            if value is None or (name in _ONLY_IF_BEYOND and value <= limit):
+                continue
+            tone = Tone.WARNING if value > limit else Tone.GOOD
+            facts.append(Fact(self.say(label), self.say(key, value=value, limit=limit), tone))
+        return facts
 
 
 def _not_good(fact: Fact) -> Fact:
-    """Nothing looks good about a trial that would have missed the target or hurt the patient."""
-    return replace(fact, tone=Tone.PLAIN) if fact.tone is Tone.GOOD else fact
-
-
-def _tone_of_score(result: TrialResult) -> Tone:
-    if _beyond_limits(result):
-        return Tone.WARNING
-    mark = result.details.get("passMark", PASS_MARK)
-    if _is_number(mark) and result.score >= mark:
-        return Tone.GOOD
-    return Tone.WARNING if result.score < POOR_SCORE else Tone.PLAIN
+    return Fact(fact.label, fact.value) if fact.tone is Tone.GOOD else fact
 
 
 def _facts_of_trial(session: TrainingSession) -> tuple[Fact, ...]:
-    training = session.training
-    say = session.texts.say
+    training, state, say = session.training, session.state, session.texts.say
+    took = state.procedure_time
+    procedure = (Fact(say("result.procedure time"), session.duration(took or 0.0)),)
     return (
-        Fact(say("result.time"), session.duration(session.state.elapsed)),
+        Fact(say("result.time"), session.duration(state.completion_time)),
+        *(() if took is None else procedure),
         Fact(say("result.repeated"), f"{training.rejected} / {training.undone}"),
     )
-
-
-def _feedback(texts: Texts, result: TrialResult) -> list[str]:
-    """Return the feedback; that a trial is not acceptable is said before it, with the reason."""
-    feedback = result.details.get("feedback")
-    if _beyond_limits(result) and isinstance(feedback, list):
-        others = [
-            e for e in feedback if not (isinstance(e, dict) and e.get("key") == "unacceptable")
-        ]
-        result = replace(result, details={**result.details, "feedback": others})
-    return _sentences(texts, result, "feedback", MAX_SHORT)
 
 
 def _sentences(texts: Texts, result: TrialResult, name: str, most: int) -> list[str]:

@@ -184,6 +184,39 @@ class TrialPage(SessionPage):
         return control is ControlName.PAUSE
 
 
+class PreparingPage(SessionPage):
+    """A trial is paused until the trainee's view has drawn its picture; then it goes on."""
+
+    name = "preparing"
+    first = "menu"
+    _is_resumed = False
+
+    def menu(self) -> Menu:
+        """Return how far the picture is."""
+        task = self.session.task_title(self.session.training.task)
+        said = (self.say("preparing.text", task=task), self.session.preparing())
+        items = (self.button("menu", self.say("hint.menu")), self.button("begin"))
+        return Menu(self.name, self.say("preparing.title"), said, items=items)
+
+    def accept(self, item: str) -> None:
+        """Open the trial's menu, or begin without the picture."""
+        if item == "menu":
+            self.back()
+        else:
+            self.session.goes_on_blind = self.session.training.trial_id
+            self.session.do(CommandName.RESUME)
+
+    def back(self) -> None:
+        """Open the trial's menu."""
+        self.session.pages.replace(TrialPage(self.session))
+
+    def advance(self, dt: float) -> None:  # noqa: ARG002
+        """Resume the trial as soon as the picture is there."""
+        if self.session.picture_share is None and not self._is_resumed:
+            self._is_resumed = True
+            self.session.do(CommandName.RESUME)
+
+
 class AbortPage(SessionPage):
     """Asks for confirmation before a trial is aborted."""
 

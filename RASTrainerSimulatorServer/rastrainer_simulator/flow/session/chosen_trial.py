@@ -18,6 +18,9 @@ from rastrainer.study.curriculum.curriculum_message import AssignmentMessage
 from rastrainer_simulator.flow.session.preferences import faded_guidance
 from rastrainer_simulator.flow.session.session import TrainingSession
 
+FIRST_ID = "trainee-1"
+"""An ID is a pseudonym that files keep: it is the same in every language."""
+
 
 def start_task(session: TrainingSession, task: str) -> None:
     """Start a trial of a task for the trainee, in the chosen mode."""
@@ -180,8 +183,49 @@ def tutorial_rule(session: TrainingSession) -> TutorialRule:
     return TutorialRule(chosen)
 
 
+def may_skip(session: TrainingSession) -> bool:
+    """Return whether the trainee may skip tutorial and trial run.
+
+    That is not for who is in a study or has a curriculum, nor where an instructor's PIN locks it.
+    """
+    is_led = session.study.step_of(session.trainee.strip()) is not None
+    return not is_led and session.curriculum is None and not session.lock.is_locked
+
+
+def skippable(session: TrainingSession) -> str:
+    """Return which of "tutorial" and "trial run" comes next and may be skipped; "" for neither."""
+    trainee, head = session.trainee.strip(), session.scenario.name
+    order = [task.name for task in session.scenario.tasks]
+    if _unready(session) or not may_skip(session) or session.preferences.order == "any":
+        return ""
+    if session.progress.missing_before(trainee, head, order[-1], order) != TRIAL_RUN:
+        return ""
+    return "tutorial" if needs_tutorial(session) else "trial run"
+
+
+def skip(session: TrainingSession) -> None:
+    """Skip the tutorial or, after that, the trial run."""
+    trainee, what = session.trainee.strip(), skippable(session)
+    if what == "tutorial":
+        session.tutorials.skip(trainee)
+    elif what:
+        session.progress.skip_trial_run(trainee, session.scenario.name)
+
+
+def usual_id(session: TrainingSession) -> str:
+    """Return the ID of who trains here alone: the only one so far, or one to begin with.
+
+    It is "" where several train, and where an instructor gives each an ID.
+    """
+    if session.is_slicer_connected() or session.lock.has_pin:
+        return ""
+    known = session.progress.latest_trainees(2)
+    return FIRST_ID if not known else known[0] if len(known) == 1 else ""
+
+
 def needs_tutorial(session: TrainingSession) -> bool:
     """Return whether the trial run waits for the tutorial with the device in use."""
-    if tutorial_rule(session) is not TutorialRule.REQUIRED:
+    is_skipped = may_skip(session) and session.tutorials.has_skipped(session.trainee.strip())
+    if is_skipped or tutorial_rule(session) is not TutorialRule.REQUIRED:
         return False
     return not session.tutorials.has_done(session.trainee.strip(), session.operator.learned)

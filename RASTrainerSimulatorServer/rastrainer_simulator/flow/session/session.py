@@ -87,6 +87,9 @@ class TrainingSession:
         layouts: what is written on the keys of each view, by their W3C codes.
         lock: what needs the instructor's PIN.
         notices: what is said beside the instruction.
+        picture_share: how much of its picture the trainee's view has, 0 to 1, while it is awaited;
+            else None.
+        goes_on_blind: the trial that the trainee wants to go on without its picture; "" for none.
         setting_up: has the simulation continue with other settings, or on another head.
         languages: those that can be chosen.
     """
@@ -135,7 +138,10 @@ class TrainingSession:
         self._control_loop = control_loop
         self._controls = controls
         self._asked: list[tuple[str, Future[Answer]]] = []
+        self._practiced = TRIAL_RUN, ""
         self.notices = Notices()
+        self.picture_share: float | None = None
+        self.goes_on_blind = ""
         self._noted: CurriculumMessage | None = None
         self.state: SimulationState = control_loop.latest
 
@@ -229,20 +235,29 @@ class TrainingSession:
 
     def begin_tutorial(self) -> None:
         """Open the tutorial, in place of any page, unless its head is about to go."""
+        self.begin_practice(TRIAL_RUN)
+
+    def begin_practice(self, task: str, point: str = "") -> None:
+        """Open the practice of a task's point, recorded nowhere; without one the tutorial."""
         if self.setting_up.is_under_way:
             self.complain(self.texts.say("being set up"))
             return
-        task = {"task": TRIAL_RUN, "trainee": self.trainee.strip(), "mode": self.mode}
+        wanted = {"task": task, "trainee": self.trainee.strip(), "mode": self.mode}
         try:
-            arguments = check_arguments(CommandName.START_TASK, task)
+            arguments = check_arguments(CommandName.START_TASK, wanted)
         except InputError as error:
             self.complain(str(error))
             return
-        self.tutorial = Tutorial(self.setup, self.state, arguments, self.texts)
+        self.tutorial = Tutorial(self.setup, self.state, arguments, self.texts, point)
+        self._practiced = task, point
         practice = self.tutorial.practice
         self.view.begin(self.setup, practice.truth, practice.shown(self.state))
         self.view.control.go(TUTORIAL_VIEW)
         self.pages.show(None)
+
+    def restart_practice(self) -> None:
+        """Begin the latest practice or tutorial again."""
+        self.begin_practice(*self._practiced)
 
     def end_tutorial(self) -> TutorialOutcome | None:
         """Leave the tutorial; if all of it is done, keep its outcome and return it."""
@@ -253,7 +268,8 @@ class TrainingSession:
         if tutorial.step is not None:
             return None
         outcome = tutorial.outcome(self.operator.learned)
-        self._save(lambda: self.tutorials.keep(outcome))
+        if not tutorial.practiced:
+            self._save(lambda: self.tutorials.keep(outcome))
         return outcome
 
     def prefer(self, preferences: Preferences) -> None:
@@ -272,20 +288,17 @@ class TrainingSession:
         """Return where a point of the MRI (RAS mm) truly is, World, m: only after the score."""
         return in_meters(self._control_loop.truth.in_world(point))
 
-    @property
-    def planned_bone(self) -> tuple[BoneAhead | None, ...]:
-        """Where the lines of the present trial's procedure go through bone, as planned."""
-        procedure = self.training.procedure
-        assert procedure is not None, "the trial has a procedure"
-        return self._control_loop.planned_bone.get(procedure.name, ())
+    def planned_bone(self, procedure: str) -> tuple[BoneAhead | None, ...]:
+        """Return where the lines of a procedure go through bone, as planned."""
+        return self._control_loop.planned_bone.get(procedure, ())
 
-    def load_trial(self) -> TrialLoading:
-        """Begin to load the present trial from its journal.
+    def load_trial(self, trial_id: str) -> TrialLoading:
+        """Begin to load a trial from its journal.
 
         Raises:
             InputError: the journal is not there any more.
         """
-        found = journals_of(self._services.records, self.training.trial_id)
+        found = journals_of(self._services.records, trial_id)
         if not found:
             raise InputError(self.texts.say("replay.no journal"))
         return load_trial(found[0], self._control_loop.setup)
@@ -293,6 +306,20 @@ class TrainingSession:
     def note_done(self) -> None:
         """Count the present trial's task as done."""
         self.progress.note(self.training.trainee, self.scenario.name, self.training.task)
+
+    def outcome_of(self, task: str) -> str:
+        """Return "passed", "failed" or "done" of the trainee's trials of a task; "" of none."""
+        trainee, scenario = self.trainee.strip(), self.scenario.name
+        trials = [
+            each
+            for each in self.history.own(trainee)
+            if (each.past.task, each.scenario) == (task, scenario)
+        ]
+        if any(each.is_passed for each in trials):
+            return "passed"
+        if trials and trials[-1].is_passed is False:
+            return "failed"
+        return "done" if self.progress.has_done(trainee, scenario, task) else ""
 
     def rebind(self, bindings: Bindings) -> None:
         """Adopt other bindings and save them."""
@@ -316,6 +343,21 @@ class TrainingSession:
         """Return the title of a procedure; "" stands for the touches alone."""
         titles = {each.name: each.title for each in self.scenario.procedures}
         return titles.get(name, name) if name else self.texts.say("experiment.touches alone")
+
+    @property
+    def practice_title(self) -> str:
+        """What is practiced: the tutorial, or a point of a task."""
+        task, point = self._practiced
+        key = "tutorial.practice" if point else "tutorial.title"
+        return self.texts.say(key, task=self.task_title(task), point=point)
+
+    def preparing(self) -> str:
+        """Return how far the awaited picture is; "" where none is awaited."""
+        share = self.picture_share
+        if share is None:
+            return ""
+        key = "preparing.loaded" if share > 0.0 else "preparing.built"
+        return self.texts.say(key, share=100.0 * share)
 
     def step_sentence(self, step: StudyStep) -> str:
         """Return the sentence about a study's step."""

@@ -8,6 +8,7 @@ import re
 import uuid
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
@@ -28,6 +29,7 @@ from rastrainer.protocol import TRIAL_RUN, AbortReason, Phase, RegistrationMetho
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.trial_feedback import PastTrial
+from rastrainer_simulator.flow.session.verdict import beyond_limits, is_passed
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 
@@ -39,7 +41,7 @@ _PRACTICED = (
 
 
 class DoneTasks:
-    """Counts a task as done when it was registered.
+    """Counts a task as done when it was registered; whether it was passed is in the history.
 
     The trial run also counts when all its points were touched, or when it was ended after its time
     was over, as the paper's procedure has it (figure 4).
@@ -52,6 +54,7 @@ class DoneTasks:
         """Look through the folder's journals: at the first line and the end of each."""
         self.journals: dict[str, list[Path]] = defaultdict(list)
         self._done: dict[tuple[str, str], set[str]] = defaultdict(set)
+        self._skipped: set[tuple[str, str]] = set()
         for path in sorted(records.glob("*.journal")):
             self._take(path)
 
@@ -63,6 +66,15 @@ class DoneTasks:
         """Return whether a trainee has done a scenario's task."""
         return task in self._done.get((trainee, scenario), ())
 
+    def skip_trial_run(self, trainee: str, scenario: str) -> None:
+        """Have a trainee's tasks in a scenario not wait for the trial run."""
+        self._skipped.add((trainee, scenario))
+
+    def needs_no_trial_run(self, trainee: str, scenario: str) -> bool:
+        """Return whether a trainee has skipped the trial run: by going on, at the latest."""
+        head = trainee, scenario
+        return head in self._skipped or bool(self._done.get(head))
+
     def latest_trainees(self, count: int) -> tuple[str, ...]:
         """Return at most this many trainees, the most recent first."""
         known = (trainee for trainee, journals in self.journals.items() if journals)
@@ -73,7 +85,8 @@ class DoneTasks:
         self, trainee: str, scenario: str, task: str, order: Sequence[str]
     ) -> str | None:
         """Return the first task that has to be done before another; None where none is missing."""
-        done = self._done.get((trainee, scenario), ())
+        done = {*self._done.get((trainee, scenario), ())}
+        done |= {TRIAL_RUN} if self.needs_no_trial_run(trainee, scenario) else set()
         return next((name for name in order[: order.index(task)] if name not in done), None)
 
     def _take(self, path: Path) -> None:
@@ -109,9 +122,18 @@ class FinishedTutorials:
         self._records = records
         self._devices: dict[str, set[str]] = defaultdict(set)
         self._latest: dict[str, TutorialOutcome] = {}
+        self._skipped: set[str] = set()
         for path in sorted(records.glob(f"*{TUTORIAL_SUFFIX}")):
             with contextlib.suppress(InputError, OSError):
                 self._note(TutorialOutcome.of(read_fields(path)))
+
+    def skip(self, trainee: str) -> None:
+        """Have a trainee's trial run not wait for the tutorial until the simulator ends."""
+        self._skipped.add(trainee)
+
+    def has_skipped(self, trainee: str) -> bool:
+        """Return whether a trainee wants no tutorial."""
+        return trainee in self._skipped
 
     def has_done(self, trainee: str, device: SourceKind) -> bool:
         """Return whether a trainee has learned what they now use."""
@@ -147,6 +169,23 @@ _START = re.compile(
 )
 
 
+@dataclass(frozen=True)
+class OwnTrial:
+    """A scored or failed trial, as its trainee finds it again.
+
+    Attributes:
+        past: what progress is computed from.
+        scenario: name of the head.
+        started_utc: ISO 8601.
+        is_passed: None where no mark says so.
+    """
+
+    past: PastTrial
+    scenario: str
+    started_utc: str
+    is_passed: bool | None
+
+
 class ScoreHistory:
     """Reads a trainee's journals when first asked for them, and one that has grown again."""
 
@@ -154,22 +193,26 @@ class ScoreHistory:
         """Prepare; `journals` are those of each trainee that are there already, oldest first."""
         self._records = records
         self._journals = {trainee: list(paths) for trainee, paths in journals.items()}
-        self._past: dict[Path, PastTrial | None] = {}
+        self._own: dict[Path, OwnTrial | None] = {}
 
     def changed(self, trainee: str, trial_id: str) -> None:
         """Note that a trial of a trainee has begun, ended or been scored."""
         known = self._journals.setdefault(trainee, [])
         for path in journals_of(self._records, trial_id) if trial_id else ():
-            self._past.pop(path, None)
+            self._own.pop(path, None)
             if path not in known:
                 known.append(path)
 
-    def of(self, trainee: str) -> tuple[PastTrial, ...]:
+    def own(self, trainee: str) -> tuple[OwnTrial, ...]:
         """Return the trainee's scored trials except trial runs, and the failures, oldest first."""
         paths = self._journals.get(trainee, ())
-        self._past |= {path: _past_trial(path) for path in paths if path not in self._past}
-        found = (self._past[path] for path in paths)
+        self._own |= {path: _own_trial(path) for path in paths if path not in self._own}
+        found = (self._own[path] for path in paths)
         return tuple(trial for trial in found if trial is not None)
+
+    def of(self, trainee: str) -> tuple[PastTrial, ...]:
+        """Return the same as progress is computed from it."""
+        return tuple(trial.past for trial in self.own(trainee))
 
     def best(self, trainee: str, task: str) -> tuple[Path, ...]:
         """Return the journals of a trainee's acceptable trials of a task, the best score first.
@@ -179,11 +222,11 @@ class ScoreHistory:
         self.of(trainee)
         found = []
         for path in self._journals.get(trainee, ()):
-            trial = self._past[path]
-            if trial is None or trial.task != task or not trial.acceptable:
+            own = self._own[path]
+            if own is None or own.past.task != task or not own.past.acceptable:
                 continue
-            if trial.method is RegistrationMethod.FIDUCIALS:
-                found.append((trial.score, path))
+            if own.past.method is RegistrationMethod.FIDUCIALS:
+                found.append((own.past.score, path))
         return tuple(path for _score, path in sorted(found, key=lambda each: -each[0]))
 
     def trend(self, trainee: str, mode: str) -> tuple[float, ...]:
@@ -197,13 +240,15 @@ class ScoreHistory:
         return tuple(scores[-MAX_SHOWN:])
 
 
-def _past_trial(journal: Path) -> PastTrial | None:
+def _own_trial(journal: Path) -> OwnTrial | None:
     """Return the scored or failed trial of a journal; None for others and damaged ones."""
     try:
         last = {entry["kind"]: entry for entry in _last_entries(journal)}
         if "attempt" in last:
             aborted = AbortedTrial.from_json(last["attempt"]["record"])
-            return PastTrial.failed(aborted) if aborted.counts_as_failed else None
+            failed = PastTrial.failed(aborted)
+            own = OwnTrial(failed, aborted.scenario, aborted.started_utc, is_passed=False)
+            return own if aborted.counts_as_failed else None
         if "registered" not in last or "scored" not in last:
             return None
         record = TrialRecord.from_json(last["registered"]["record"])
@@ -211,17 +256,18 @@ def _past_trial(journal: Path) -> PastTrial | None:
         details = scored["details"]
         if record.task == TRIAL_RUN:
             return None
-        return PastTrial(
+        score = float(scored["score"])
+        past = PastTrial(
             record.trial_id,
             record.task,
             record.mode,
             record.completion_time_s,
-            float(scored["score"]),
-            details["isAccurate"] is True
-            and details["isUnbiased"] is not False
-            and details["isSafe"] is True,
+            score,
+            details["isAccurate"] is True and not beyond_limits(details),
             method=record.method,
         )
+        verdict = is_passed(record.task, score, details)
+        return OwnTrial(past, record.scenario, record.started_utc, verdict)
     except (OSError, DamagedLineError, InputError, KeyError, TypeError, ValueError):
         return None
 

@@ -40,6 +40,7 @@ class TutorialStep(str, Enum):
     UNDO = "undo"
     PAUSE = "pause"
     GUIDED = "guided"
+    AGAIN = "again"
 
 
 _OF_VIEW = (TutorialStep.TURN_VIEW, TutorialStep.LOOK_AROUND, TutorialStep.BEST_VIEW)
@@ -52,6 +53,8 @@ WITH_POINTS = (
     TutorialStep.GUIDED,
 )
 """Steps in which the next point is marked."""
+OF_PRACTICE = (TutorialStep.AGAIN,)
+"""The only step where one point of a trial is practiced."""
 
 
 def steps_for(device: SourceKind, mode: str) -> tuple[TutorialStep, ...]:
@@ -63,7 +66,8 @@ def steps_for(device: SourceKind, mode: str) -> tuple[TutorialStep, ...]:
     view: tuple[TutorialStep, ...] = (TutorialStep.TURN_VIEW, TutorialStep.BEST_VIEW)
     if mode == Mode.HMD.value:
         view = (TutorialStep.LOOK_AROUND,) if device is SourceKind.XR else ()
-    return tuple(step for step in TutorialStep if step not in _OF_VIEW or step in view)
+    left_out = {*_OF_VIEW, *OF_PRACTICE}.difference(view)
+    return tuple(step for step in TutorialStep if step not in left_out)
 
 
 @dataclass(frozen=True)
@@ -217,5 +221,6 @@ MEASURES: Mapping[TutorialStep, Callable[[], StepMeasure]] = {
     TutorialStep.UNDO: lambda: BecameTrue(lambda now: now.undone > 0),
     TutorialStep.PAUSE: lambda: BecameTrue(lambda now: now.has_paused),
     TutorialStep.GUIDED: lambda: PointsTouched(GUIDED_TOUCHES),
+    TutorialStep.AGAIN: lambda: PointsTouched(1),
 }
 """For each step its measure, newly made when the step begins."""

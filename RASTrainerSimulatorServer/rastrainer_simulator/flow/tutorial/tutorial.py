@@ -13,12 +13,12 @@ import numpy as np
 
 from rastrainer.head.trial_head import Perturbation
 from rastrainer.protocol import TRIAL_RUN, CommandName
-from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.flow.tutorial.steps import (
     MEASURES,
+    OF_PRACTICE,
     WITH_POINTS,
     StepMeasure,
     TutorialObservation,
@@ -39,12 +39,12 @@ PRAISE_S = 0.8
 """How long a completed step is praised before the next one begins."""
 CENTERED_M = 0.003
 """The longest distance of a touch to its point: trials allow more, but the center is aimed at."""
-_MAY_TOUCH = (TutorialStep.LOWER, TutorialStep.TOUCH, TutorialStep.GUIDED)
+_MAY_TOUCH = (TutorialStep.LOWER, TutorialStep.TOUCH, TutorialStep.GUIDED, TutorialStep.AGAIN)
 _MAY_UNDO = (TutorialStep.UNDO, TutorialStep.GUIDED)
 
 
 class TouchPractice:
-    """Some points of the trial run, touched while no trial is open.
+    """Some points of a task, touched while no trial is open.
 
     The rules are those of a trial, whose state machine is used, but the simulation, its clients and
     the journals know nothing of it: only what the views show is changed (`shown`).
@@ -62,6 +62,7 @@ class TouchPractice:
         points: slice,
         texts: Texts,
         rest: Vector | None = None,
+        task: str = TRIAL_RUN,
     ) -> None:
         """Begin; the head stays where it is.
 
@@ -72,11 +73,12 @@ class TouchPractice:
             points: which are touched.
             texts: the sentences.
             rest: where the tip may still be on the skin from a touch before, World, m.
+            task: of the points.
         """
         self._rest = rest
         self._settings = replace(setup.settings.training, acceptance_radius=CENTERED_M)
         self._of_trials = setup.settings.training
-        scenario = _short_scenario(setup.scenario, state.head_to_world, points)
+        scenario = _short_scenario(setup.scenario, task, state.head_to_world, points)
         self._training = Training(scenario, 0, self._settings, texts)
         start = {**arguments, "task": scenario.tasks[0].name}
         self._training.handle(OperatorCommand(CommandName.START_TASK, start), _moment(state))
@@ -159,17 +161,15 @@ class TouchPractice:
         return replace(self.state, next_point=None), None
 
 
-def _short_scenario(scenario: Scenario, head_to_world: np.ndarray, points: slice) -> Scenario:
-    """Return a scenario with some points of its trial run, and the head at a pose in m."""
+def _short_scenario(
+    scenario: Scenario, name: str, head_to_world: np.ndarray, points: slice
+) -> Scenario:
+    """Return a scenario with some points of a task, and the head at a pose in m."""
     pose = head_to_world.copy()
     pose[:3, 3] *= MM_PER_M
-    task = _first_task(scenario)
+    task = next((task for task in scenario.tasks if task.name == name), scenario.tasks[0])
     short = replace(task, labels=task.labels[points], fiducials=task.fiducials[points])
     return replace(scenario, tasks=(short,), head_to_world=pose, perturbation=_NOT_MOVED)
-
-
-def _first_task(scenario: Scenario) -> Task:
-    return next((task for task in scenario.tasks if task.name == TRIAL_RUN), scenario.tasks[0])
 
 
 def _moment(state: SimulationState) -> TouchMoment:
@@ -189,6 +189,7 @@ class Tutorial:
         setup: the simulation's, at the beginning.
         steps: in order, for the device in use.
         praised: the step that was just done, while it is praised; else None.
+        practiced: the point that is practiced instead of all that; "" in the tutorial itself.
     """
 
     def __init__(
@@ -197,18 +198,24 @@ class Tutorial:
         state: SimulationState,
         arguments: dict[str, str],
         texts: Texts,
+        practiced: str = "",
     ) -> None:
-        """Begin; `arguments` are checked ones of StartTask."""
+        """Begin; `arguments` are checked ones of StartTask; `practiced` is a point of its task."""
         self.trainee, self.mode = arguments["trainee"], arguments["mode"]
         self.setup = setup
         trial = {**arguments, "trialId": str(uuid.uuid4())}
         self._first = TouchPractice(setup, state, trial, slice(1), texts)
-        guided, rest = slice(1, 1 + GUIDED_TOUCHES), self._first.goal
-        self._guided = TouchPractice(setup, state, trial, guided, texts, rest)
+        guided, rest, task = slice(1, 1 + GUIDED_TOUCHES), self._first.goal, TRIAL_RUN
+        self.practiced = practiced
+        if practiced:
+            task, rest = arguments["task"], None
+            place = setup.scenario.task(task).labels.index(practiced)
+            guided = slice(place, place + 1)
+        self._guided = TouchPractice(setup, state, trial, guided, texts, rest, task)
         self._guided.show_points()
         self.praised: TutorialStep | None = None
         self._praise_s = 0.0
-        self.steps = steps_for(SourceKind.KEYBOARD, self.mode)
+        self.use(SourceKind.KEYBOARD)
         self._done: list[TutorialStep] = []
         self._measure: StepMeasure | None = None
         self._before: TutorialObservation | None = None
@@ -218,7 +225,8 @@ class Tutorial:
     @property
     def practice(self) -> TouchPractice:
         """The touches: one to begin with, then the guided ones at other points."""
-        return self._guided if self.step in (TutorialStep.GUIDED, None) else self._first
+        is_guided = self.step in (TutorialStep.GUIDED, *OF_PRACTICE, None)
+        return self._guided if is_guided else self._first
 
     @property
     def fiducials(self) -> Mapping[str, Vector]:
@@ -256,7 +264,7 @@ class Tutorial:
     @property
     def has_learned_view(self) -> bool:
         """Whether the view may go to the next point by itself."""
-        return self.step in (None, TutorialStep.GUIDED)
+        return self.step in (None, TutorialStep.GUIDED, *OF_PRACTICE)
 
     @property
     def may_touch(self) -> bool:
@@ -270,7 +278,7 @@ class Tutorial:
 
     def use(self, device: SourceKind) -> None:
         """Teach the controls of a device from now on."""
-        self.steps = steps_for(device, self.mode)
+        self.steps = OF_PRACTICE if self.practiced else steps_for(device, self.mode)
 
     def advance(self, dt: float, now: TutorialObservation) -> TutorialStep | None:
         """Advance by `dt` seconds; return the step that has just been done."""
@@ -298,7 +306,7 @@ class Tutorial:
     def touch(self, state: SimulationState) -> TrainingReply:
         """Record a touch, or refuse it."""
         reply = self.practice.touch(state)
-        if reply.ok and TutorialStep.TOUCH not in self._done:
+        if reply.ok and self.practice is self._first and TutorialStep.TOUCH not in self._done:
             (self._first_error_mm,) = self._first.errors_mm()
         return reply
 

@@ -101,7 +101,7 @@ def sim_state(changing: Mapping[str, Any], state: SimulationState, seq: int) -> 
 
     `changing` is what `what_changes` gives; the times go along and are no reason to send it.
     """
-    times = {"simTime": round(state.sim_time, 6), "elapsedS": round(state.elapsed, 3)}
+    times = {"simTime": round(state.sim_time, 6), "elapsedS": round(state.completion_time, 3)}
     text = json.dumps({"seq": seq, **times, **changing}, allow_nan=False)
     return Message(DeviceName.SIM_STATE, String(text))
 

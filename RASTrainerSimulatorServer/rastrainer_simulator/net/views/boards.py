@@ -86,7 +86,7 @@ def seat_text(now: SimulationState, seat: Seat) -> str:
         phase=training.phase.value,
         touched=len(training.touches) if is_open else 0,
         rejected=training.rejected if is_open else 0,
-        elapsed=math.floor(now.elapsed) if is_open else 0,
+        elapsed=math.floor(now.completion_time) if is_open else 0,
         touch=now.touch.value,
     )
 

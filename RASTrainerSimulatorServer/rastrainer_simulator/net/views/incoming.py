@@ -35,6 +35,7 @@ ITEM = "item"
 ORBIT = "orbit"
 TEXT = "text"
 FRAMES = "frames"
+PICTURE = "picture"
 VISIBILITY = "visibility"
 ALIVE = "alive"
 WORN = "worn"
@@ -142,6 +143,7 @@ MEMBERS: Mapping[str, Mapping[str, Callable[[Any], Any]]] = {
     PRESS: {"control": text(40)},
     ITEM: {"name": text(80)},
     TEXT: {"name": text(80), "value": _maybe_empty(200)},
+    PICTURE: {"task": _maybe_empty(80), "share": number(0, 1)},
     FRAMES: {"shown": _COUNT, "dropped": _COUNT, "refreshHz": _RATE},
     VISIBILITY: {"isVisible": yes_or_no},
     WORN: {"eyes": _pose_or_null, "left": _pose_or_null, "right": _pose_or_null},

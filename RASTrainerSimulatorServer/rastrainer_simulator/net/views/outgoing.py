@@ -114,7 +114,7 @@ def state(
         phase=training.phase.value,
         next=training.next_point if training.is_marked else None,
         touched=[touch.label for touch in training.touches] if training.is_marked else [],
-        elapsed=round(now.elapsed, DECIMALS),
+        elapsed=round(now.completion_time, DECIMALS),
         plannedTarget=None if planned is None else planned.position,
         delayed=delayed,
         procedure=_procedure(now, pictures),

@@ -165,6 +165,7 @@ class ViewSocket:
             incoming.ITEM: to_presenter(presenter.on_item),
             incoming.TEXT: to_presenter(presenter.on_text),
             incoming.FRAMES: lambda *values: self._take_frames(Frames(*values)),
+            incoming.PICTURE: to_presenter(presenter.on_picture),
             incoming.VISIBILITY: to_presenter(presenter.on_visibility),
             incoming.ALIVE: nothing,
         }

@@ -87,6 +87,8 @@ export class MenuRow {
     field.spellcheck = false;
     field.oninput = () => this.tell(field);
     field.onfocus = () => {
+      // What is typed replaces the ID that is there. A click would put the cursor into it after this.
+      window.setTimeout(() => field.select());
       if (!this.isFollowing) this.tell(field);
     };
     return field;

@@ -13,6 +13,7 @@ import { hasGuide, isTouchError, type ControlNews, type EventNews, type Hello, t
 import { Loading } from "../overlay/loading";
 import { Overlay } from "../overlay/overlay";
 import { pair } from "../stream/pairing";
+import { PictureReport } from "../stream/picture_report";
 import { PoseStream } from "../scene/pose_stream";
 import { loadScene, type SceneModel } from "../scene/scene_model";
 import { Sounds } from "../audio/sounds";
@@ -47,6 +48,7 @@ export class Page {
   private readonly touch = new TouchControls(this.connection);
   private readonly sounds = new Sounds();
   private readonly frames = new FrameCount(this.connection);
+  private readonly picture = new PictureReport(this.connection);
   private readonly arrows = new SightArrows();
   private readonly sight = new ClearSight();
   private readonly ring = this.stage && new TouchRing(this.stage.scene);
@@ -116,6 +118,8 @@ export class Page {
         this.bodies = news.bodies;
         this.poses = new PoseStream(news.bodies.length);
         this.trace.reset();
+        if (this.stage !== null) this.picture.begin();
+        this.isDue = true;
         break;
       case "trace":
         this.trace.take(news);
@@ -176,7 +180,9 @@ export class Page {
     const isWanted = () => news.url === this.scene?.url;
     try {
       const model = await loadScene(news, this.bodies, (loaded, total) => {
-        if (isWanted()) this.loading.show(loaded, total);
+        if (!isWanted()) return;
+        this.loading.show(loaded, total);
+        this.picture.loaded(news.task, loaded, total);
       });
       if (!isWanted()) return;
       this.loading.hide();
@@ -262,6 +268,7 @@ export class Page {
       this.ring?.show(model, state, stage.renderer.xr.getCamera(), this.screen?.menu == null);
       this.headset.draw(now, frame, model, state);
       this.frames.drawn();
+      this.picture.drawn(model.news.task);
     } else {
       this.drawFlat(flat, now, model, state);
     }
@@ -305,6 +312,7 @@ export class Page {
     this.sight.show(model, flat.camera, state, isWorking);
     flat.draw(inset !== "");
     this.frames.drawn();
+    this.picture.drawn(model.news.task);
   }
 }
 

@@ -32,6 +32,7 @@ MESSAGES = [
         {"type": "frames", "shown": 72, "dropped": 1, "refreshHz": 72.0},
         ("on_frames", Frames(72, 1, 72.0)),
     ),
+    ({"type": "picture", "task": "task-1", "share": 0.5}, ("on_picture", "task-1", 0.5)),
     ({"type": "visibility", "isVisible": False}, ("on_visibility", False)),
 ]
 
