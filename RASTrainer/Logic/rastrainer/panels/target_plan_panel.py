@@ -178,8 +178,9 @@ class PlanPanel:
         node, row = self._ui.planComboBox.currentNode(), self._row()
         chosen = self._ui.planTargetComboBox.currentText
         labels = [shortName(label) for label in targetsOf(node)]
-        if chosen in labels and labels[row : row + 1] != [chosen]:
-            self._offerTargets(node, labels.index(chosen))
+        if chosen in labels:
+            isSameRow = labels[row : row + 1] == [chosen]
+            self._offerTargets(node, row if isSameRow else labels.index(chosen))
         self.showState()
 
     def _row(self) -> int:
