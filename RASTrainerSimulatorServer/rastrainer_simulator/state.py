@@ -199,7 +199,7 @@ class TrainingState:
         """Whether all points are touched or traced, so that the completion time is known."""
         stage = self.phase if self.procedure is None else self.procedure.stage
         is_open = self.phase in (Phase.IDLE, Phase.RUNNING, Phase.PAUSED)
-        return not is_open or stage in PROCEDURE_PHASES
+        return bool(self.touches) and (not is_open or stage in PROCEDURE_PHASES)
 
     @property
     def completed_s(self) -> float:

@@ -16,7 +16,6 @@ from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import CountedTrial, standing_in
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.steps import StudyStep
-from rastrainer.trial.scoring import SCORE_VERSION
 from Testing.domain.trial.trial_records import gentle_score, make_record
 from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.end_to_end.study_side import STUDY, StudySide
@@ -51,7 +50,7 @@ TWO = Curriculum(
     "C",
     (Assignment("one", "task-1"), Assignment("two", "task-2", after=("one",))),
 )
-PASSED = CountedTrial("task-1", "desktop", score=80.0, acceptable=True, version=SCORE_VERSION)
+PASSED = CountedTrial("task-1", "desktop", score=80.0, acceptable=True)
 
 
 def curriculum(*trials):

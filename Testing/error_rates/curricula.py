@@ -17,7 +17,7 @@ from rastrainer.study.curriculum.standing import (
     CurriculumStanding,
     standing_in,
 )
-from rastrainer.trial.scoring import PASS_MARK, SCORE_VERSION
+from rastrainer.trial.scoring import PASS_MARK
 from Testing.error_rates.measured import Measured, share_of
 
 GOALS_HEADER = ("goal, and trainee", "called reached")
@@ -81,7 +81,7 @@ def _is_reached(
 
 
 def _trial(task: str, score: float) -> CountedTrial:
-    return CountedTrial(task, "desktop", score=score, acceptable=True, version=SCORE_VERSION)
+    return CountedTrial(task, "desktop", score=score, acceptable=True)
 
 
 def _stand(curriculum: Curriculum, trials: Sequence[CountedTrial]) -> CurriculumStanding:

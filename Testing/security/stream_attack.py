@@ -25,6 +25,7 @@ MESSAGES = (
     {"type": "press", "control": "menu"},
     {"type": "item", "name": "train"},
     {"type": "text", "name": "trainee", "value": "P01"},
+    {"type": "picture", "task": "task-1", "share": 0.5},
     {"type": "frames", "shown": 60, "dropped": 0, "refreshHz": 60},
     {"type": "visibility", "isVisible": True},
     {"type": "worn", "eyes": POSE, "left": None, "right": POSE},

@@ -235,12 +235,3 @@ def test_a_contact_does_not_inherit_the_depth_of_the_one_before():
     ]
     contacts = Recording.of([*recorded(depthMm=0.1), *again]).trajectory().contacts
     assert [contact.greatest_depth_mm for contact in contacts] == [2.5, 0.2]
-
-
-def test_a_journal_without_complete_depths_has_no_pressing_depth():
-    partly = recorded(depthMm=0.1)
-    del partly[1]["depthMm"]
-    for entries in (recorded(), partly):
-        trajectory = Recording.of(entries).trajectory()
-        assert trajectory.depth_mm is None
-        assert "pressing_depth_mm" not in trial_motion(trajectory)

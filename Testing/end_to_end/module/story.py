@@ -236,7 +236,9 @@ class Story:
 
         def is_connected() -> bool:
             said = host.find("simulatorLogEdit").plainText
-            assert "ended by itself" not in host.text("programText"), said
+            text = host.text("programText")
+            assert "ended by itself" not in text, said
+            assert "stopped unexpectedly" not in text, said
             # After a scene is cleared, the panel notices the loss at its next update.
             is_in_scene = host.scene.GetFirstNodeByName(CONNECTOR_NAME) is not None
             return is_in_scene and host.text("stateText").startswith("Connected")
@@ -247,7 +249,9 @@ class Story:
         """End the simulator's process as a crash would; the module notices it."""
         host = self.host
         os.kill(int(self._pid_file.read_text()), signal.SIGKILL)
-        host.wait_until(lambda: "ended by itself" in host.text("programText"), "its end is shown")
+        host.wait_until(
+            lambda: "stopped unexpectedly" in host.text("programText"), "its end is shown"
+        )
         host.wait_until(
             lambda: not host.text("stateText").startswith("Connected"), "the link is closed, too"
         )

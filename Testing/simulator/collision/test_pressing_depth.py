@@ -7,8 +7,6 @@ import pytest
 
 from rastrainer.command_arguments import check_arguments
 from rastrainer.journal.journal_file import read_journal
-from rastrainer.journal.recording import Recording
-from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import CommandName, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.proximity import DEEPEST, Pressing
@@ -80,13 +78,13 @@ def test_a_jog_presses_by_its_velocity_times_its_duration(simulation):
 
 
 def test_a_stick_held_down_presses_to_the_limit_and_no_farther(simulation):
-    depths = [simulation.step(DT, DOWN).state.depth for _ in range(400)]
+    depths = [simulation.step(DT, DOWN).state.depth for _ in range(1000)]
     assert depths == sorted(depths)
     assert depths[-1] == DEEPEST
 
 
 def test_lifting_reduces_the_depth_and_the_end_of_contact_reports_the_maximum(simulation):
-    for _ in range(40):
+    for _ in range(80):
         simulation.step(DT, DOWN)
     rest(simulation, 1)
     deepest = simulation.state.depth
@@ -112,8 +110,8 @@ def test_accepted_and_refused_touches_report_their_depth(simulation):
 
 
 def test_a_new_trial_starts_with_zero_depth(simulation):
-    simulation.step(DT, DOWN)
-    simulation.step(DT, DOWN)
+    for _ in range(10):
+        simulation.step(DT, DOWN)
     assert simulation.state.depth > 0.0
     do(simulation, CommandName.ABORT)
     assert simulation.state.depth == 0.0
@@ -180,18 +178,3 @@ def test_a_single_missing_depth_is_detected_by_the_replay(setup, begun, tmp_path
     del next(entry for entry in begun if entry["kind"] == "touch")["depthMm"]
     report = replay(written(begun, tmp_path / "forged.journal"), setup)
     assert "depthMm was None" in report.difference
-
-
-def test_a_journal_from_before_depths_replays_to_the_last_bit_and_has_no_pressing_depth(
-    setup, pressed, tmp_path
-):
-    entries = copy.deepcopy(pressed.entries)
-    for entry in entries:
-        entry.pop("depthMm", None)
-    reading = written(entries, tmp_path / "old.journal")
-    assert replay(reading, setup).difference is None
-    trajectory = Recording.of(reading.entries).trajectory()
-    assert trajectory.depth_mm is None
-    motion = dict(pressed.record.motion)
-    del motion["pressing_depth_mm"]
-    assert trial_motion(trajectory) == motion

@@ -270,7 +270,7 @@ def test_the_trials_clock_stops_at_the_last_touch_and_the_procedures_runs_apart(
     assert state.completion_time == completed < state.elapsed - procedure
     duration = operation.trainee.presenter._session.duration
     assert f"Procedure: {duration(procedure)}" in screen.status
-    told = json.loads(outgoing.state(state, 0, operation.trainee.presenter.pictures(state)))
+    told = json.loads(outgoing.state(state, 0, operation.trainee.presenter.pictures(state), {}))
     assert told["elapsed"] == pytest.approx(completed, abs=1e-5)
     sent = json.loads(sim_state({}, state, 1).content.text)
     assert sent["elapsedS"] == pytest.approx(completed, abs=1e-3)

@@ -119,16 +119,6 @@ def test_an_older_trial_without_a_registration_is_not_scored(tmp_path):
         TrialArchive(tmp_path).answer(CommandName.TRIAL_SCORED, SCORE, NOW)
 
 
-def test_a_trial_scored_under_the_first_protocol_has_its_registration(tmp_path):
-    write_trial(tmp_path, {"kind": "scored", "arguments": {**SCORE, **REGISTRATION}})
-    archive = TrialArchive(tmp_path)
-    data = archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
-    assert data["phase"] == "scored"
-    assert data["trueTreMm"] == pytest.approx(0.0, abs=1e-9)
-    with pytest.raises(InputError, match="final"):
-        archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION | {"freMm": 2.0}, NOW)
-
-
 def test_a_score_whose_details_look_like_an_acknowledgment_acknowledges_nothing(tmp_path):
     write_trial(tmp_path, {"kind": "registration", "arguments": REGISTRATION})
     TrialArchive(tmp_path).answer(CommandName.TRIAL_SCORED, SCORE, NOW)

@@ -204,5 +204,5 @@ def test_a_method_the_scenario_does_not_support_is_refused_with_the_reason(scena
 def test_nothing_is_traced_in_a_trial_by_fiducials(scenario):
     trial = Trial(scenario)
     trial.start(method="fiducials")
-    assert "method surface" in trial.do(CommandName.TRACE, on=True).message
+    assert "No skin is traced" in trial.do(CommandName.TRACE, on=True).message
     assert "method" not in trial.must(CommandName.GET_TRIAL).data
