@@ -173,12 +173,13 @@ class FlowPresenter:
 
     def view_left(self, view: int) -> None:
         """Forget a view; if it was the trainee's, no one sees the trial any more."""
+        was_silent = self._views.watched(self.controls.holder) is None
         self._lose_sight(view, "unseen.left")
         self._session.layouts.pop(view, None)
         self._choose_mode(self._views.leave(view))
         self._pictures.forget(view)
-        if self._views.is_empty:
-            # The trial may wait for the picture of a view that had fallen silent.
+        if was_silent and self._views.is_empty:
+            # The trial may wait for the picture of this view.
             self._flow.pause("unseen.left")
         self._settle()
 
