@@ -8,6 +8,7 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.head.mesh import outward_normal, read_head_mesh
+from rastrainer.protocol import Proximity
 from rastrainer.scenario.scenario import Scenario, method_of, task_by_method
 from Testing.end_to_end.test_trial_over_openigtlink import Player
 from Testing.simulator.landmarked import on_skin
@@ -110,4 +111,4 @@ class TracingTrainee:
 
 def _is_held(state: dict) -> bool:
     """Whether the skin holds the tool off where it is sent to."""
-    return (state["depthMm"] or 0.0) > SINK_MM + 0.2
+    return state["proximity"] == Proximity.CONTACT.value

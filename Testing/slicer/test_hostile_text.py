@@ -121,7 +121,7 @@ def test_no_label_grows_with_a_long_word(open_module):
 def test_the_state_of_the_trial_and_a_question_about_its_trainee(connected, simulator):
     host = connected
     state = dict.fromkeys(("instruction", "trainee", "task", "phase", "nextPoint"), HOSTILE)
-    state |= {"trialId": "", "mode": HOSTILE, "proximity": HOSTILE, "clearanceMm": 1.0}
+    state |= {"trialId": "", "mode": HOSTILE, "proximity": HOSTILE}
     simulator.send(DeviceName.SIM_STATE, String(json.dumps(state)))
     host.wait_until(lambda: host.text("trainingText"), "the instruction is shown")
     host.wait_until(lambda: "bold" in host.text("phaseText"), "the phase is shown")

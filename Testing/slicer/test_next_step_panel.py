@@ -169,7 +169,7 @@ def test_the_usual_states_fit_on_one_screen(instructor, tmp_path):
     measure("trainees")
     host.press("nextStepButton")
     measure("ready")
-    instructor.tell(phase="running", instruction="Touch point 3.", nextPoint="3", clearanceMm=4.0)
+    instructor.tell(phase="running", instruction="Touch point 3.", nextPoint="3")
     instructor.wait_for("Pause")
     measure("running")
     instructor.tell(phase="complete")

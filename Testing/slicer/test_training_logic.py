@@ -113,12 +113,12 @@ def test_touches_appear_on_the_planned_head_while_the_trial_runs(room, scenario)
     assert room.logic.progress.touched == 1
 
 
-def test_progress_contains_the_next_point_the_clearance_and_the_running_time(room):
-    room.tell(nextPoint="4", clearanceMm=12.5, proximity="proximity", elapsedS=30.0)
+def test_progress_contains_the_next_point_the_proximity_and_the_running_time(room):
+    room.tell(nextPoint="4", proximity="proximity", elapsedS=30.0)
     room.run_until(lambda: room.logic.progress.nextPoint == "4")
     room.now += 5.0
     progress = room.logic.progress
-    assert (progress.clearanceMm, progress.proximity, progress.isOpen) == (12.5, "proximity", True)
+    assert (progress.proximity, progress.isOpen) == ("proximity", True)
     assert progress.elapsedS == 35.0
     room.tell(phase="paused", elapsedS=36.0)
     room.run_until(lambda: room.logic.progress.phase == "paused")
@@ -179,7 +179,7 @@ def test_a_cleared_scene_gets_the_running_trial_back(room):
 
 
 def test_invalid_numbers_are_ignored(room):
-    room.tell(clearanceMm="near", elapsedS=None, nextPoint=None)
+    room.tell(elapsedS=None, nextPoint=None)
     room.run_until(lambda: room.logic.progress.phase == "running")
     progress = room.logic.progress
-    assert (progress.clearanceMm, progress.nextPoint) == (None, "")
+    assert progress.nextPoint == ""

@@ -40,7 +40,7 @@ class Rate:
 
     TOOL_TIP_HZ = 60.0
     LINKS_HZ = 30.0
-    STATE_HZ = 30.0
+    STATE_HZ = 10.0
     HEARTBEAT_HZ = 1.0
     OFFER_PERIOD_S = 2.0
 

@@ -6,7 +6,6 @@ from typing import Any
 
 import slicer
 
-from rastrainer.number_text import fixed
 from rastrainer.panels.plain_text import buttonTitle, shortName, toolTip
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
@@ -232,10 +231,8 @@ class TrainingPanel:
 
     def _showClearance(self, progress: TrialStatus) -> None:
         color, words = NEARNESS.get(progress.proximity, (GRAY, progress.proximity))
-        clearance = progress.clearanceMm
-        setLight(self._ui.clearanceLight, GRAY if clearance is None else color)
-        shown = "–" if clearance is None else f"{fixed(clearance, 1)} mm, {words}"
-        setText(self._ui.clearanceText, shown)
+        setLight(self._ui.clearanceLight, color)
+        setText(self._ui.clearanceText, words or "–")
 
     def _showMessage(self, sentence: str) -> None:
         setText(self._ui.trainingMessageText, sentence)

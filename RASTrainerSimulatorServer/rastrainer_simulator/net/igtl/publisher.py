@@ -18,6 +18,7 @@ from rastrainer.protocol import PROTOCOL_VERSION, DeviceName, Rate
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.loop.timing import Pacer
 from rastrainer_simulator.net.igtl.connection import ClientConnection, Outgoing
+from rastrainer_simulator.net.igtl.told import told
 from rastrainer_simulator.state import SimulationState, TrainingState
 from rastrainer_simulator.training.tracing import stroke_data
 from rastrainer_simulator.trial_state import ProcedureState, Tool
@@ -57,7 +58,11 @@ def captured_points(training: TrainingState) -> Message:
 
 
 def what_changes(state: SimulationState, is_guided: bool = False) -> dict[str, Any]:
-    """Return `SimState` without its number and time; it is sent when this changes."""
+    """Return `SimState` without its number and time; it is sent when this changes.
+
+    No distance to the head goes to clients: beside the pose of the tip it would be a range finder,
+    which gives the head's secret pose (`Testing/security/pose_leak.py`).
+    """
     training, trace = state.training, state.training.trace
     return {
         "phase": training.phase.value,
@@ -66,10 +71,8 @@ def what_changes(state: SimulationState, is_guided: bool = False) -> dict[str, A
         "mode": training.mode,
         "trialId": training.trial_id,
         "nextPoint": training.next_point,
-        "instruction": training.instruction,
+        "instruction": told(training.instruction),
         "proximity": state.proximity.value,
-        "clearanceMm": _rounded(MM_PER_M * state.clearance, 3),
-        "depthMm": _rounded(MM_PER_M * state.depth, 3),
         "q": [_rounded(angle, 6) for angle in state.q],
         "operator": state.operator,
         "method": training.method.value,

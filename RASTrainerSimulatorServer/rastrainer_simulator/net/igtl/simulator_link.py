@@ -36,9 +36,10 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.net.igtl.connection import ClientConnection, Outgoing
 from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher, heartbeat
 from rastrainer_simulator.net.igtl.server import IgtlServer
+from rastrainer_simulator.net.igtl.told import told
 from rastrainer_simulator.net.limits import LinkLimits
 from rastrainer_simulator.state import Answer, SimulationState
-from rastrainer_simulator.texts.texts import LocalizedText, Texts
+from rastrainer_simulator.texts.texts import LocalizedText
 
 Submit = Callable[[ClientConnection, str, Mapping[str, Any]], "Future[Answer]"]
 _OWN_DEVICES = frozenset(
@@ -49,7 +50,6 @@ _OWN_DEVICES = frozenset(
     }
 )
 SubmitCommand = Callable[[str, Mapping[str, Any], str], "Future[Answer]"]
-_ENGLISH = Texts()
 OFFERS_AT_ONCE = 8
 """Trials in one round of offers."""
 _NUMBERS = 2**32
@@ -138,7 +138,7 @@ class CommandHandler:
         """
         metadata = {STATUS_KEY: SUCCESS if is_success else FAIL}
         if not is_success:
-            sentence = _ENGLISH.again(sentence)
+            sentence = told(sentence)
             metadata[ERROR_KEY] = sentence
             data = {**data, "error": sentence}
             if isinstance(sentence, LocalizedText):

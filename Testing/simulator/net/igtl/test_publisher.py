@@ -2,7 +2,6 @@
 
 import asyncio
 import json
-import math
 import threading
 from collections import Counter
 from dataclasses import replace
@@ -147,9 +146,9 @@ def test_state_is_sent_only_when_it_changes(publisher, receiver):
     assert receiver.of("SimState") == []
 
 
-def test_state_that_changes_at_every_tick_is_sent_at_most_30_times_a_second(publisher, receiver):
+def test_state_that_changes_at_every_tick_is_sent_at_most_10_times_a_second(publisher, receiver):
     run(publisher, 10, lambda t: at_rest(sim_time=t, q=(t,) * 7))
-    assert len(receiver.of("SimState")) == pytest.approx(300, abs=1)
+    assert len(receiver.of("SimState")) == pytest.approx(100, abs=1)
 
 
 def test_tip_is_sent_in_millimeters_with_its_number_and_time(publisher, receiver):
@@ -190,8 +189,6 @@ def test_state_is_ascii_json_with_the_agreed_keys(publisher, receiver):
         "nextPoint": "1",
         "instruction": "Touch 1.",
         "proximity": "proximity",
-        "clearanceMm": 12.346,
-        "depthMm": 1.234,
         "q": [0.0] * 7,
         "operator": "gamepad",
         "method": "fiducials",
@@ -257,11 +254,6 @@ def test_the_instruments_tip_is_on_the_guides_axis_at_the_fed_depth(publisher, r
 def test_nothing_is_in_the_guide_while_it_is_being_aligned(publisher, receiver):
     publisher.publish(aligning(sim_time=1.0))
     assert receiver.of("InstrumentTipToWorld") == []
-
-
-def test_clearance_without_a_head_is_reported_as_null(publisher, receiver):
-    publisher.publish(at_rest(sim_time=1.0, clearance=math.inf))
-    assert json.loads(receiver.of("SimState")[0].content.text)["clearanceMm"] is None
 
 
 def test_points_are_sent_completely_and_immediately_at_every_touch_and_undo(publisher, receiver):

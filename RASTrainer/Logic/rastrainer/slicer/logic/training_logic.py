@@ -50,7 +50,6 @@ class TrialStatus:
         touched: how many points are kept.
         total: how many there are to touch.
         elapsedS: the trial's time, pauses left out.
-        clearanceMm: signed distance of the tool to the head; None where it is not known.
         proximity: `free`, `proximity` or `contact`.
         instruction: what the trainee reads.
         procedure: that the trial continues with; empty for the touches alone.
@@ -66,7 +65,6 @@ class TrialStatus:
     touched: int = 0
     total: int = FIDUCIAL_COUNT
     elapsedS: float = 0.0
-    clearanceMm: float | None = None
     proximity: str = ""
     instruction: str = ""
     procedure: str = ""
@@ -134,7 +132,6 @@ class TrainingLogic:
             touched=touches.GetNumberOfControlPoints() if state and touches is not None else 0,
             total=self._total,
             elapsedS=elapsed,
-            clearanceMm=knownNumber(state.get("clearanceMm")),
             proximity=str(state.get("proximity", "")),
             instruction=str(state.get("instruction", "")),
             procedure=procedureOf(state),
