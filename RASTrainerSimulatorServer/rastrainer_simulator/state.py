@@ -102,12 +102,16 @@ TOUCH_ERRORS = (TouchStage.TOO_DEEP, TouchStage.ELSEWHERE, TouchStage.SHAFT, Tou
 
 
 class Motion(str, Enum):
-    """What moves the tool's tip; `FEED` the instrument in the guide, while the arm is held."""
+    """What moves the tool's tip; `FEED` the instrument in the guide, while the arm is held.
+
+    `JOG` and `MOVE` are clients' commands, `ALIGN` is the robot's own alignment of the guide.
+    """
 
     NONE = "none"
     STICK = "stick"
     JOG = "jog"
     MOVE = "move"
+    ALIGN = "align"
     FEED = "feed"
 
 

@@ -59,6 +59,6 @@ def _write(folder: Path, number: int, scenario) -> str:
     header = {"kind": "header", "format": FORMAT, "version": FORMAT_VERSION, **times}
     registered = {"kind": "registered", **times, "record": record.to_json()}
     journal = Journal(folder / f"20240517T{number:06d}Z_{trial_id}{SUFFIX}")
-    journal.write([header | {"seed": number}, registered | {"truth": truth.to_json()}], sync=False)
+    journal.write([header, registered | {"truth": truth.to_json(), "seed": number}], sync=False)
     journal.close()
     return trial_id

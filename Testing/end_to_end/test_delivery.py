@@ -151,7 +151,7 @@ def slicer_side_for_aborted(path, port):
 
 def write_aborted_trials(folder):
     folder.mkdir()
-    header = {"kind": "header", "format": FORMAT, "version": FORMAT_VERSION, "seed": 7}
+    header = {"kind": "header", "format": FORMAT, "version": FORMAT_VERSION}
     for number in range(1, TRIALS + 1):
         record = AbortedTrial.from_json(make_aborted(number, touches=number))
         journal = Journal(folder / f"20240517T0930{number:02d}Z_{record.trial_id}{SUFFIX}")

@@ -44,6 +44,7 @@ PROTOCOL = {
     "modes": ["desktop"],
     "modeOrder": "fixed",
     "tasks": list(TASKS),
+    "allows": ["commands", "chosen seed", "repeated seed", "other speed", "pauses", "other view"],
     "taskOrder": "fixed",
     "repetitions": 1,
     "trialRun": {"minutes": 0},

@@ -29,6 +29,7 @@ SHORT = {
     "modes": ["desktop"],
     "modeOrder": "fixed",
     "tasks": ["task-1", "task-2"],
+    "allows": ["commands", "chosen seed", "repeated seed", "other speed", "pauses", "other view"],
     "trialRun": {"minutes": 0.2},
     "breaks": {"betweenModesMinutes": 0, "betweenTasksMinutes": 0.05},
     "questionnaires": [

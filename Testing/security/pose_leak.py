@@ -202,7 +202,7 @@ def prior_mm(fit: PoseFit) -> float:
 
 
 def main() -> None:
-    """Print the table; bits count each halving of the error six times, as the pose has six degrees of freedom."""
+    """Print the table; each halving of the error counts as six bits, one for each freedom."""
     fit = PoseFit(load_scenario(asset_path("scenarios", "colin27")))
     nothing = prior_mm(fit)
     print("| what is read in 60 s | error at the marks | bits |\n|---|---|---|")

@@ -65,7 +65,10 @@ def add_simulator_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("--speed", type=float, default=1.0, help="simulated seconds a second")
     parser.add_argument(
-        "--seed", type=int, help="of the heads' poses (default: an unpredictable one)"
+        "--seed",
+        type=int,
+        help="of the heads' poses, for tests: no study counts such trials (default: none; the "
+        "poses cannot be predicted)",
     )
     add_records(parser)
     parser.add_argument(
@@ -140,6 +143,7 @@ def run_simulator(arguments: argparse.Namespace) -> int:
         scenario=arguments.scenario,
         robot_meshes=arguments.robot_meshes,
         seed=secrets.randbits(63) if arguments.seed is None else arguments.seed,
+        is_seeded=arguments.seed is not None,
     )
     with keep_logs(logs, f"simulator-{arguments.port}"):
         server = SimulatorServer(options)

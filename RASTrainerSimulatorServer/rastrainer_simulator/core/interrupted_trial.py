@@ -18,7 +18,7 @@ from typing import Any
 from rastrainer.command_arguments import check_arguments
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import newest_journal
-from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
+from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, JournalReading, read_journal
 from rastrainer.protocol import CommandName, Phase, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.procedure_motion import FED
@@ -26,6 +26,7 @@ from rastrainer_simulator.state import OperatorCommand, StartingPoint
 from rastrainer_simulator.training.feed import NO_FEED, Feed, HeadAhead
 from rastrainer_simulator.training.procedure_phases import OF_A_PROCEDURE
 from rastrainer_simulator.training.rules import INTERRUPTED, RECORDING_FAILED, TRACED, TouchMoment
+from rastrainer_simulator.training.trial_start import DRAWN_SEED
 from rastrainer_simulator.vectors import ZERO, vector
 
 
@@ -44,6 +45,17 @@ def refusing_malformed(sentence: str) -> Iterator[None]:
 
 
 MALFORMED = "A journal entry is malformed"
+
+
+def seed_of(header: Mapping[str, Any]) -> int:
+    """Return the seed of the head's pose; raise `InputError` if the journal does not reveal it."""
+    if "seed" not in header:
+        raise InputError(
+            "The journal of a trial that was not ended does not tell where the head was: keep the "
+            f"file of the same name with the ending {SEED_SUFFIX} beside it."
+        )
+    seed: int = header["seed"]
+    return seed
 
 
 class RecordedFeed:
@@ -161,6 +173,7 @@ class InterruptedTrial:
         if any(entry["kind"] in _OVER for entry in entries):
             return None
         header = entries[0]
+        seed_of(header)
         recorded = RecordedFeed()
         steps = list(_steps(entries, header["tickS"], recorded))
         if not steps:
@@ -201,8 +214,10 @@ def find_interrupted(folder: Path) -> tuple[JournalReading, InterruptedTrial] | 
     return None if trial is None else (reading, trial)
 
 
-def recorded_command(entry: Mapping[str, Any]) -> OperatorCommand:
+def recorded_command(entry: Mapping[str, Any], seed: int) -> OperatorCommand:
     """Return a recorded command; its arguments are checked, as the file may be forged.
+
+    `seed` is that of the trial.
 
     Raises:
         InputError: they are not those of the protocol.
@@ -211,7 +226,9 @@ def recorded_command(entry: Mapping[str, Any]) -> OperatorCommand:
     arguments = {key: value for key, value in entry["arguments"].items() if value is not None}
     if name == RECORDING_FAILED:
         return OperatorCommand(name, arguments)
-    own = {"trialId": arguments.pop("trialId")} if name == CommandName.START_TASK else {}
+    own = {}
+    if name == CommandName.START_TASK:
+        own = {"trialId": arguments.pop("trialId"), DRAWN_SEED: seed}
     return OperatorCommand(name, check_arguments(name, arguments) | own, 0, entry["sender"])
 
 
@@ -247,7 +264,7 @@ def _steps(
                     direction=vector(effect.get("direction", ZERO)),
                     feed=recorded.before(effect),
                 )
-                yield recorded_command(entry), moment
+                yield recorded_command(entry, seed_of(entries[0])), moment
 
 
 def _camera(entries: Sequence[Mapping[str, Any]]) -> str | None:

@@ -32,7 +32,7 @@ from rastrainer_simulator.loop.timing import (
     sleep_until,
 )
 from rastrainer_simulator.record.trial_archive import TrialArchive
-from rastrainer_simulator.record.trial_context import NotedReport
+from rastrainer_simulator.record.trial_context import NotedReport, PlayingSession
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
 from rastrainer_simulator.state import (
     HANDS_OFF,
@@ -92,6 +92,7 @@ class ControlLoop:
         speed: float | None = 1.0,
         interrupted: JournalReading | None = None,
         trial_limits: TrialLimits | None = None,
+        is_seeded: bool = False,
     ) -> None:
         """Prepare the loop; `start` starts it.
 
@@ -102,6 +103,7 @@ class ControlLoop:
             speed: simulated seconds in a second; None runs as fast as the machine can.
             interrupted: journal of a trial that the simulation has loaded, which waits for Resume.
             trial_limits: how often a trial may be started; None for the default.
+            is_seeded: whether the seed of the simulation was chosen, not drawn.
         """
         self._simulation = simulation
         self._dt = 1.0 / rate_hz
@@ -114,7 +116,8 @@ class ControlLoop:
             thread_name_prefix="journal",
             initializer=raise_thread_priority if self.is_first_in_line else None,
         )
-        self._recorder = TrialRecorder(records, self._archive, self._writer, self._dt)
+        session = PlayingSession(speed, is_seeded)
+        self._recorder = TrialRecorder(records, self._archive, self._writer, self._dt, session)
         if interrupted is not None:
             self._recorder.resume_trial(simulation, interrupted)
         self._state = simulation.state

@@ -74,7 +74,8 @@ class AbortedArchive:
         if record is None or not record.is_kept:
             return
         journal, last = Journal.reopened(reading), reading.entries[-1]
-        _append(journal, attempt_entry(record, stamp(last["tick"], last["simTime"])))
+        entry = attempt_entry(record, stamp(last["tick"], last["simTime"]))
+        _append(journal, {**entry, "seed": reading.header["seed"]})
         self.add(record, journal)
 
     def load(self, reading: JournalReading) -> bool:

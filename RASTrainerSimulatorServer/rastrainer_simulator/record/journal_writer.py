@@ -28,6 +28,7 @@ from rastrainer.journal.folder import (
 )
 from rastrainer.journal.journal_file import (
     NO_LINE,
+    SEED_SUFFIX,
     Integrity,
     JournalReading,
     encode_line,
@@ -46,9 +47,14 @@ class Journal:
     lost while the program runs, and the chain has no gap. Not safe for several threads.
     """
 
-    def __init__(self, path: Path) -> None:
-        """Prepare a new file, which the first `write` creates and never overwrites."""
+    def __init__(self, path: Path, seed: int | None = None) -> None:
+        """Prepare a new file, which the first `write` creates and never overwrites.
+
+        The seed of the head's pose is kept beside it until an entry reveals it.
+        """
         self.path = path
+        self._seed = seed
+        self._seed_path = path.with_suffix(SEED_SUFFIX)
         self._descriptor: int | None = None
         self._count = 0
         self._previous = NO_LINE
@@ -78,8 +84,11 @@ class Journal:
             descriptor, size = self._opened()
             count, previous, data = self._encoded()
             _write_at(descriptor, size, data)
-            if sync:
+            is_revealed = any("seed" in entry for entry in self._unwritten)
+            if sync or is_revealed:
                 os.fsync(descriptor)
+            if is_revealed:
+                self._seed_path.unlink(missing_ok=True)
         except OSError as error:
             self._cut_off()
             raise RecordError(f"{self.path.name}: {error.strerror or error}") from error
@@ -98,6 +107,7 @@ class Journal:
         self._unwritten.clear()
         if self._is_new and self._size is not None:
             self.path.unlink(missing_ok=True)
+            self._seed_path.unlink(missing_ok=True)
             self._size = None
 
     def _opened(self) -> tuple[int, int]:
@@ -107,6 +117,8 @@ class Journal:
         flags = os.O_RDWR | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
         if self._size is None:
             make_private_folder(self.path.parent)
+            if self._seed is not None:
+                _write_seed(self._seed_path, self._seed)
             self._descriptor = descriptor = open_private(self.path, flags | os.O_CREAT | os.O_EXCL)
             self._size = 0
             _sync_folder(self.path.parent)
@@ -147,6 +159,15 @@ class Journal:
         self._count = len(reading.entries)
         self._previous = reading.last_hash
         self._size = reading.end
+
+
+def _write_seed(path: Path, seed: int) -> None:
+    descriptor = open_private(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+    try:
+        os.write(descriptor, str(seed).encode("ascii"))
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
 
 
 def _write_at(descriptor: int, place: int, data: bytes) -> None:

@@ -101,6 +101,11 @@ class TrialArchive:
         finished = (trial.record for trial in trials if not trial.acknowledged)
         return (*self._aborted.unacknowledged(), *finished)
 
+    def was_played(self, seed: int) -> bool:
+        """Return whether a trial of the folder that is over had a seed."""
+        revealed = f'"seed":{seed},'.encode()
+        return any(revealed in _end(path) for path in self._folder.glob(f"*{SUFFIX}"))
+
     def add(self, trial: ArchivedTrial, journal: Journal) -> None:
         """Add a trial that has just been registered."""
         self._trials[trial.record.trial_id] = trial
@@ -264,15 +269,20 @@ def _awaits_delivery(path: Path) -> bool:
 
 def _last_kinds(path: Path) -> list[bytes]:
     """Return the kinds of the last lines, back to before the trial was registered."""
+    return _KIND.findall(_end(path))
+
+
+def _end(path: Path) -> bytes:
+    """Return the last lines of a journal, back to before the trial was registered."""
     reach = FIRST_REACH
     try:
         with path.open("rb") as file:
             size = file.seek(0, os.SEEK_END)
             while True:
                 file.seek(max(0, size - reach))
-                kinds = _KIND.findall(file.read(reach))
-                if reach >= size or not _AFTER_THE_TRIAL.issuperset(kinds):
-                    return kinds
+                end = file.read(reach)
+                if reach >= size or not _AFTER_THE_TRIAL.issuperset(_KIND.findall(end)):
+                    return end
                 reach *= 4
     except OSError:
-        return []
+        return b""

@@ -289,5 +289,25 @@ class GhostReport:
         return {"kind": "ghost", "ghost": self.ghost}
 
 
+@dataclass(frozen=True)
+class PlayingSession:
+    """What a simulator that plays trials was started with.
+
+    Attributes:
+        speed: simulated seconds in a second; None is as fast as possible.
+        is_seeded: whether the seeds of the heads' poses were chosen (`--seed`), not drawn.
+    """
+
+    speed: float | None = 1.0
+    is_seeded: bool = False
+
+    def to_json(self) -> dict[str, Any]:
+        """Return what goes into a journal."""
+        return {"speed": self.speed, "isSeeded": self.is_seeded}
+
+
+REAL_TIME = PlayingSession()
+
+
 NotedReport = DisplayReport | ViewReport | GuidanceReport | GhostReport | TutorialOutcome
 """Entries on how a trial is seen and prepared; the simulation does not depend on them."""

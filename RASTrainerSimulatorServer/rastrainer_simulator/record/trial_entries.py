@@ -14,22 +14,27 @@ from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase, RegistrationMethod
 from rastrainer.scenario.scenario import method_of, task_by_method
 from rastrainer.transforms import MM_PER_M
+from rastrainer.trial.how_played import MovedBy
 from rastrainer_simulator.record.trial_context import (
+    REAL_TIME,
     DisplayReport,
     GhostReport,
     GuidanceReport,
     NotedReport,
+    PlayingSession,
 )
 from rastrainer_simulator.record.trial_records import TrialRecords, UnmeasuredRecord
 from rastrainer_simulator.state import (
     Event,
     EventKind,
+    Motion,
     OperatorCommand,
     OperatorInput,
     SimulationState,
     StartingPoint,
     StepResult,
 )
+from rastrainer_simulator.training.trial_start import DRAWN_SEED
 from rastrainer_simulator.trial_state import Tool
 
 if TYPE_CHECKING:
@@ -53,6 +58,14 @@ _SAMPLED = (Phase.RUNNING, Phase.COMPLETE, *PROCEDURE_PHASES)
 _TOUCHED = (EventKind.TOUCH.value, EventKind.CHECKPOINT.value)
 _DATED = (*_TOUCHED, EventKind.TRACE.value)
 _Q = struct.Struct("<7d")
+_MOVED_BY = {
+    Motion.STICK: MovedBy.STICKS.value,
+    Motion.ALIGN: MovedBy.ALIGNMENT.value,
+    Motion.JOG: MovedBy.COMMANDS.value,
+    Motion.MOVE: MovedBy.COMMANDS.value,
+}
+_COUNTS = ("", *dict.fromkeys(_MOVED_BY.values()))
+"""The last of those that moved the tip since the last sample counts."""
 
 
 class TrialEntries:
@@ -73,6 +86,7 @@ class TrialEntries:
         self._sticks: tuple[Any, ...] | None = None
         self._trajectory = hashlib.sha256()
         self._recording = Recording()
+        self._moved_by = ""
         self.pending: list[dict[str, Any]] = []
 
     @classmethod
@@ -83,10 +97,12 @@ class TrialEntries:
         result: StepResult,
         dt: float,
         number: int = 0,
+        session: PlayingSession = REAL_TIME,
     ) -> TrialEntries:
         """Start with the header; `before` is the state in which StartTask was carried out.
 
-        `number` counts the trials of a folder; where none is recorded it is 0.
+        `number` counts the trials of a folder; where none is recorded it is 0. `session` is what
+        the simulator was started with.
         """
         state = result.state
         training = state.training
@@ -105,8 +121,8 @@ class TrialEntries:
                 "task": training.task,
                 "shortestPathMm": task.shortest_path_mm,
                 "mode": training.mode,
-                "seed": entries._seed,
                 "tickS": dt,
+                "session": session.to_json(),
                 "before": asdict(StartingPoint.after(before)),
                 **simulation.setup.description(
                     "" if training.procedure is None else training.procedure.name,
@@ -125,6 +141,7 @@ class TrialEntries:
         earlier: Sequence[Mapping[str, Any]],
         since: float,
         dt: float,
+        session: PlayingSession = REAL_TIME,
     ) -> TrialEntries:
         """Continue from a state of a trial that was interrupted.
 
@@ -150,6 +167,7 @@ class TrialEntries:
                 "kind": "continued",
                 **stamp(state.tick, state.sim_time),
                 "since": since,
+                "session": session.to_json(),
                 "camera": state.camera,
                 "phase": training.phase.value,
                 "kept": len(training.touches),
@@ -169,6 +187,7 @@ class TrialEntries:
         state = result.state
         sticks = (operator_input.translation, operator_input.rotation, operator_input.fine)
         self._trajectory.update(_Q.pack(*state.q))
+        self._moved_by = max(self._moved_by, _MOVED_BY.get(state.motion, ""), key=_COUNTS.index)
         is_sampled = state.training.phase in _SAMPLED and state.tick % self._every == 0
         quiet = sticks == self._sticks and not operator_input.commands and not result.events
         if quiet and not is_sampled:
@@ -189,7 +208,8 @@ class TrialEntries:
                 registered = entry
             self._append(entry)
         if is_sampled:
-            self._append(_sample_entry(times, state))
+            self._append({**_sample_entry(times, state), "movedBy": self._moved_by})
+            self._moved_by = ""
         if registered is None:
             return None
         # Of the whole tick: the tip may have touched the head after the command in it.
@@ -213,6 +233,7 @@ class TrialEntries:
     def _collect(self, entry: Mapping[str, Any]) -> None:
         self._recording.add(entry)
         self.records.feeds.add(entry)
+        self.records.play.add(entry)
 
     def motion(self) -> dict[str, float]:
         """Return the motion metrics of the trial so far."""
@@ -226,7 +247,8 @@ class TrialEntries:
     def _command_entry(self, times: dict[str, Any], command: OperatorCommand) -> dict[str, Any]:
         arguments = dict(command.arguments)
         if command.name == CommandName.START_TASK:
-            arguments |= {"seed": self._seed, "trialId": self.trial_id}
+            arguments["trialId"] = self.trial_id
+            arguments.pop(DRAWN_SEED, None)
             # As in journals older than procedures, methods and shifts of the skin.
             for later in ("procedure", "skin"):
                 if not arguments.get(later):
@@ -246,6 +268,9 @@ class TrialEntries:
         if event.kind is EventKind.PHASE:
             kind = _KIND_OF_PHASE.get(Phase(event.data["phase"]), kind)
         entry = {"kind": kind, **times, **event.data}
+        if kind in _KIND_OF_PHASE.values():
+            # Until then it is as secret as the head's pose.
+            entry["seed"] = self._seed
         if event.kind in MUST_LAST:
             entry["trajectorySha256"] = self._trajectory.hexdigest()
         return entry

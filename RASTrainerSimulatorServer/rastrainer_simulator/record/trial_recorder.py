@@ -14,7 +14,7 @@ from rastrainer.protocol import AbortReason, CommandName, Phase
 from rastrainer_simulator.record.aborted_archive import attempt_entry
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_archive import SUFFIX, ArchivedTrial, TrialArchive
-from rastrainer_simulator.record.trial_context import NotedReport
+from rastrainer_simulator.record.trial_context import REAL_TIME, NotedReport, PlayingSession
 from rastrainer_simulator.record.trial_entries import MUST_LAST, TrialEntries
 from rastrainer_simulator.record.trial_records import UnmeasuredRecord
 from rastrainer_simulator.state import OperatorInput, SimulationState, StepResult
@@ -53,12 +53,18 @@ class TrialRecorder:
     """
 
     def __init__(
-        self, folder: Path, archive: TrialArchive, writer: ThreadPoolExecutor, dt: float
+        self,
+        folder: Path,
+        archive: TrialArchive,
+        writer: ThreadPoolExecutor,
+        dt: float,
+        session: PlayingSession = REAL_TIME,
     ) -> None:
         self._folder = folder
         self._archive = archive
         self._writer = writer
         self._dt = dt
+        self._session = session
         self._open: _OpenTrial | None = None
         self._registering: Future[Any] | None = None
         self._is_stuck = False
@@ -129,9 +135,11 @@ class TrialRecorder:
             self._writer.submit(self._archive.add_interrupted, self._interrupted)
             self._interrupted = None
         self._number += 1
-        entries = TrialEntries.started(simulation, before, result, self._dt, self._number)
+        entries = TrialEntries.started(
+            simulation, before, result, self._dt, self._number, self._session
+        )
         name = f"{file_stamp(entries.records.started_utc)}_{entries.trial_id}{SUFFIX}"
-        self._open = _OpenTrial(entries, Journal(self._folder / name))
+        self._open = _OpenTrial(entries, Journal(self._folder / name, simulation.trial_seed))
         self._registering = None
         self._is_stuck = False
 
@@ -141,7 +149,9 @@ class TrialRecorder:
         """Append to the journal of an interrupted trial from now on."""
         reading, since = waiting
         self._waiting = None
-        entries = TrialEntries.resumed(simulation, state, reading.entries, since, self._dt)
+        entries = TrialEntries.resumed(
+            simulation, state, reading.entries, since, self._dt, self._session
+        )
         self._open = _OpenTrial(entries, Journal.reopened(reading))
 
     def _is_registered(self) -> bool:
@@ -178,7 +188,7 @@ class TrialRecorder:
         journal, entries = open_trial.journal, open_trial.entries.taken()
 
         def write() -> None:
-            trial = ArchivedTrial(record.measured(), truth, seed)
+            trial = ArchivedTrial(record.measured(self._archive.was_played), truth, seed)
             journal.write(entries, sync=True)
             journal.close()
             self._archive.add(trial, journal)

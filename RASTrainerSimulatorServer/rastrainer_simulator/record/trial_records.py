@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +21,7 @@ from rastrainer.procedure.record import (
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.how_played import PlayRecording, SeedSource
 from rastrainer.trial.record import TouchedPoint, TracePoint, TrialRecord
 from rastrainer_simulator.record.trial_context import DisplayUse, versions
 from rastrainer_simulator.state import SimulationState, TrainingState
@@ -47,6 +48,7 @@ class TrialRecords:
         versions: of what it is played with.
         display: how its views drew.
         feeds: of drill and instrument.
+        play: how the trial is played.
     """
 
     def __init__(self, simulation: Simulation, started_utc: str) -> None:
@@ -54,6 +56,7 @@ class TrialRecords:
         self.versions = versions() | {"kinematics": simulation.kinematics_name}
         self.display = DisplayUse()
         self.feeds = FeedRecording()
+        self.play = PlayRecording()
         self._setup = simulation.setup
         # Its seed is revealed with the truth.
         self._skin = replace(simulation.truth.skin, seed=0)
@@ -123,6 +126,7 @@ class TrialRecords:
             method=training.method,
             trace=trace,
             skin=self._skin,
+            played=self.play.played(),
         )
 
     def _procedure_record(self, training: TrainingState) -> ProcedureRecord | None:
@@ -150,9 +154,16 @@ class UnmeasuredRecord:
     _trajectory: Trajectory
     _entry: dict[str, Any]
 
-    def measured(self) -> TrialRecord:
-        """Return the record with its motion metrics, and put it into the entry of Register."""
-        record = replace(self._record, motion=trial_motion(self._trajectory))
+    def measured(self, was_played: Callable[[int], bool] = lambda _seed: False) -> TrialRecord:
+        """Return the record with its motion metrics, and put it into the entry of Register.
+
+        `was_played` tells of a seed of a head's pose whether an earlier trial had it.
+        """
+        played = self._record.played
+        if played is not None and played.seed_source != SeedSource.DRAWN.value:
+            played = replace(played, is_seed_repeated=was_played(self._entry["seed"]))
+        motion = trial_motion(self._trajectory)
+        record = replace(self._record, motion=motion, played=played)
         self._entry["record"] = record.to_json()
         return record
 

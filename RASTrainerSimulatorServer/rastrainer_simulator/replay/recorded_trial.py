@@ -21,7 +21,7 @@ from rastrainer.trial.analysis import analyze_trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.collision.collision import stand_pose
 from rastrainer_simulator.core.arm import moving_links
-from rastrainer_simulator.core.interrupted_trial import refusing_malformed
+from rastrainer_simulator.core.interrupted_trial import refusing_malformed, seed_of
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.record.trial_records import procedure_after
@@ -96,7 +96,7 @@ class RecordedTrial:
         self._track = track
         self._kinematics = make_kinematics(setup.robot)
         self._links, self._tip = moving_links(setup.robot), setup.robot.tip.name
-        self._head_to_world = scenario.perturbed_head_to_world(header["seed"])
+        self._head_to_world = scenario.perturbed_head_to_world(seed_of(header))
         self._head_to_world[:3, 3] /= MM_PER_M
         base = read_head_mesh(scenario.head_mesh).base / MM_PER_M
         self._stand_to_world = stand_pose(self._head_to_world, base)

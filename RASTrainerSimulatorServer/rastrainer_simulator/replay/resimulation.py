@@ -15,6 +15,7 @@ from rastrainer_simulator.core.interrupted_trial import (
     InterruptedTrial,
     recorded_command,
     refusing_malformed,
+    seed_of,
 )
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
@@ -46,7 +47,9 @@ _NOT_SIMULATED = frozenset(
         "acknowledged",
     }
 )
-_OF_THE_CLOCK = frozenset({"n", "previous", "sha256", "monotonic", "utc", "record", "versions"})
+_OF_THE_CLOCK = frozenset(
+    {"n", "previous", "sha256", "monotonic", "utc", "record", "versions", "session"}
+)
 
 
 @dataclass(frozen=True)
@@ -116,9 +119,9 @@ def _replay(
         raise InputError(
             f"{reading.path} claims ticks of {header['tickS']} s: no control loop has such."
         )
-    simulation = Simulation(setup, header["seed"])
+    simulation = Simulation(setup, seed_of(header))
     simulation.restart_from(start)
-    player = _Player(simulation, header["tickS"], watch)
+    player = _Player(simulation, header, watch)
     compared: dict[str, int] = defaultdict(int)
     for first, end in _parts(reading.entries):
         part = [e for e in reading.entries[first:end] if e["kind"] not in _NOT_SIMULATED]
@@ -150,10 +153,14 @@ class _Player:
     """Simulates the parts of one trial and computes their entries."""
 
     def __init__(
-        self, simulation: Simulation, dt: float, watch: Callable[[StepResult], None]
+        self,
+        simulation: Simulation,
+        header: Mapping[str, Any],
+        watch: Callable[[StepResult], None],
     ) -> None:
         self._simulation = simulation
-        self._dt = dt
+        self._dt: float = header["tickS"]
+        self._seed = seed_of(header)
         self._watch = watch
         self._entries: TrialEntries | None = None
         self.versions: Mapping[str, str] = {}
@@ -190,7 +197,7 @@ class _Player:
         simulation, dt = self._simulation, self._dt
         first = simulation.state.tick
         last = max((entry["tick"] for entry in part), default=first)
-        for operator_input in _inputs(part, first, last):
+        for operator_input in _inputs(part, first, last, self._seed):
             before = simulation.state
             result = simulation.step(dt, operator_input)
             self._watch(result)
@@ -201,7 +208,7 @@ class _Player:
 
 
 def _inputs(
-    recorded: Sequence[Mapping[str, Any]], before: int, last: int
+    recorded: Sequence[Mapping[str, Any]], before: int, last: int, seed: int
 ) -> Iterator[OperatorInput]:
     """Yield the operator's input of every tick after `before` up to `last`."""
     sticks: dict[int, OperatorInput] = {}
@@ -215,7 +222,7 @@ def _inputs(
                 operator=entry["operator"],
             )
         elif entry["kind"] == "command":
-            commands[entry["tick"]].append(recorded_command(entry))
+            commands[entry["tick"]].append(recorded_command(entry, seed))
     held = HANDS_OFF
     for tick in range(before + 1, last + 1):
         held = sticks.get(tick, held)

@@ -61,6 +61,7 @@ class ServerOptions:
     Attributes:
         records: folder of the trials' journals.
         seed: of the heads' poses in the trials, which determines the truth.
+        is_seeded: whether that seed was chosen, not drawn.
         host: address to listen on.
         port: to listen on; 0 is any free one.
         connect_to: host and port of a listening Slicer, in place of listening.
@@ -80,6 +81,7 @@ class ServerOptions:
 
     records: Path
     seed: int
+    is_seeded: bool = False
     host: str = DEFAULT_HOST
     port: int = DEFAULT_PORT
     connect_to: tuple[str, int] | None = None
@@ -127,6 +129,7 @@ class SimulatorServer:
                 speed=options.speed,
                 interrupted=reading,
                 trial_limits=self._limits.trials,
+                is_seeded=options.is_seeded,
             )
             unless_ready.pop_all()
         self._presenter: RunningPresenter | None = None

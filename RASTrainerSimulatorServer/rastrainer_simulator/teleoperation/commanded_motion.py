@@ -137,9 +137,9 @@ class PathCommand:
 
 
 class FollowingPath:
-    """A path that is being followed."""
+    """A path that is being followed: only the alignment of the guide has one."""
 
-    motion = Motion.MOVE
+    motion = Motion.ALIGN
 
     def __init__(self, command: PathCommand) -> None:
         first, *following = command.waypoints

@@ -34,6 +34,9 @@ from rastrainer_simulator.training import tracing
 from rastrainer_simulator.training.feed import Feed
 from rastrainer_simulator.training.replies import TrialStep
 
+DRAWN_SEED = "drawnSeed"
+"""Argument of StartTask where a recorded trial begins again: its seed, which no client chose."""
+
 
 def trial_seed(seed: int, number: int) -> int:
     """Return the seed of a session's `number`-th trial, 0 … 2^53 − 1 (exact in any JSON reader)."""
@@ -98,6 +101,8 @@ class TrialStarter:
         task = task_by_method(self._scenario, arguments["task"], method)
         phases = self._phases(procedure, task) if procedure else None
         chosen = arguments.get("seed")
+        if chosen is None:
+            chosen = arguments.get(DRAWN_SEED)
         seed = trial_seed(self._seed, number) if chosen is None else chosen
         head = PlacedHead.of_trial(self._scenario, task, seed, skin)
         self._number += 1

@@ -292,6 +292,8 @@ def _dated(entries: list[dict[str, Any]], started: datetime) -> list[dict[str, A
         entry["utc"] = utc(entry["simTime"])
         if entry["kind"] == "registered":
             record = entry["record"]
+            # A virtual trainee plays as fast as the machine can, in no simulator.
+            record.pop("played", None)
             for point in record["points"]:
                 point["utc"] = utc(point["simTime"])
             record["startedUtc"] = utc(zero)

@@ -12,6 +12,7 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.errors import RASTrainerError
 from rastrainer.igtl.client import Client
+from rastrainer.journal.journal_file import read_journal
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.virtual.scripted_trial import send_hello
@@ -71,8 +72,7 @@ class Player:
 
     def _places(self, trial_id: str) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
         (journal,) = self._records.glob(f"*_{trial_id}.journal")
-        with journal.open(encoding="utf-8") as lines:
-            header = json.loads(lines.readline())
+        header = read_journal(journal).header
         scenario = load_scenario(asset_path("scenarios", "colin27"))
         head_to_world = scenario.perturbed_head_to_world(header["seed"])
         fiducials = scenario.task(header["task"]).fiducials

@@ -321,4 +321,4 @@ def test_commands_of_two_phases_in_one_tick_are_carried_out_in_order(surgeon):
     )
     answers = surgeon.step(OperatorInput(commands=commands)).answers
     assert [answer.ok for answer in answers] == [True, True, False]
-    assert surgeon.state.motion is Motion.MOVE
+    assert surgeon.state.motion is Motion.ALIGN

@@ -8,7 +8,7 @@ import shutil
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.journal.journal_file import Integrity, read_journal
+from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, read_journal
 from rastrainer.protocol import MIN_ABORTED_S, CommandName, Phase
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
@@ -293,6 +293,7 @@ def test_a_journal_cut_at_any_byte_reports_every_complete_touch(simulation, tmp_
         folder.mkdir()
         path = folder / server.path.name
         shutil.copy(server.path, path)
+        shutil.copy(server.path.with_suffix(SEED_SUFFIX), folder)
         cut(path, rng.randrange(len(data)))
         found = find_interrupted(folder)
         record = interrupted_attempt(read_journal(path))

@@ -11,7 +11,7 @@ import pytest
 
 from rastrainer.command_arguments import check_arguments
 from rastrainer.errors import InputError
-from rastrainer.journal.journal_file import Integrity, read_journal
+from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, read_journal
 from rastrainer.journal.recording import Recording
 from rastrainer.protocol import CommandName, Phase, Proximity
 from rastrainer.transforms import MM_PER_M
@@ -158,6 +158,7 @@ def test_a_journal_cut_at_any_byte_is_resumed_with_every_complete_touch(simulati
         folder = tmp_path / str(number)
         folder.mkdir()
         path = folder / server.path.name
+        shutil.copy(server.path.with_suffix(SEED_SUFFIX), folder)
         path.write_bytes(data[: rng.randrange(len(data))])
         found = find_interrupted(folder)
         entries = read_journal(path).entries if path.stat().st_size else ()

@@ -1,12 +1,13 @@
 """A trace survives the simulator's end, goes with its trial, and is played again exactly."""
 
 import random
+import shutil
 from dataclasses import replace
 
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.journal.journal_file import Integrity, read_journal
+from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, read_journal
 from rastrainer.protocol import MIN_TRACE_POINTS, CommandName, Phase, RegistrationMethod
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
@@ -108,6 +109,7 @@ def test_a_journal_cut_at_any_byte_is_resumed_with_every_complete_traced_point(
         folder = tmp_path / str(number)
         folder.mkdir()
         path = folder / server.path.name
+        shutil.copy(server.path.with_suffix(SEED_SUFFIX), folder)
         path.write_bytes(data[: rng.randrange(len(data) // 3, len(data))])
         traced_in_air.resume_trial(find_interrupted(folder)[1])
         kept = []
@@ -203,7 +205,8 @@ def test_aborted_and_interrupted_trials_report_their_method_and_how_much_was_tra
         server.loop._writer.submit(lambda: None).result()
         (record,) = server.loop.unacknowledged()
     assert (record.method, record.traced) == (RegistrationMethod.SURFACE, traced)
-    data = server.path.read_bytes()
+    data, seed = server.path.read_bytes(), read_journal(server.path).header["seed"]
+    server.path.with_suffix(SEED_SUFFIX).write_text(str(seed))
     server.path.write_bytes(data[: data.index(b'"kind":"aborted"')])
     interrupted = interrupted_attempt(read_journal(server.path))
     assert (interrupted.method, interrupted.traced) == (RegistrationMethod.SURFACE, traced)

@@ -7,7 +7,7 @@ import pytest
 
 from rastrainer.command_arguments import check_arguments
 from rastrainer.files.writing import write_json
-from rastrainer.journal.journal_file import read_journal
+from rastrainer.journal.journal_file import SEED_SUFFIX, read_journal
 from rastrainer.protocol import CommandName, TouchRule
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.transforms import MM_PER_M
@@ -48,6 +48,13 @@ def recorded(setup, tmp_path_factory) -> Path:
         do(CommandName.ABORT)
     (path,) = folder.glob(f"*{SUFFIX}")
     return path
+
+
+def open_copy(recorded: Path, tmp_path: Path) -> Path:
+    """Return where a copy is to be cut; beside it is the seed, as of a trial that is open."""
+    seed = read_journal(recorded).header["seed"]
+    (tmp_path / "cut").with_suffix(SEED_SUFFIX).write_text(str(seed))
+    return tmp_path / "cut"
 
 
 def forged(recorded: Path, tmp_path: Path, change) -> Path:
@@ -102,7 +109,7 @@ def test_cut_short_altered_and_foreign_files_are_distinguished_by_message_and_st
 
 
 def test_a_journal_that_was_cut_short_replays_as_far_as_it_goes(recorded, tmp_path):
-    cut = tmp_path / "cut"
+    cut = open_copy(recorded, tmp_path)
     cut.write_bytes(recorded.read_bytes()[:-3000])
     assert main(["replay", str(cut), "--verify"]) == 0
 
@@ -111,7 +118,7 @@ def test_a_journal_cut_between_two_lines_of_one_tick_replays_up_to_there(recorde
     lines = recorded.read_bytes().splitlines(keepends=True)
     ticks = [json.loads(line).get("tick") for line in lines]
     shared = next(n for n in range(20, len(ticks)) if ticks[n] == ticks[n - 1])
-    cut = tmp_path / "cut"
+    cut = open_copy(recorded, tmp_path)
     cut.write_bytes(b"".join(lines[:shared]) + lines[shared][:10])
     assert main(["replay", str(cut), "--verify"]) == 0
 

@@ -59,11 +59,12 @@ NOW = stamp(0, 0.0)
 
 def write_trial(folder, *more, trial_id=TRIAL_ID):
     journal = Journal(folder / f"20240517T093000Z_{trial_id}{SUFFIX}")
-    header = {"kind": "header", "format": FORMAT, "version": FORMAT_VERSION, "seed": 7}
+    header = {"kind": "header", "format": FORMAT, "version": FORMAT_VERSION}
     registered = {
         "kind": "registered",
         "record": RECORD.to_json() | {"trialId": trial_id},
         "truth": TRUTH.to_json(),
+        "seed": 7,
     }
     samples = [{"kind": "sample", "i": i} for i in range(2000)]
     journal.write([header, *samples, registered, *more], sync=False)

@@ -218,10 +218,17 @@ def test_a_trial_of_another_scenario_is_not_shown(track, setup):
         RecordedTrial(track, replace(setup, scenario_sha256="0" * 64))
 
 
-@pytest.mark.parametrize("damage", ["mode", "seed", "before"])
-def test_an_incomplete_header_is_reported_in_one_sentence(track, setup, damage):
+@pytest.mark.parametrize(
+    ("damage", "words"),
+    [
+        ("mode", "is not as it should be"),
+        ("seed", "does not tell where the head was"),
+        ("before", "is not as it should be"),
+    ],
+)
+def test_an_incomplete_header_is_reported_in_one_sentence(track, setup, damage, words):
     header = {key: value for key, value in track.header.items() if key != damage}
-    with pytest.raises(InputError, match="is not as it should be"):
+    with pytest.raises(InputError, match=words):
         RecordedTrial(replace(track, header=header), setup)
 
 

@@ -69,12 +69,12 @@ def main() -> int:
 
 def _trial(arguments: argparse.Namespace) -> tuple[Any, dict[str, Any]]:
     """Return the scenario, and the beginning of the journal of the running trial."""
+    from rastrainer.journal.journal_file import read_journal
     from rastrainer.scenario.scenario import load_scenario
 
     journals = arguments.records.glob("*.journal")
     journal = max(journals, key=lambda path: path.stat().st_mtime)
-    with journal.open(encoding="utf-8") as lines:
-        return load_scenario(arguments.scenario), json.loads(lines.readline())
+    return load_scenario(arguments.scenario), read_journal(journal).header
 
 
 def _places(scenario: Any, header: dict[str, Any]) -> list[tuple[Any, Any]]:

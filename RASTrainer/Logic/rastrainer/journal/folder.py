@@ -17,7 +17,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.journal.journal_file import FIRST_BYTES, MAX_LINE_BYTES
+from rastrainer.journal.journal_file import FIRST_BYTES, MAX_LINE_BYTES, SEED_SUFFIX
 from rastrainer.json_checks import decode_finite_json
 
 if sys.platform == "win32":
@@ -177,6 +177,7 @@ def _erase(path: Path) -> None:
         with _locked(path) as descriptor:
             _overwrite(descriptor)
         path.unlink()
+        path.with_suffix(SEED_SUFFIX).unlink(missing_ok=True)
     except OSError as error:
         raise InputError(
             f"The file {path} cannot be deleted ({error.strerror}); if the trial is still "

@@ -8,10 +8,11 @@ comma, closed by `}`. The times of an entry are simulated time, the monotonic cl
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from enum import Enum
@@ -28,6 +29,9 @@ NO_LINE = "0" * 64
 MAX_LINE_BYTES = 1 << 20
 MAX_LINE_DEPTH = MAX_DEPTH + 8
 """A line may contain a message of the maximum depth."""
+
+SEED_SUFFIX = ".seed"
+"""Of the file beside the journal of an open trial that holds the seed of the head's pose."""
 
 FIRST_BYTES = f'{{"n":1,"previous":"{NO_LINE}","kind":"header","format":"{FORMAT}",'.encode()
 """The start of every journal."""
@@ -120,6 +124,9 @@ class Integrity(str, Enum):
 class JournalReading:
     """The content of a journal.
 
+    The header is completed by the `seed` of the head's pose, which is as secret as the pose while
+    the trial is open: its last entry reveals it, until then the file beside the journal holds it.
+
     Attributes:
         path: of the file.
         integrity: whether it is complete and unaltered.
@@ -167,9 +174,26 @@ def read_journal(path: Path, pause: Callable[[], None] = lambda: None) -> Journa
     """
     try:
         with path.open("rb") as file:
-            return _read(path, file, pause)
+            reading = _read(path, file, pause)
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}.") from None
+    if reading.entries and (seed := _seed(path, reading.entries)) is not None:
+        reading.header["seed"] = seed
+    return reading
+
+
+def revealed_seed(entries: Iterable[Mapping[str, Any]]) -> int | None:
+    """Return the seed of the head's pose that a journal reveals; None while its trial is open."""
+    return next((entry["seed"] for entry in reversed(tuple(entries)) if "seed" in entry), None)
+
+
+def _seed(path: Path, entries: Iterable[Mapping[str, Any]]) -> int | None:
+    """Return the seed of a trial, also of an open one if the file beside its journal is there."""
+    seed = revealed_seed(entries)
+    if seed is None:
+        with contextlib.suppress(OSError, ValueError):
+            seed = int(path.with_suffix(SEED_SUFFIX).read_text("ascii"))
+    return seed
 
 
 def _read(path: Path, file: BinaryIO, pause: Callable[[], None]) -> JournalReading:

@@ -76,6 +76,11 @@ def limits(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
             heading("Steps of the protocol that were left out"),
             bullets([f"{who}, {step}: {reason}" for who, step, reason in data.skipped]),
         ]
+    if data.objections:
+        parts += [
+            heading("Trials that did not count, and why"),
+            bullets([f"{who}, {what}: {reasons}" for who, what, reasons in data.objections]),
+        ]
     return section("What cannot be concluded", *parts)
 
 

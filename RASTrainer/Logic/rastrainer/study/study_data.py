@@ -17,10 +17,12 @@ from rastrainer.study.database.cohort_store import CohortStore, IncompleteStudyE
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredProcedure, StoredTrial
+from rastrainer.study.protocol.steps import Step
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers, StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.ratings import Rating, RatingStore
 from rastrainer.trial.ctps import StudyNotes, Trial, read_notes, read_trials
+from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore
 
 
@@ -72,6 +74,7 @@ class StudyData:
         answers: Answered questionnaires.
         skipped: Trainee, step and reason of each skipped step.
         outside_protocol: Number of trials outside the protocol, which are left out.
+        objections: Trainee, trial and reasons of those of them that broke a rule of the protocol.
         without_consent: Number of trainees left out without consent.
         versions: Of the programs that made the records, name → different versions.
         has_order: Whether the order of the trials is known.
@@ -89,6 +92,7 @@ class StudyData:
     answers: tuple[QuestionnaireAnswers, ...] = ()
     skipped: tuple[tuple[str, str, str], ...] = ()
     outside_protocol: int = 0
+    objections: tuple[tuple[str, str, str], ...] = ()
     without_consent: int = 0
     versions: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     has_order: bool = False
@@ -188,15 +192,17 @@ def _from_database(place: StudyPlace) -> StudyData:
         consenting = {trainee.pseudonym for trainee in everyone if trainee.consent}
         enrolled = [name for name in progress.enrolled() if name in consenting]
         asked = {name: set(progress.played(name).counted_trials) for name in enrolled}
-        trials, versions, beside = [], defaultdict(set), 0
+        trials, versions, beside, objections = [], defaultdict(set), 0, []
         rateable: set[str] = set()
         for pseudonym in sorted(consenting):
             history = [t for t in study.history(pseudonym) if t.record.task != TRIAL_RUN]
             rateable |= {trial.record.trial_id for trial in history}
             if pseudonym in asked:
-                played, ids = len(history), asked[pseudonym]
-                history = [trial for trial in history if trial.record.trial_id in ids]
-                beside += played - len(history)
+                others = [t for t in history if t.record.trial_id not in asked[pseudonym]]
+                history = [t for t in history if t.record.trial_id in asked[pseudonym]]
+                beside += len(others)
+                steps = progress.progress(pseudonym).steps
+                objections += [entry for t in others if (entry := _objected(t.record, steps))]
             trials += trial_rows(history)
             for stored in history:
                 for name, version in stored.record.versions.items():
@@ -212,6 +218,7 @@ def _from_database(place: StudyPlace) -> StudyData:
                 for entry in progress.progress(name).skipped
             ),
             outside_protocol=beside,
+            objections=tuple(objections),
             without_consent=len(everyone) - len(consenting),
             versions={name: tuple(sorted(found)) for name, found in sorted(versions.items())},
             has_order=True,
@@ -228,6 +235,15 @@ def _from_database(place: StudyPlace) -> StudyData:
                 rating for rating in RatingStore(study).ratings() if rating.trial_id in rateable
             ),
         )
+
+
+def _objected(record: TrialRecord, steps: Iterable[Step]) -> tuple[str, str, str] | None:
+    """Return why a trial did not count for the step of its task and mode; None if nothing does."""
+    of_task = (s for s in steps if (s.task, s.mode) == (record.task, record.mode))
+    step = next(of_task, None)
+    reasons = () if step is None else step.objections(record)
+    what = f"{record.task}, {record.mode}, {record.started_utc}"
+    return (record.trainee, what, "; ".join(reasons)) if reasons else None
 
 
 def values_of(trials: Iterable[TrialRow], name: str) -> list[float]:

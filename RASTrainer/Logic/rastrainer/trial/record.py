@@ -30,6 +30,7 @@ from rastrainer.protocol import (
     RegistrationMethod,
     TouchRule,
 )
+from rastrainer.trial.how_played import HowPlayed
 
 TIME_LIMIT_S = 1e6
 TOUCH_LIMIT = 1_000_000
@@ -98,6 +99,7 @@ class TrialRecord:
         trace: The points that were traced over the skin, in order of time; empty where the method
             has no trace.
         skin: how the skin lay on the head, its seed left out; the truth reveals that.
+        played: who moved the arm, and more; None of a trial that no simulator recorded.
     """
 
     trial_id: str
@@ -120,6 +122,7 @@ class TrialRecord:
     method: RegistrationMethod = RegistrationMethod.FIDUCIALS
     trace: tuple[TracePoint, ...] = ()
     skin: SkinShift = UNMOVED
+    played: HowPlayed | None = None
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -164,6 +167,7 @@ class TrialRecord:
             "method": self.method is RegistrationMethod.FIDUCIALS,
             "trace": not self.trace,
             "skin": self.skin.is_none,
+            "played": self.played is None,
         }
         return {key: item for key, item in values.items() if not is_left_out.get(key)}
 
@@ -321,4 +325,5 @@ _CHECKS = {
     "method": Argument(played_method, RegistrationMethod.FIDUCIALS),
     "trace": Argument(trace_points, ()),
     "skin": Argument(SkinShift.from_json, UNMOVED),
+    "played": Argument(_optional(HowPlayed.from_json), None),
 }

@@ -17,7 +17,7 @@ from rastrainer.protocol import ALL_DONE, REPEAT, RegistrationMethod
 from rastrainer.study.database.aborted_trials import unexplained
 from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study_trainees import TRAINEE_ID
-from rastrainer.study.database.study_trials import decoded
+from rastrainer.study.database.study_trials import decoded, find_record
 from rastrainer.study.database.values import moment
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study.protocol.steps import Step, StepKind, StudyStep
@@ -285,6 +285,7 @@ def _played_for(
             and step.is_played_on(shift, indentation)
             and trial not in counted
             and when >= since
+            and not step.objections(find_record(connection, trial))
         ),
         None,
     )

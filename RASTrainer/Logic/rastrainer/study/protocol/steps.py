@@ -11,7 +11,14 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.files.json_fields import Fields
-from rastrainer.protocol import FREE, TRIAL_RUN, Mode, RegistrationMethod, StepKind
+from rastrainer.protocol import (
+    FREE,
+    TRIAL_RUN,
+    Guidance,
+    Mode,
+    RegistrationMethod,
+    StepKind,
+)
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES, find_questionnaire
 from rastrainer.study.protocol.study_protocol import (
     AFTER_ALL,
@@ -22,7 +29,9 @@ from rastrainer.study.protocol.study_protocol import (
     BEFORE_MODE,
     StudyProtocol,
 )
+from rastrainer.trial.record import TrialRecord
 
+FIXED_GUIDANCE = tuple(each.value for each in Guidance if each is not Guidance.FADING)
 _IN_MODE = {Mode.DESKTOP.value: "on the desktop screen", Mode.HMD.value: "with the headset"}
 
 _BY_METHOD = {
@@ -50,6 +59,7 @@ class Step:
         procedure: That the trial continues with; "" for the touches alone.
         method: By what the trial is registered, a `PLAYED_METHODS`.
         skin: How far the skin shifts and is indented; empty for what the scenario says.
+        allows: `Allowance`s of the protocol.
     """
 
     name: str
@@ -65,10 +75,21 @@ class Step:
     procedure: str = ""
     method: str = RegistrationMethod.FIDUCIALS.value
     skin: Mapping[str, float] = field(default_factory=dict, hash=False)
+    allows: tuple[str, ...] = ()
 
     def is_played_on(self, shift_mm: float, indentation_mm: float) -> bool:
         """Return whether a trial on such skin is the step's; the scenario's may be any."""
         return not self.skin or tuple(self.skin.values()) == (shift_mm, indentation_mm)
+
+    def objections(self, record: TrialRecord) -> tuple[str, ...]:
+        """Return why a trial of its task and mode does not count all the same, in words."""
+        found = () if record.played is None else record.played.objections(self.mode, self.allows)
+        ghost, guidance = record.display.get("ghost", ""), record.display.get("guidance", "")
+        if ghost and ghost != self.ghost:
+            found = (*found, f"the ghost {ghost!r} was shown")
+        if guidance and self.guidance in FIXED_GUIDANCE and guidance != self.guidance:
+            found = (*found, f"the guidance was {guidance!r}, not {self.guidance!r}")
+        return found
 
     @property
     def sentence(self) -> str:
@@ -168,6 +189,7 @@ def _in_mode(protocol: StudyProtocol, place: int, index: int, mode: str) -> Iter
                 procedure=protocol.procedures.get(task, ""),
                 method=protocol.methods.get(task, RegistrationMethod.FIDUCIALS.value),
                 skin=protocol.skins.get(task, {}),
+                allows=protocol.allows,
             )
             yield from _questions(protocol, AFTER_TASK, mode, name)
     yield from _questions(protocol, AFTER_MODE, mode, f"{mode}/after")

@@ -295,6 +295,11 @@ def _check_trial(
             f"The trial {trial_id} is not the one that the step {step.name} asks for: its skin had "
             f"shifted by {skin.rms_mm:g} mm and was indented by {skin.indentation_mm:g} mm."
         )
+    if objections := step.objections(record):
+        raise InputError(
+            f"The trial {trial_id} does not count for the step {step.name}: "
+            f"{'; '.join(objections)}."
+        )
     if any(entry.details.get("trialId") == trial_id for entry in progress.entries):
         raise InputError(f"The trial {trial_id} already counts for an earlier step.")
 

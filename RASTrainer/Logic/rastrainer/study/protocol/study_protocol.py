@@ -23,6 +23,7 @@ from rastrainer.protocol import (
     TutorialRule,
 )
 from rastrainer.study.protocol.questionnaires import find_questionnaire
+from rastrainer.trial.how_played import Allowance
 from rastrainer.trial.scoring import PASS_MARK, SCORE_VERSION, ScoreReference
 
 FORMAT_VERSION = 1
@@ -40,7 +41,7 @@ Value = TypeVar("Value")
 _KEYS = (
     *("formatVersion", "name", "title", "modes", "modeOrder", "tasks", "taskOrder"),
     *("repetitions", "trialRun", "breaks", "questionnaires", "scoring"),
-    *("guidance", "ghost", "tutorial", "procedures", "methods", "skin"),
+    *("guidance", "ghost", "tutorial", "procedures", "methods", "skin", "allows"),
 )
 
 
@@ -79,6 +80,7 @@ class StudyProtocol:
             fiducials.
         skins: By task, how far the skin shifts and is indented in its trials, as of `skin_amounts`;
             without one, as the scenario says.
+        allows: What counts in the trials although it is not how a trainee plays, `Allowance`s.
     """
 
     name: str
@@ -100,6 +102,7 @@ class StudyProtocol:
     procedures: Mapping[str, str] = field(default_factory=dict)
     methods: Mapping[str, str] = field(default_factory=dict)
     skins: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    allows: tuple[str, ...] = ()
 
     def to_json(self) -> dict[str, Any]:
         """Return the object that the file holds."""
@@ -119,6 +122,7 @@ class StudyProtocol:
             "tasks": list(self.tasks),
             **{name: value for name, value in chosen.items() if value},
             **{name: value for name, value in by_task.items() if value},
+            **({"allows": list(self.allows)} if self.allows else {}),
             "taskOrder": self.task_order,
             "repetitions": self.repetitions,
             "trialRun": {"minutes": self.trial_run_min},
@@ -209,6 +213,7 @@ def _protocol(fields: Fields) -> StudyProtocol:
         skins=_by_task(
             fields, "skin", tasks, lambda entries, task: read_skin(entries, task).amounts
         ),
+        allows=_allowances(fields),
     )
     if len(modes) * len(tasks) * protocol.repetitions > MAX_STEPS:
         raise fields.error("repetitions", f"so few that there are at most {MAX_STEPS} trials")
@@ -220,6 +225,12 @@ def _chosen(fields: Fields, name: str, choices: type[Enum]) -> str:
     if name not in fields.names():
         return ""
     return fields.one_of(name, tuple(choice.value for choice in choices))
+
+
+def _allowances(fields: Fields) -> tuple[str, ...]:
+    known = tuple(each.value for each in Allowance)
+    given = "allows" in fields.names()
+    return fields.texts("allows", 0, len(known), choices=known) if given else ()
 
 
 def _by_task(

@@ -1,0 +1,208 @@
+"""How a trial was played: who moved the arm, who chose the head's pose, which view was used.
+
+It is derived from the trial's journal, entry by entry, and belongs to the trial's record.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter, defaultdict
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any
+
+from rastrainer import json_checks
+from rastrainer.files.json_fields import from_json_object
+from rastrainer.json_checks import Argument
+from rastrainer.protocol import CommandName, Mode, Phase
+
+MAX_WAY_MM = 1e9
+MAX_COUNT = 10**9
+HEADSET = "headset"
+PACE_TOLERANCE = 0.1
+MOST_PAUSES = 10
+"""More would be slow motion: the trial's time stops in each."""
+LEAST_IN_HEADSET = 0.9
+"""Share of a trial in the mode `hmd` during which the headset is the view."""
+
+
+class SeedSource(str, Enum):
+    """Who chose the seed of the head's pose: nobody, `--seed` of the simulator, or a client."""
+
+    DRAWN = "drawn"
+    SESSION = "session"
+    CLIENT = "client"
+
+
+class MovedBy(str, Enum):
+    """What moved the tip: the trainee's sticks, a client's Jog or MoveTipTo, or AlignGuide."""
+
+    STICKS = "sticks"
+    COMMANDS = "commands"
+    ALIGNMENT = "alignment"
+
+
+class Allowance(str, Enum):
+    """Exceptions that a protocol may allow; without them, such a trial counts for no step."""
+
+    COMMANDS = "commands"
+    CHOSEN_SEED = "chosen seed"
+    REPEATED_SEED = "repeated seed"
+    OTHER_SPEED = "other speed"
+    PAUSES = "pauses"
+    OTHER_VIEW = "other view"
+
+
+@dataclass(frozen=True)
+class HowPlayed:
+    """How a trial was played.
+
+    Attributes:
+        started_by: Client or input device that started it, as it names itself.
+        seed_source: A `SeedSource`.
+        is_seed_repeated: Whether an earlier trial of the simulator had the same chosen seed.
+        speed: Simulated seconds in a second, as set; 0 for as fast as possible. If the trial was
+            resumed at another speed, the value farthest from 1.
+        pace: Simulated seconds in a second by the clock, over the whole trial: below `speed` if the
+            simulator was held up.
+        pauses: How often it was paused.
+        way_mm: Way of the tip by what moved it, a `MovedBy`.
+        feed_commands: Number of commands to feed drill or instrument.
+        view_s: Time that each kind of view was looked at: `desktop`, `page`, `headset`.
+    """
+
+    started_by: str = ""
+    seed_source: str = SeedSource.DRAWN.value
+    is_seed_repeated: bool = False
+    speed: float = 1.0
+    pace: float = 1.0
+    pauses: int = 0
+    way_mm: Mapping[str, float] = field(default_factory=dict)
+    feed_commands: int = 0
+    view_s: Mapping[str, float] = field(default_factory=dict)
+
+    @classmethod
+    def from_json(cls, value: object) -> HowPlayed:
+        """Return what a JSON object holds, as of `json_object`; raise `InputError` if invalid."""
+        return from_json_object(cls, value, _CHECKS, "How a trial was played")
+
+    @property
+    def commanded_share(self) -> float:
+        """Share of the tip's way that clients' commands moved it."""
+        way = sum(self.way_mm.values())
+        return self.way_mm.get(MovedBy.COMMANDS.value, 0.0) / way if way else 0.0
+
+    def objections(self, mode: str, allows: Collection[str]) -> tuple[str, ...]:
+        """Return why the trial does not count for a step of a study, in words.
+
+        Args:
+            mode: Display mode of the step.
+            allows: The `Allowance`s of its protocol.
+        """
+        return tuple(why for what, why in self._objections(mode) if what.value not in allows)
+
+    def _objections(self, mode: str) -> Iterator[tuple[Allowance, str]]:
+        if self.way_mm.get(MovedBy.COMMANDS.value, 0.0) > 0.0 or self.feed_commands:
+            yield (
+                Allowance.COMMANDS,
+                f"a client's commands moved the arm ({100.0 * self.commanded_share:.0f} % of the "
+                f"way, {self.feed_commands} feeds)",
+            )
+        if self.seed_source != SeedSource.DRAWN.value:
+            by = "a client" if self.seed_source == SeedSource.CLIENT.value else "--seed"
+            yield Allowance.CHOSEN_SEED, f"the pose of the head was chosen by {by}"
+        if self.is_seed_repeated:
+            yield Allowance.REPEATED_SEED, "the same pose of the head was played before"
+        if self.speed != 1.0 or abs(self.pace - 1.0) > PACE_TOLERANCE:
+            yield Allowance.OTHER_SPEED, f"time ran {self.pace:.2g} times as fast as the clock"
+        if self.pauses > MOST_PAUSES:
+            yield Allowance.PAUSES, f"it was paused {self.pauses} times"
+        seen_s = sum(self.view_s.values())
+        in_headset = self.view_s.get(HEADSET, 0.0) / seen_s if seen_s else 0.0
+        if mode == Mode.HMD.value and in_headset < LEAST_IN_HEADSET:
+            worn = f"the headset was worn {100.0 * in_headset:.0f} % of the time"
+            yield Allowance.OTHER_VIEW, worn
+        if mode == Mode.DESKTOP.value and in_headset > 1.0 - LEAST_IN_HEADSET:
+            yield Allowance.OTHER_VIEW, "it was played in a headset"
+
+
+_WAYS = tuple(each.value for each in MovedBy)
+_CHECKS = {
+    "startedBy": Argument(json_checks.text(64, 0)),
+    "seedSource": Argument(json_checks.one_of(*(each.value for each in SeedSource))),
+    "isSeedRepeated": Argument(json_checks.yes_or_no),
+    "speed": Argument(json_checks.number(0, 1e6)),
+    "pace": Argument(json_checks.number(0, 1e6)),
+    "pauses": Argument(json_checks.whole_number(0, MAX_COUNT)),
+    "wayMm": Argument(
+        json_checks.mapping(
+            len(_WAYS), "what moved the tip, with its way", json_checks.number(0, MAX_WAY_MM, "mm")
+        )
+    ),
+    "feedCommands": Argument(json_checks.whole_number(0, MAX_COUNT)),
+    "viewS": Argument(
+        json_checks.mapping(8, "views with their times", json_checks.number(0, MAX_COUNT, "s"))
+    ),
+}
+
+
+class PlayRecording:
+    """Derives from a journal's entries how its trial is played."""
+
+    def __init__(self) -> None:
+        self._started_by = ""
+        self._seed_source = SeedSource.DRAWN
+        self._speed = 1.0
+        self._pauses = 0
+        self._simulated_s = self._clock_s = 0.0
+        self._times: tuple[float, float] | None = None
+        self._way_mm: dict[str, float] = defaultdict(float)
+        self._feed_commands = 0
+        self._view_s: Counter[str] = Counter()
+        self._tip: tuple[float, ...] | None = None
+
+    def add(self, entry: Mapping[str, Any]) -> None:
+        """Add the next entry."""
+        kind, times = entry["kind"], (entry["simTime"], entry["monotonic"])
+        if self._times is not None and kind != "continued":
+            self._simulated_s += times[0] - self._times[0]
+            self._clock_s += times[1] - self._times[1]
+        self._times = times
+        if kind in ("header", "continued"):
+            self._add_session(entry["session"])
+        elif kind == "command" and entry["name"] == CommandName.START_TASK:
+            self._started_by = entry["sender"]
+            if entry["arguments"].get("seed") is not None:
+                self._seed_source = SeedSource.CLIENT
+        elif kind == "command" and entry["name"] == CommandName.FEED:
+            self._feed_commands += 1
+        elif kind == "phase":
+            self._pauses += entry["phase"] == Phase.PAUSED.value
+        elif kind == "sample":
+            tip = tuple(entry["tipMm"])
+            if self._tip is not None and entry["movedBy"]:
+                self._way_mm[entry["movedBy"]] += math.dist(tip, self._tip)
+            self._tip = tip
+        elif kind == "display":
+            # Views report once a second.
+            self._view_s[entry["view"]] += 1
+
+    def played(self) -> HowPlayed:
+        """Return how the trial was played so far."""
+        return HowPlayed(
+            started_by=self._started_by,
+            seed_source=self._seed_source.value,
+            speed=self._speed,
+            pace=self._simulated_s / self._clock_s if self._clock_s else self._speed,
+            pauses=self._pauses,
+            way_mm=dict(self._way_mm),
+            feed_commands=self._feed_commands,
+            view_s=dict(self._view_s),
+        )
+
+    def _add_session(self, session: Mapping[str, Any]) -> None:
+        speed = session["speed"] or 0.0
+        self._speed = max(self._speed, speed, key=lambda each: abs(each - 1.0))
+        if session["isSeeded"] and self._seed_source is SeedSource.DRAWN:
+            self._seed_source = SeedSource.SESSION

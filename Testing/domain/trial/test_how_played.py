@@ -1,0 +1,71 @@
+"""How a trial was played follows from the entries of its journal."""
+
+from dataclasses import replace
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.files.json_fields import json_object
+from rastrainer.trial.how_played import HowPlayed, PlayRecording
+
+
+def played(*entries) -> HowPlayed:
+    """Return how a trial was played whose entries follow each other by a second."""
+    recording = PlayRecording()
+    for number, entry in enumerate(entries):
+        recording.add({"simTime": float(number), "monotonic": float(number), **entry})
+    return recording.played()
+
+
+def session(kind="header", speed=1.0, is_seeded=False):
+    return {"kind": kind, "session": {"speed": speed, "isSeeded": is_seeded}}
+
+
+def sample(x_mm, moved_by):
+    return {"kind": "sample", "tipMm": [x_mm, 0.0, 0.0], "movedBy": moved_by}
+
+
+def start(seed=None):
+    return {"kind": "command", "name": "StartTask", "sender": "anna", "arguments": {"seed": seed}}
+
+
+def test_the_way_is_shared_among_what_moved_the_tip():
+    ways = (sample(0, "sticks"), sample(6, "sticks"), sample(8, "commands"), sample(8, ""))
+    found = played(session(), start(), *ways)
+    assert found.way_mm == {"sticks": 6.0, "commands": 2.0}
+    assert found.commanded_share == pytest.approx(0.25)
+    assert (found.started_by, found.seed_source) == ("anna", "drawn")
+    assert "25 % of the way" in found.objections("desktop", ())[0]
+
+
+def test_a_seed_is_chosen_by_a_client_or_for_the_session():
+    assert played(session(is_seeded=True), start()).seed_source == "session"
+    assert played(session(is_seeded=True), start(seed=3)).seed_source == "client"
+
+
+def test_another_speed_after_an_interruption_is_not_hidden_by_the_first():
+    found = played(session(), start(), session("continued", speed=0.5))
+    assert found.speed == 0.5
+    assert found.objections("desktop", ()) != ()
+
+
+def test_a_simulator_that_is_held_up_is_slow_by_the_clock():
+    held_up = {"kind": "reach", "simTime": 2.0, "monotonic": 4.0}
+    found = played(session(), start(), held_up)
+    assert (found.speed, found.pace) == (1.0, 0.5)
+    # What passes until a trial is resumed is no part of it.
+    assert played(session(), session("continued") | {"monotonic": 900.0}).pace == 1.0
+
+
+def test_pauses_and_views_are_counted():
+    views = [{"kind": "display", "view": name} for name in ("desktop", "headset", "headset")]
+    pause = {"kind": "phase", "phase": "paused"}
+    found = played(session(), pause, {"kind": "phase", "phase": "running"}, pause, *views)
+    assert (found.pauses, found.view_s) == (2, {"desktop": 1, "headset": 2})
+
+
+def test_it_is_read_as_it_was_written_and_invalid_values_are_refused():
+    found = played(session(speed=None), start(seed=1), sample(0, ""), sample(1, "alignment"))
+    assert HowPlayed.from_json(json_object(found)) == found
+    with pytest.raises(InputError, match="seedSource"):
+        HowPlayed.from_json(json_object(replace(found, seed_source="dice")))
