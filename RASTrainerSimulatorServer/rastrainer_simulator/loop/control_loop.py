@@ -187,6 +187,11 @@ class ControlLoop:
         """Return the aborted and the registered trials that no client has acknowledged."""
         return self._archive.unacknowledged()
 
+    @property
+    def arrivals(self) -> int:
+        """How many trials have come to be delivered since the start."""
+        return self._archive.arrivals
+
     def subscribe(self, callback: Callable[[StepResult], None]) -> Callable[[], None]:
         """Call `callback` in the loop's thread after each tick; it must return immediately.
 
@@ -342,7 +347,7 @@ class ControlLoop:
         return not is_present or training.phase in FINISHED_PHASES
 
     def _query_archive(self, command: OperatorCommand) -> None:
-        times = stamp(self._state.tick, self._state.sim_time)
+        times = stamp(self._state.tick, self._state.sim_time) | {"sender": command.sender}
 
         def query() -> None:
             try:

@@ -79,8 +79,11 @@ class ArchivedTrial:
 class TrialArchive:
     """The registered trials of a folder, and the aborted ones that are kept.
 
-    One thread changes it; any thread may call `unacknowledged`. `problems` are sentences about
-    unusable journals.
+    One thread changes it; any thread may call `unacknowledged`.
+
+    Attributes:
+        problems: sentences about unusable journals.
+        arrivals: how many trials have come to be delivered.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -89,6 +92,7 @@ class TrialArchive:
         self._journals: dict[str, Journal] = {}
         self._aborted = AbortedArchive()
         self.problems: list[str] = []
+        self.arrivals = 0
         for path in find_unacknowledged(folder):
             self._load(path)
 
@@ -105,10 +109,12 @@ class TrialArchive:
         """Add a trial that has just been registered."""
         self._trials[trial.record.trial_id] = trial
         self._journals[trial.record.trial_id] = journal
+        self.arrivals += 1
 
     def add_aborted(self, record: AbortedTrial, journal: Journal) -> None:
         """Add a trial that has just been aborted."""
         self._aborted.add(record, journal)
+        self.arrivals += 1
 
     def add_interrupted(self, path: Path) -> None:
         """Add the trial of a journal that was still open when another trial was started."""
@@ -116,6 +122,7 @@ class TrialArchive:
             return
         try:
             self._aborted.add_interrupted(path)
+            self.arrivals += 1
         except RASTrainerError as error:
             self.problems.append(str(error))
 
@@ -236,8 +243,9 @@ def _archived_trial(reading: JournalReading) -> ArchivedTrial | None:
         return None
     scores = reading.of_kind("scored")
     registrations = reading.of_kind("registration")
+    record = TrialRecord.from_json(registered[-1]["record"])
     trial = ArchivedTrial(
-        record=TrialRecord.from_json(registered[-1]["record"]),
+        record=replace(record, journal_sha256=registered[-1]["sha256"]),
         truth=Truth.from_json(registered[-1]["truth"]),
         seed=reading.header["seed"],
         registration=registrations[0]["arguments"] if registrations else None,

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from rastrainer.journal.folder import UNNUMBERED
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.procedure.plan import Procedure, ProcedureTrajectory
@@ -47,6 +48,7 @@ class TrialRecords:
         versions: of what it is played with.
         display: how its views drew.
         feeds: of drill and instrument.
+        number: of the trial in its folder.
     """
 
     def __init__(self, simulation: Simulation, started_utc: str) -> None:
@@ -54,6 +56,7 @@ class TrialRecords:
         self.versions = versions() | {"kinematics": simulation.kinematics_name}
         self.display = DisplayUse()
         self.feeds = FeedRecording()
+        self.number = UNNUMBERED
         self._setup = simulation.setup
         # Its seed is revealed with the truth.
         self._skin = replace(simulation.truth.skin, seed=0)
@@ -86,6 +89,7 @@ class TrialRecords:
             touch_rule=self._setup.settings.training.touch_rule.value,
             method=training.method,
             traced=0 if training.trace is None else len(training.trace.points),
+            **asdict(self.number),
         )
 
     def _points(self, training: TrainingState) -> tuple[TouchedPoint, ...]:
@@ -123,6 +127,7 @@ class TrialRecords:
             method=training.method,
             trace=trace,
             skin=self._skin,
+            **asdict(self.number),
         )
 
     def _procedure_record(self, training: TrainingState) -> ProcedureRecord | None:

@@ -33,6 +33,7 @@ from rastrainer.protocol import (
 
 TIME_LIMIT_S = 1e6
 TOUCH_LIMIT = 1_000_000
+NUMBER_LIMIT = 1_000_000_000
 VERSIONS_LIMIT = 32
 MOTION_LIMIT = 100
 DISPLAY_LIMIT = 16
@@ -98,6 +99,10 @@ class TrialRecord:
         trace: The points that were traced over the skin, in order of time; empty where the method
             has no trace.
         skin: how the skin lay on the head, its seed left out; the truth reveals that.
+        number: Of the trial among those of its simulator's folder; 0 if unknown.
+        series: UUID of that numbering.
+        journal_sha256: Hash of the journal's line of this record, which stands for all lines up to
+            it; "" in that line itself.
     """
 
     trial_id: str
@@ -120,6 +125,9 @@ class TrialRecord:
     method: RegistrationMethod = RegistrationMethod.FIDUCIALS
     trace: tuple[TracePoint, ...] = ()
     skin: SkinShift = UNMOVED
+    number: int = 0
+    series: str = ""
+    journal_sha256: str = ""
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -164,6 +172,9 @@ class TrialRecord:
             "method": self.method is RegistrationMethod.FIDUCIALS,
             "trace": not self.trace,
             "skin": self.skin.is_none,
+            "number": not self.number,
+            "series": not self.series,
+            "journalSha256": not self.journal_sha256,
         }
         return {key: item for key, item in values.items() if not is_left_out.get(key)}
 
@@ -298,6 +309,8 @@ SHARED_CHECKS = {
         json_checks.mapping(VERSIONS_LIMIT, "names with their versions as text", json_checks.text())
     ),
     "touchRule": Argument(json_checks.one_of(*(rule.value for rule in TouchRule))),
+    "number": Argument(json_checks.whole_number(0, NUMBER_LIMIT), 0),
+    "series": Argument(json_checks.text(36, 0), ""),
 }
 """Of the keys that the records of finished and of aborted trials share."""
 
@@ -321,4 +334,5 @@ _CHECKS = {
     "method": Argument(played_method, RegistrationMethod.FIDUCIALS),
     "trace": Argument(trace_points, ()),
     "skin": Argument(SkinShift.from_json, UNMOVED),
+    "journalSha256": Argument(json_checks.text(64, 0), ""),
 }

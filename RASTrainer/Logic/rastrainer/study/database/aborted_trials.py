@@ -8,7 +8,7 @@ from datetime import datetime
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.study.database import study_trainees, study_trials
+from rastrainer.study.database import deliveries, study_trainees, study_trials
 from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import TRAINEE_ID, check_not_deleted
@@ -43,6 +43,8 @@ class AbortedTrials:
         self, record: AbortedTrial | Mapping[str, Any], delivered: Mapping[str, Any] | None = None
     ) -> bool:
         """Store an aborted trial; return whether it was new.
+
+        Of one in which nothing was done, only the number is noted.
 
         An unknown trainee is added without consent, as in `Study.add_trial`.
 
@@ -136,6 +138,9 @@ def _add(connection: Connection, record: AbortedTrial, text: str) -> bool:
             f"Another trial is stored under the UUID {record.trial_id}; the stored one is kept."
         )
     if row is not None:
+        return False
+    deliveries.note(connection, record)
+    if not record.is_kept:
         return False
     study_trainees.create_where_missing(connection, record.trainee, consent=False)
     connection.execute(

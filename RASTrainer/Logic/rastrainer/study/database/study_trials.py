@@ -15,7 +15,7 @@ from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
-from rastrainer.study.database import study_trainees
+from rastrainer.study.database import deliveries, study_trainees
 from rastrainer.study.database.database import Connection, Rows
 from rastrainer.study.database.study_trainees import TRAINEE_ID, check_not_deleted
 from rastrainer.study.database.values import (
@@ -63,6 +63,7 @@ def add(connection: Connection, record: TrialRecord, json_object: Mapping[str, A
     text = record_text(json_object)
     if not check(connection, record):
         return False
+    deliveries.note(connection, record)
     study_trainees.create_where_missing(connection, record.trainee, consent=False)
     connection.execute(
         f"INSERT INTO trials VALUES (?, ({TRAINEE_ID}), ?, ?, ?, ?, ?, ?, ?)",
