@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 import secrets
 
-import numpy as np
 import pytest
 
 from rastrainer.igtl.client import Client

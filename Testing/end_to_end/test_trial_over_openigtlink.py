@@ -11,9 +11,7 @@ import pytest
 from rastrainer import transforms
 from rastrainer.head.mesh import outward_normal, read_head_mesh
 from rastrainer.igtl.client import Client
-from rastrainer.igtl.content import Point
 from rastrainer.protocol import PROTOCOL_VERSION
-from rastrainer.registration.registration import register
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.assets import asset_path

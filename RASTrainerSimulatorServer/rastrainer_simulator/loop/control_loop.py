@@ -59,7 +59,8 @@ TOO_MANY_STARTS = Texts().say("too many starts")
 _BEGIN_REPLACEMENT = "BeginReplacement"
 """Waits for its turn among the commands; clients cannot send it."""
 
-_OF_ANY_TRIAL = (CommandName.GET_TRIAL, CommandName.ACKNOWLEDGE_TRIAL, *ENDING_A_TRIAL)
+_OF_THE_ARCHIVE = (CommandName.ACKNOWLEDGE_TRIAL, CommandName.GET_JOURNAL)
+_OF_ANY_TRIAL = (CommandName.GET_TRIAL, *_OF_THE_ARCHIVE, *ENDING_A_TRIAL)
 _PASSING = frozenset(
     {
         CommandName.JOG,
@@ -70,6 +71,7 @@ _PASSING = frozenset(
         CommandName.PLAN_TARGET,
         CommandName.LIST_TASKS,
         CommandName.GET_TRIAL,
+        CommandName.GET_JOURNAL,
     }
 )
 """Commands that do not change the trial; all others are carried out one at a time."""
@@ -339,7 +341,7 @@ class ControlLoop:
         if command.name not in _OF_ANY_TRIAL:
             return False
         training = self._state.training
-        if command.name == CommandName.ACKNOWLEDGE_TRIAL:
+        if command.name in _OF_THE_ARCHIVE:
             return True
         is_present = command.arguments["trialId"] == training.trial_id
         if command.name in ENDING_A_TRIAL:

@@ -28,6 +28,9 @@ from rastrainer_simulator.training.head_pose import Truth
 FIRST_REACH = 1 << 16
 """Bytes at the end of a journal that are read first."""
 
+JOURNAL_PIECE_BYTES = 1 << 18
+"""Of a journal that is sent, in one answer."""
+
 _KIND = re.compile(rb'^\{"n":\d+,"previous":"[0-9a-f]{64}","kind":"([a-z]+)"', re.MULTILINE)
 _OVER = frozenset({b"registered", b"aborted", b"attempt"})
 _AFTER_THE_TRIAL = frozenset(
@@ -159,8 +162,24 @@ class TrialArchive:
         self._keep(trial)
         if command == CommandName.GET_TRIAL:
             return trial.summary()
+        if command == CommandName.GET_JOURNAL:
+            return self._journal_piece(trial, arguments["start"])
         revealed = trial.revealed() if command == CommandName.SUBMIT_REGISTRATION else {}
         return {"trialId": trial_id, **revealed}
+
+    def _journal_piece(self, trial: ArchivedTrial, start: int) -> dict[str, Any]:
+        """Return a piece of a trial's journal, once the truth in it is no secret."""
+        if trial.registration is None:
+            raise InputError(Texts().say("no registration"))
+        (path,) = journals_of(self._folder, trial.record.trial_id)
+        try:
+            with path.open("rb") as file:
+                file.seek(start)
+                piece = file.read(JOURNAL_PIECE_BYTES)
+                is_more = bool(file.read(1))
+        except OSError as error:
+            raise InputError(f"{path.name} cannot be read: {error.strerror}.") from None
+        return {"text": piece.decode("ascii"), "next": start + len(piece) if is_more else None}
 
     def _with_registration(
         self, trial: ArchivedTrial, arguments: Mapping[str, Any], times: Mapping[str, Any]

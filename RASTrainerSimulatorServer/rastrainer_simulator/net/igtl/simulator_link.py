@@ -54,7 +54,14 @@ _OWN_DEVICES = frozenset(
         *DeviceName.LINK_TO_WORLD,
     }
 )
-_OF_SCORING_CLIENTS = frozenset({*CHECKED, CommandName.TRIAL_SCORED, CommandName.ACKNOWLEDGE_TRIAL})
+_OF_SCORING_CLIENTS = frozenset(
+    {
+        *CHECKED,
+        CommandName.TRIAL_SCORED,
+        CommandName.GET_JOURNAL,
+        CommandName.ACKNOWLEDGE_TRIAL,
+    }
+)
 """Commands of the clients that receive the trials, register them and score them."""
 _ENGLISH = Texts()
 OFFERS_AT_ONCE = 8

@@ -40,11 +40,14 @@ ARGUMENTS = {
     "StudyStep": {"trainee": "P07", "kind": "trial", "task": "task-2", "mode": "hmd"},
     "Curriculum": {"trainee": "P07"},
     "GetTrial": {"trialId": TRIAL},
+    "GetJournal": {"trialId": TRIAL},
     "AcknowledgeTrial": {"trialId": TRIAL},
 }
 
 
-OF_SCORING_CLIENTS = ("UseRegistration", "SubmitRegistration", "TrialScored", "AcknowledgeTrial")
+OF_SCORING_CLIENTS = (
+    *("UseRegistration", "SubmitRegistration", "TrialScored", "GetJournal", "AcknowledgeTrial"),
+)
 
 
 @pytest.mark.parametrize("name", OF_SCORING_CLIENTS)

@@ -40,7 +40,7 @@ Value = TypeVar("Value")
 _KEYS = (
     *("formatVersion", "name", "title", "modes", "modeOrder", "tasks", "taskOrder"),
     *("repetitions", "trialRun", "breaks", "questionnaires", "scoring"),
-    *("guidance", "ghost", "tutorial", "procedures", "methods", "skin"),
+    *("guidance", "ghost", "tutorial", "procedures", "methods", "skin", "checkJournals"),
 )
 
 
@@ -79,6 +79,7 @@ class StudyProtocol:
             fiducials.
         skins: By task, how far the skin shifts and is indented in its trials, as of `skin_amounts`;
             without one, as the scenario says.
+        checks_journals: Whether a trial is scored only if it follows from its journal.
     """
 
     name: str
@@ -100,6 +101,7 @@ class StudyProtocol:
     procedures: Mapping[str, str] = field(default_factory=dict)
     methods: Mapping[str, str] = field(default_factory=dict)
     skins: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    checks_journals: bool = True
 
     def to_json(self) -> dict[str, Any]:
         """Return the object that the file holds."""
@@ -119,6 +121,7 @@ class StudyProtocol:
             "tasks": list(self.tasks),
             **{name: value for name, value in chosen.items() if value},
             **{name: value for name, value in by_task.items() if value},
+            "checkJournals": self.checks_journals,
             "taskOrder": self.task_order,
             "repetitions": self.repetitions,
             "trialRun": {"minutes": self.trial_run_min},
@@ -209,6 +212,7 @@ def _protocol(fields: Fields) -> StudyProtocol:
         skins=_by_task(
             fields, "skin", tasks, lambda entries, task: read_skin(entries, task).amounts
         ),
+        checks_journals=fields.yes_or_no("checkJournals", True),
     )
     if len(modes) * len(tasks) * protocol.repetitions > MAX_STEPS:
         raise fields.error("repetitions", f"so few that there are at most {MAX_STEPS} trials")
