@@ -12,6 +12,8 @@ from rastrainer.journal.folder import journals_of
 from rastrainer.journal.journal_file import NO_LINE, encode_line, read_journal
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic.trial_logic import TrialLogic
+from rastrainer.study.curriculum.curriculum_store import counted_trials
+from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.journal_check import check_journal
 from rastrainer.study.protocol.study_progress import StudyProgress
@@ -67,7 +69,15 @@ def received(folder, port, scenario, **protocol):
     with Study.open(path) as study:
         ((name,),) = [[each.pseudonym for each in study.trainees()]]
         (trial,) = study.history(name)
+        (attempt,) = AbortedTrials(study).attempts(name)
+        (counted,) = counted_trials_of(study, name)
+    assert attempt.is_aborted == counted.is_aborted == (trial.score is None)
     return trial.score, problems
+
+
+def counted_trials_of(study, name):
+    with study.database.reading() as connection:
+        return counted_trials(connection, name)
 
 
 def test_a_trial_that_was_played_is_scored(played, scenario, tmp_path):

@@ -70,7 +70,9 @@ class AbortedTrials:
             return stored_of(connection, pseudonym)
 
     def attempts(self, pseudonym: str) -> tuple[PastTrial, ...]:
-        """Return what progress is computed from, as started: scored trials and aborted failures.
+        """Return what progress is computed from, as started: scored trials and failures.
+
+        Failures are aborted trials with a touch, and trials that can have no score.
 
         Raises:
             InputError: the study has no trainee of this pseudonym.
@@ -88,6 +90,10 @@ class AbortedTrials:
                 (moment(stored.record.started_utc), PastTrial.failed(stored.record))
                 for stored in stored_of(connection, pseudonym)
                 if stored.record.counts_as_failed
+            ]
+            timed += [
+                (moment(record.started_utc), PastTrial.failed(record))
+                for record in study_trials.unscored(connection, pseudonym)
             ]
             return tuple(trial for _when, trial in sorted(timed, key=lambda each: each[0]))
 

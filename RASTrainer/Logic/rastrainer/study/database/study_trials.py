@@ -260,6 +260,20 @@ def _past_trial(
     )
 
 
+def unscored(connection: Connection, pseudonym: str) -> tuple[TrialRecord, ...]:
+    """Return a trainee's trials that have no score although their truth is known: none will come.
+
+    Trial runs are left out.
+    """
+    rows = connection.execute(
+        f"SELECT record_json FROM trials WHERE trainee_id = ({TRAINEE_ID}) AND task != ? "
+        "AND trial_id IN (SELECT trial_id FROM truths) "
+        "AND trial_id NOT IN (SELECT trial_id FROM scores)",
+        (pseudonym, protocol.TRIAL_RUN),
+    ).fetchall()
+    return tuple(decoded(text, TrialRecord.from_json) for (text,) in rows)
+
+
 def unrevealed(connection: Connection) -> tuple[TrialRecord, ...]:
     """Return the records of trials without stored truth, oldest first."""
     rows = connection.execute(
