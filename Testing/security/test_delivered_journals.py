@@ -20,6 +20,7 @@ from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.record import TrialRecord
+from rastrainer_simulator.cli.main import main
 from Testing.domain.study.played_study import STUDIES
 from Testing.end_to_end.faulty_proxy import SlicerSide
 from Testing.end_to_end.finished_trials import COLIN, write_finished_trials
@@ -80,12 +81,21 @@ def counted_trials_of(study, name):
         return counted_trials(connection, name)
 
 
-def test_a_trial_that_was_played_is_scored(played, scenario, tmp_path):
-    records, _trial = played
+def test_a_trial_that_was_played_is_scored(played, scenario, tmp_path, capsys):
+    records, trial = played
     with SimulatorProcess(records, "--no-views") as simulator:
         score, problems = received(tmp_path, simulator.port, scenario)
     assert problems == []
     assert score is not None
+    study = ["--study", str(tmp_path / "study.db")]
+    (path,) = journals_of(records, trial)
+    assert main(["verify", str(path), *study]) == 0
+    invented = tmp_path / "invented"
+    invented.mkdir()
+    write_finished_trials(invented, range(1))
+    assert main(["verify", *map(str, invented.iterdir()), *study]) == 1
+    assert "the study has no such finished trial" in capsys.readouterr().out
+    assert main(["replay", "--verify", str(path)]) == 0
 
 
 @pytest.mark.parametrize("is_checked", [True, False])
