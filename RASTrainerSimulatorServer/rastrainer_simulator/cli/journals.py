@@ -61,7 +61,7 @@ def _verify(path: Path, study: Study | None = None) -> int:
 def _differs(reading: JournalReading, study: Study) -> str:
     """Return how a journal is not the one that a study's trial came from; "" if it is."""
     try:
-        record = study.trial(reading.header["trialId"]).record
+        record = study.trial(str(reading.header.get("trialId"))).record
     except InputError:
         return "; the study has no such finished trial"
     sealed = [entry["sha256"] for entry in reading.of_kind("registered")]
