@@ -162,6 +162,8 @@ class TrialRecorder:
         phase = result.state.training.phase
         if phase is Phase.IDLE:
             self._end(trial.journal.discard)
+            # Its number is free again: a gap would look like a trial that vanished.
+            self._numbered = replace(self._numbered, number=self._numbered.number - 1)
         elif not self._is_registered():
             self._registering = None
             self._is_stuck = True

@@ -100,7 +100,7 @@ def _missing(data: StudyData) -> list[str]:
     """Return what is said about trials without a score, and about those that never arrived."""
     unscored = _unscored(data.trials)
     sentences = []
-    if unscored and len(unscored) < len(data.trials):
+    if unscored:
         sentences.append(
             f"{counted(len(unscored), 'finished trial')} without a score: each counts as not "
             "passed, and comparisons of scores leave it out "

@@ -211,7 +211,7 @@ STATEMENTS = (
         series TEXT NOT NULL,
         number INTEGER NOT NULL CHECK (number > 0),
         PRIMARY KEY (series, number)
-    ) WITHOUT ROWID
+    )
     """,
 )
 
