@@ -18,7 +18,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import header_number
 from rastrainer.journal.journal_file import NO_LINE, DamagedLineError, decode_line
-from rastrainer.journal.recording import Recording
+from rastrainer.journal.recording import Recording, WholeRecording
 from rastrainer.motion.trajectory import Touch, Trajectory
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.scenario.scenario import Scenario, method_of
@@ -48,6 +48,8 @@ def check_journal(
         _check_touches(record, [e for e in entries if e["n"] < registered["n"]])
         _check_motion(record, entries)
         _check_pose(truth, entries[0], registered, scenario)
+    except InputError:
+        raise
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
         raise InputError(f"Its journal holds an entry that is not one ({error!r}).") from None
 
@@ -109,7 +111,7 @@ def _check_touches(record: TrialRecord, entries: Sequence[Entry]) -> None:
     _require(counts == (record.rejected_touches, record.undone_touches), "the refused touches")
     completed_s = (kept.traced or kept.touches)[-1].time_s
     _require(math.isclose(completed_s, record.completion_time_s, abs_tol=SAME), "the time")
-    tips = Recording.of(entries).trajectory()
+    tips = WholeRecording.of(entries).trajectory()
     _require(all(_is_on_path(touch, tips) for touch in tips.touches), "the tip's path")
 
 
@@ -135,8 +137,11 @@ def _check_pose(truth: RevealedTruth, header: Entry, registered: Entry, scenario
     )
 
 
-class _Measured(Recording):
-    """The touches and the trace where they were measured, on skin that may have shifted."""
+class _Measured(WholeRecording):
+    """The touches and the trace where they were measured, on skin that may have shifted.
+
+    The time of a trial that was registered again includes the checkpoints before.
+    """
 
     def add(self, entry: Entry) -> None:
         measured = entry.get("measuredMm")
