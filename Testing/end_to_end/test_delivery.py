@@ -48,6 +48,8 @@ class Server:
             latest=lambda: self._loop.latest,
             submit=self._loop.submit,
             unacknowledged=self._loop.unacknowledged,
+            arrivals=lambda: self._loop.arrivals,
+            find_scenario=lambda _name: load_scenario(COLIN),
         )
         self.port = thread.run(self._link.server.listen(HOST, 0))
 

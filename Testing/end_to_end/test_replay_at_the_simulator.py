@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 import secrets
 
-import numpy as np
 import pytest
 
 from rastrainer.igtl.client import Client
@@ -17,6 +16,7 @@ from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.virtual.scripted_trainee import Skill
 from rastrainer_simulator.virtual.scripted_trial import play_trial, send_hello
+from Testing.end_to_end.registered_trial import registration_of
 from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.end_to_end.stream_trainee import WatchingView
 from Testing.end_to_end.window_process import wait_until
@@ -24,11 +24,6 @@ from Testing.simulator.net.views.served import ViewClient
 
 BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04, slip_at=None)
 SPEED = ("--speed", "4")
-REGISTRATION = {
-    "matrix": np.eye(4).ravel().tolist(),
-    "freMm": 1.25,
-    "expectedTreMm": 1.5,
-}
 DETAILS = {"isAccurate": True, "isUnbiased": True, "isSafe": True, "scoreVersion": SCORE_VERSION}
 SCORE = {"score": 81.0, "details": DETAILS}
 
@@ -54,9 +49,10 @@ def slicer(simulator):
     with Client(port=simulator.port) as slicer:
         send_hello(slicer, "Slicer")
         trial = play_trial(slicer, scenario, "task-1", "P07", 5, BRISK)
-        for command, arguments in (("SubmitRegistration", REGISTRATION), ("TrialScored", SCORE)):
-            arguments = {"trialId": trial.trial_id, **arguments}
-            assert slicer.send_command(command, arguments, timeout=60).ok
+        found = registration_of(slicer, trial.trial_id, scenario)
+        scored = {"trialId": trial.trial_id, **SCORE}
+        assert slicer.send_command("SubmitRegistration", found, timeout=60).ok
+        assert slicer.send_command("TrialScored", scored, timeout=60).ok
         yield slicer
 
 

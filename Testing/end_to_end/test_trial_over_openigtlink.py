@@ -11,13 +11,12 @@ import pytest
 from rastrainer import transforms
 from rastrainer.head.mesh import outward_normal, read_head_mesh
 from rastrainer.igtl.client import Client
-from rastrainer.igtl.content import Point
 from rastrainer.protocol import PROTOCOL_VERSION
-from rastrainer.registration.registration import register
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.assets import asset_path
 from Testing.end_to_end.onto_skin import lower_onto_skin
+from Testing.end_to_end.registered_trial import registration_of
 from Testing.end_to_end.simulator_process import SimulatorProcess
 
 TASK = "task-1"
@@ -107,7 +106,7 @@ def trial(scenario, tmp_path_factory) -> dict:
         seen["offers"] = [player.next_offer(), player.next_offer()]
         trial_id = seen["StartTask"]["trialId"]
         seen["before"] = player.do("GetTrial", trialId=trial_id)
-        found = registration(trial_id, seen["points"], scenario)
+        found = registration_of(player, trial_id, scenario)
         seen["truth"] = player.do("SubmitRegistration", **found)
         player.do("TrialScored", trialId=trial_id, score=80)
         seen["phase"] = phase_of(player, "scored")
@@ -123,17 +122,6 @@ def trial(scenario, tmp_path_factory) -> dict:
         seen["journals"] = [path.name for path in records.glob("*.journal")]
         seen["exit"] = simulator.stop()
     return seen
-
-
-def registration(trial_id: str, points: tuple[Point, ...], scenario: Scenario) -> dict:
-    touched = np.array([point.position for point in points])
-    found = register(touched, scenario.task(TASK).fiducials)
-    return {
-        "trialId": trial_id,
-        "matrix": found.matrix.ravel().tolist(),
-        "freMm": found.fre_mm,
-        "expectedTreMm": 0.5,
-    }
 
 
 def phase_of(player: Player, phase: str) -> str:

@@ -53,6 +53,7 @@ COMMANDS = {
         ],
     },
     "GetTrial": {"trialId": TRIAL},
+    "GetJournal": {"trialId": TRIAL, "start": 0},
     "AcknowledgeTrial": {"trialId": TRIAL},
 }
 TYPES = (

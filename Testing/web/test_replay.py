@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
 from rastrainer.igtl.client import Client
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.virtual.scripted_trial import play_trial, send_hello
+from Testing.end_to_end.registered_trial import registration_of
 from Testing.web.chromium import open_page, wait_for
 from Testing.web.hands import PageKeys
 from Testing.web.place import WITHOUT_GRAPHICS, Place
@@ -16,11 +16,6 @@ from Testing.web.place import WITHOUT_GRAPHICS, Place
 # A trial is played first: minutes.
 pytestmark = pytest.mark.soak
 
-REGISTRATION = {
-    "matrix": np.eye(4).ravel().tolist(),
-    "freMm": 1.25,
-    "expectedTreMm": 1.5,
-}
 SCORE = {"score": 81.0}
 POINTS = 15
 
@@ -34,12 +29,10 @@ def place(tmp_path_factory):
         with Client(port=place.simulator.port) as slicer:
             send_hello(slicer, "Slicer")
             trial = play_trial(slicer, scenario, "task-1", "P07", 5)
-            for command, arguments in (
-                ("SubmitRegistration", REGISTRATION),
-                ("TrialScored", SCORE),
-            ):
-                arguments = {"trialId": trial.trial_id, **arguments}
-                assert slicer.send_command(command, arguments, timeout=60).ok
+            found = registration_of(slicer, trial.trial_id, scenario)
+            scored = {"trialId": trial.trial_id, **SCORE}
+            assert slicer.send_command("SubmitRegistration", found, timeout=60).ok
+            assert slicer.send_command("TrialScored", scored, timeout=60).ok
         yield place
 
 

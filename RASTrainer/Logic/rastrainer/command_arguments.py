@@ -32,6 +32,7 @@ from rastrainer.protocol import (
     FREE,
     MAX_ASSIGNMENTS,
     MAX_GATES,
+    MAX_JOURNAL_BYTES,
     REPEAT,
     SKIN_KEYS,
     SKIN_LIMIT_MM,
@@ -208,6 +209,10 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
         "assignments": Argument(checked_assignments, ()),
     },
     CommandName.GET_TRIAL: {"trialId": Argument(trial_id)},
+    CommandName.GET_JOURNAL: {
+        "trialId": Argument(trial_id),
+        "start": Argument(whole_number(0, MAX_JOURNAL_BYTES), 0),
+    },
     CommandName.ACKNOWLEDGE_TRIAL: {"trialId": Argument(trial_id)},
 }
 """Every command a client may send; `MoveTipTo`'s direction is that of the tool, from A7 to tip."""

@@ -229,12 +229,15 @@ class CommandName:
     STUDY_STEP = "StudyStep"
     CURRICULUM = "Curriculum"
     GET_TRIAL = "GetTrial"
+    GET_JOURNAL = "GetJournal"
     ACKNOWLEDGE_TRIAL = "AcknowledgeTrial"
     TRIAL_COMPLETED = "TrialCompleted"
     TRIAL_ABORTED = "TrialAborted"
     STEP_ANSWERED = "StepAnswered"
 
 
+MAX_JOURNAL_BYTES = 1 << 28
+"""Of a trial that is delivered with its journal: more than ten hours."""
 SPEED_LIMIT_MM_S = 500.0
 WORLD_LIMIT_MM = 5000.0
 STAND_OFF_LIMIT_MM = 80.0

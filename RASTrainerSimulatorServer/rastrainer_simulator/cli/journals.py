@@ -5,10 +5,14 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rastrainer.errors import InputError
-from rastrainer.journal.journal_file import Integrity, read_journal
-from rastrainer_simulator.cli.options import add_json, json_text, text_table
+from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
+from rastrainer_simulator.cli.options import add_json, add_study, json_text, text_table
+
+if TYPE_CHECKING:
+    from rastrainer.study.database.study import Study
 
 
 def add_verify_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -16,25 +20,54 @@ def add_verify_parser(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "verify",
         help="check whether journals of trials are intact, cut short or altered",
-        description="Exit status: 0 all intact, 1 one cut short or altered, 2 one not a journal.",
+        description="Exit status: 0 all intact (and those of the study's trials), 1 one cut short, "
+        "altered or another, 2 one not a journal. Whether a trial was played as its journal says "
+        "is found by `rastrainer replay --verify`.",
     )
     parser.add_argument("journals", nargs="+", type=Path, metavar="JOURNAL")
+    add_study(
+        parser,
+        "--study",
+        help_text="whose trials must be those of the journals; a file or an address",
+    )
     parser.set_defaults(run=run_verify)
 
 
 def run_verify(arguments: argparse.Namespace) -> int:
-    """Print one line for each journal and return the exit status."""
-    return max([_verify(path) for path in arguments.journals])
+    """Print one line for each journal and return the exit status.
+
+    Raises:
+        InputError: the study cannot be read.
+    """
+    if arguments.study is None:
+        return max([_verify(path) for path in arguments.journals])
+    from rastrainer.study.database.study import Study
+
+    with Study.open_for_reading(arguments.study) as study:
+        return max([_verify(path, study) for path in arguments.journals])
 
 
-def _verify(path: Path) -> int:
+def _verify(path: Path, study: Study | None = None) -> int:
     try:
         reading = read_journal(path)
+        problem = "" if study is None else _differs(reading, study)
     except InputError as error:
         print(f"rastrainer verify: {error}", file=sys.stderr)
         return 2
-    print(f"{path}: {reading.sentence}")
-    return 0 if reading.integrity is Integrity.INTACT else 1
+    print(f"{path}: {reading.sentence}{problem}")
+    return 0 if reading.integrity is Integrity.INTACT and not problem else 1
+
+
+def _differs(reading: JournalReading, study: Study) -> str:
+    """Return how a journal is not the one that a study's trial came from; "" if it is."""
+    try:
+        record = study.trial(str(reading.header.get("trialId"))).record
+    except InputError:
+        return "; the study has no such finished trial"
+    sealed = [entry["sha256"] for entry in reading.of_kind("registered")]
+    if record.journal_sha256 in sealed:
+        return ""
+    return "; the trial in the study is not from this journal"
 
 
 def add_measure_parser(subparsers: argparse._SubParsersAction) -> None:

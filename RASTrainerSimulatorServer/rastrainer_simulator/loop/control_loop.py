@@ -59,7 +59,8 @@ TOO_MANY_STARTS = Texts().say("too many starts")
 _BEGIN_REPLACEMENT = "BeginReplacement"
 """Waits for its turn among the commands; clients cannot send it."""
 
-_OF_ANY_TRIAL = (CommandName.GET_TRIAL, CommandName.ACKNOWLEDGE_TRIAL, *ENDING_A_TRIAL)
+_OF_THE_ARCHIVE = (CommandName.ACKNOWLEDGE_TRIAL, CommandName.GET_JOURNAL)
+_OF_ANY_TRIAL = (CommandName.GET_TRIAL, *_OF_THE_ARCHIVE, *ENDING_A_TRIAL)
 _PASSING = frozenset(
     {
         CommandName.JOG,
@@ -70,6 +71,7 @@ _PASSING = frozenset(
         CommandName.PLAN_TARGET,
         CommandName.LIST_TASKS,
         CommandName.GET_TRIAL,
+        CommandName.GET_JOURNAL,
     }
 )
 """Commands that do not change the trial; all others are carried out one at a time."""
@@ -189,6 +191,11 @@ class ControlLoop:
     def unacknowledged(self) -> tuple[AbortedTrial | TrialRecord, ...]:
         """Return the aborted and the registered trials that no client has acknowledged."""
         return self._archive.unacknowledged()
+
+    @property
+    def arrivals(self) -> int:
+        """How many trials have come to be delivered since the start."""
+        return self._archive.arrivals
 
     def subscribe(self, callback: Callable[[StepResult], None]) -> Callable[[], None]:
         """Call `callback` in the loop's thread after each tick; it must return immediately.
@@ -337,7 +344,7 @@ class ControlLoop:
         if command.name not in _OF_ANY_TRIAL:
             return False
         training = self._state.training
-        if command.name == CommandName.ACKNOWLEDGE_TRIAL:
+        if command.name in _OF_THE_ARCHIVE:
             return True
         is_present = command.arguments["trialId"] == training.trial_id
         if command.name in ENDING_A_TRIAL:
@@ -345,7 +352,7 @@ class ControlLoop:
         return not is_present or training.phase in FINISHED_PHASES
 
     def _query_archive(self, command: OperatorCommand) -> None:
-        times = stamp(self._state.tick, self._state.sim_time)
+        times = stamp(self._state.tick, self._state.sim_time) | {"sender": command.sender}
 
         def query() -> None:
             try:

@@ -7,11 +7,12 @@ otherwise ending the simulator would be a way to discard a bad trial.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
+from rastrainer.journal.folder import header_number
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal, stamp
 from rastrainer.journal.recording import WholeRecording
 from rastrainer.protocol import PROCEDURE_PHASES, AbortReason, CommandName, Phase
@@ -61,7 +62,7 @@ class AbortedArchive:
         self._waiting[record.trial_id] = ArchivedAttempt(record), journal
 
     def add_interrupted(self, path: Path) -> None:
-        """Close the journal of an interrupted trial, and add the trial if it is to be stored.
+        """Close the journal of an interrupted trial, and add the trial.
 
         Raises:
             InputError: the journal cannot be used.
@@ -71,7 +72,7 @@ class AbortedArchive:
         if reading.integrity is Integrity.ALTERED:
             raise InputError(f"{path} is {reading.sentence}; its trial is not delivered.")
         record = interrupted_attempt(reading)
-        if record is None or not record.is_kept:
+        if record is None:
             return
         journal, last = Journal.reopened(reading), reading.entries[-1]
         entry = attempt_entry(record, stamp(last["tick"], last["simTime"]))
@@ -206,5 +207,6 @@ def _interrupted_attempt(entries: tuple[Mapping[str, Any], ...]) -> AbortedTrial
         touch_rule=header["settings"]["training"]["touch_rule"],
         method=method_of(header["method"]["name"] if "method" in header else None),
         traced=len(trajectory.traced),
+        **asdict(header_number(header)),
     )
     return AbortedTrial.from_json(record.to_json())

@@ -62,6 +62,11 @@ class Journal:
         self._is_new = True
         self._unwritten: list[Mapping[str, Any]] = []
 
+    @property
+    def last_hash(self) -> str:
+        """The hash of the last line that was written."""
+        return self._previous
+
     @classmethod
     def reopened(cls, reading: JournalReading) -> Journal:
         """Return the journal of an existing file that was not altered, to append to it.

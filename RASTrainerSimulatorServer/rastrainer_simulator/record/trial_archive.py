@@ -28,6 +28,9 @@ from rastrainer_simulator.training.head_pose import Truth
 FIRST_REACH = 1 << 16
 """Bytes at the end of a journal that are read first."""
 
+JOURNAL_PIECE_BYTES = 1 << 18
+"""Of a journal that is sent, in one answer."""
+
 _KIND = re.compile(rb'^\{"n":\d+,"previous":"[0-9a-f]{64}","kind":"([a-z]+)"', re.MULTILINE)
 _OVER = frozenset({b"registered", b"aborted", b"attempt"})
 _AFTER_THE_TRIAL = frozenset(
@@ -79,8 +82,11 @@ class ArchivedTrial:
 class TrialArchive:
     """The registered trials of a folder, and the aborted ones that are kept.
 
-    One thread changes it; any thread may call `unacknowledged`. `problems` are sentences about
-    unusable journals.
+    One thread changes it; any thread may call `unacknowledged`.
+
+    Attributes:
+        problems: sentences about unusable journals.
+        arrivals: how many trials have come to be delivered.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -89,6 +95,7 @@ class TrialArchive:
         self._journals: dict[str, Journal] = {}
         self._aborted = AbortedArchive()
         self.problems: list[str] = []
+        self.arrivals = 0
         for path in find_unacknowledged(folder):
             self._load(path)
 
@@ -110,10 +117,12 @@ class TrialArchive:
         """Add a trial that has just been registered."""
         self._trials[trial.record.trial_id] = trial
         self._journals[trial.record.trial_id] = journal
+        self.arrivals += 1
 
     def add_aborted(self, record: AbortedTrial, journal: Journal) -> None:
         """Add a trial that has just been aborted."""
         self._aborted.add(record, journal)
+        self.arrivals += 1
 
     def add_interrupted(self, path: Path) -> None:
         """Add the trial of a journal that was still open when another trial was started."""
@@ -121,6 +130,7 @@ class TrialArchive:
             return
         try:
             self._aborted.add_interrupted(path)
+            self.arrivals += 1
         except RASTrainerError as error:
             self.problems.append(str(error))
 
@@ -157,8 +167,24 @@ class TrialArchive:
         self._keep(trial)
         if command == CommandName.GET_TRIAL:
             return trial.summary()
+        if command == CommandName.GET_JOURNAL:
+            return self._journal_piece(trial, arguments["start"])
         revealed = trial.revealed() if command == CommandName.SUBMIT_REGISTRATION else {}
         return {"trialId": trial_id, **revealed}
+
+    def _journal_piece(self, trial: ArchivedTrial, start: int) -> dict[str, Any]:
+        """Return a piece of a trial's journal, once the truth in it is no secret."""
+        if trial.registration is None:
+            raise InputError(Texts().say("no registration"))
+        (path,) = journals_of(self._folder, trial.record.trial_id)
+        try:
+            with path.open("rb") as file:
+                file.seek(start)
+                piece = file.read(JOURNAL_PIECE_BYTES)
+                is_more = bool(file.read(1))
+        except OSError as error:
+            raise InputError(f"{path.name} cannot be read: {error.strerror}.") from None
+        return {"text": piece.decode("ascii"), "next": start + len(piece) if is_more else None}
 
     def _with_registration(
         self, trial: ArchivedTrial, arguments: Mapping[str, Any], times: Mapping[str, Any]
@@ -241,8 +267,9 @@ def _archived_trial(reading: JournalReading) -> ArchivedTrial | None:
         return None
     scores = reading.of_kind("scored")
     registrations = reading.of_kind("registration")
+    record = TrialRecord.from_json(registered[-1]["record"])
     trial = ArchivedTrial(
-        record=TrialRecord.from_json(registered[-1]["record"]),
+        record=replace(record, journal_sha256=registered[-1]["sha256"]),
         truth=Truth.from_json(registered[-1]["truth"]),
         seed=reading.header["seed"],
         registration=registrations[0]["arguments"] if registrations else None,

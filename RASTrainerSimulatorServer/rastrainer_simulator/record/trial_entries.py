@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+from rastrainer.journal.folder import UNNUMBERED, JournalNumber, header_number
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, stamp
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trial_motion import trial_motion
@@ -96,25 +97,25 @@ class TrialEntries:
         before: SimulationState,
         result: StepResult,
         dt: float,
-        number: int = 0,
+        number: JournalNumber = UNNUMBERED,
         session: PlayingSession = REAL_TIME,
     ) -> TrialEntries:
         """Start with the header; `before` is the state in which StartTask was carried out.
 
-        `number` counts the trials of a folder; where none is recorded it is 0. `session` is what
-        the simulator was started with.
+        `session` is what the simulator was started with.
         """
         state = result.state
         training = state.training
         task = task_by_method(simulation.setup.scenario, training.task, training.method)
         times = stamp(state.tick, state.sim_time)
         entries = cls(simulation, training.trial_id, times["utc"], dt)
+        entries.records.number = number
         entries._append(
             {
                 "kind": "header",
                 "format": FORMAT,
                 "version": FORMAT_VERSION,
-                "number": number,
+                **asdict(number),
                 **times,
                 "trialId": training.trial_id,
                 "trainee": training.trainee,
@@ -150,6 +151,7 @@ class TrialEntries:
         """
         training = state.training
         entries = cls(simulation, training.trial_id, earlier[0]["utc"], dt)
+        entries.records.number = header_number(earlier[0])
         for entry in earlier:
             entries._collect(entry)
             if entry["kind"] in _TOUCHED:

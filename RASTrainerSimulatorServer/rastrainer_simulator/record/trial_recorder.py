@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from rastrainer.journal.folder import newest_journal, number_of
+from rastrainer.journal.folder import UNNUMBERED, newest_journal, number_of
 from rastrainer.journal.journal_file import JournalReading, file_stamp, stamp
 from rastrainer.protocol import AbortReason, CommandName, Phase
 from rastrainer_simulator.record.aborted_archive import attempt_entry
@@ -71,7 +71,7 @@ class TrialRecorder:
         self._waiting: tuple[JournalReading, float] | None = None
         newest = newest_journal(folder)
         self._interrupted = newest
-        self._number = 0 if newest is None else number_of(newest)
+        self._numbered = UNNUMBERED if newest is None else number_of(newest)
 
     def resume_trial(self, simulation: Simulation, reading: JournalReading) -> None:
         """Append to the journal of the trial that the simulation has just resumed.
@@ -134,9 +134,9 @@ class TrialRecorder:
             # Before the new journal exists: if there are two, the older trial is over.
             self._writer.submit(self._archive.add_interrupted, self._interrupted)
             self._interrupted = None
-        self._number += 1
+        self._numbered = self._numbered.following()
         entries = TrialEntries.started(
-            simulation, before, result, self._dt, self._number, self._session
+            simulation, before, result, self._dt, self._numbered, self._session
         )
         name = f"{file_stamp(entries.records.started_utc)}_{entries.trial_id}{SUFFIX}"
         self._open = _OpenTrial(entries, Journal(self._folder / name, simulation.trial_seed))
@@ -172,6 +172,8 @@ class TrialRecorder:
         phase = result.state.training.phase
         if phase is Phase.IDLE:
             self._end(trial.journal.discard)
+            # Its number is free again: a gap would look like a trial that vanished.
+            self._numbered = replace(self._numbered, number=self._numbered.number - 1)
         elif not self._is_registered():
             self._registering = None
             self._is_stuck = True
@@ -188,10 +190,11 @@ class TrialRecorder:
         journal, entries = open_trial.journal, open_trial.entries.taken()
 
         def write() -> None:
-            trial = ArchivedTrial(record.measured(self._archive.was_played), truth, seed)
+            measured = record.measured(self._archive.was_played)
             journal.write(entries, sync=True)
             journal.close()
-            self._archive.add(trial, journal)
+            sealed = replace(measured, journal_sha256=journal.last_hash)
+            self._archive.add(ArchivedTrial(sealed, truth, seed), journal)
 
         self._registering = self._writer.submit(write)
         return Written(self._registering, is_awaited=True)
@@ -203,7 +206,7 @@ class TrialRecorder:
         operator_input: OperatorInput,
         result: StepResult,
     ) -> Written:
-        """Store the record of the aborted trial unless nothing was done in it.
+        """Store the record of the aborted trial.
 
         It is offered even if it cannot be written: the journal writes it with the next entry.
         """
@@ -213,8 +216,6 @@ class TrialRecorder:
         record = trial.entries.records.aborted(
             before, reason or AbortReason.CLIENT.value, times["utc"]
         )
-        if not record.is_kept:
-            return self._submit_and_close(trial)
         trial.entries.pending.append(attempt_entry(record, times))
         journal, entries = trial.journal, trial.entries.taken()
 
@@ -235,7 +236,7 @@ class TrialRecorder:
         if not any(event.kind in MUST_LAST for event in result.events):
             return None
         ending = [c for c in operator_input.commands if c.name in ENDING_A_TRIAL]
-        times = stamp(result.state.tick, result.state.sim_time)
+        times = stamp(result.state.tick, result.state.sim_time) | {"sender": ending[-1].sender}
         future = self._writer.submit(
             self._archive.answer, ending[-1].name, ending[-1].arguments, times
         )

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from rastrainer.journal.folder import UNNUMBERED
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.procedure.plan import Procedure, ProcedureTrajectory
@@ -49,6 +50,7 @@ class TrialRecords:
         display: how its views drew.
         feeds: of drill and instrument.
         play: how the trial is played.
+        number: of the trial in its folder.
     """
 
     def __init__(self, simulation: Simulation, started_utc: str) -> None:
@@ -57,6 +59,7 @@ class TrialRecords:
         self.display = DisplayUse()
         self.feeds = FeedRecording()
         self.play = PlayRecording()
+        self.number = UNNUMBERED
         self._setup = simulation.setup
         # Its seed is revealed with the truth.
         self._skin = replace(simulation.truth.skin, seed=0)
@@ -89,6 +92,7 @@ class TrialRecords:
             touch_rule=self._setup.settings.training.touch_rule.value,
             method=training.method,
             traced=0 if training.trace is None else len(training.trace.points),
+            **asdict(self.number),
         )
 
     def _points(self, training: TrainingState) -> tuple[TouchedPoint, ...]:
@@ -127,6 +131,7 @@ class TrialRecords:
             trace=trace,
             skin=self._skin,
             played=self.play.played(),
+            **asdict(self.number),
         )
 
     def _procedure_record(self, training: TrainingState) -> ProcedureRecord | None:

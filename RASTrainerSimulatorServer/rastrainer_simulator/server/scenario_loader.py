@@ -10,6 +10,7 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.json_checks import is_identifier
 from rastrainer.scenario.library import ListedScenario, list_scenarios, user_library
+from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import BEING_SET_UP, ControlLoop
@@ -64,6 +65,20 @@ class ScenarioLoader:
         """Make the present scenario's simulation again, for instance with other settings."""
         return self._begin(lambda: self._control_loop.setup.scenario.folder)
 
+    def find(self, name: str) -> Scenario:
+        """Return a scenario by its name, the present one for ""; from any thread.
+
+        Raises:
+            InputError: it cannot be found or read.
+        """
+        present = self._control_loop.setup.scenario
+        if name in ("", present.name):
+            return present
+        for entry in self._known():
+            if entry.name == name:
+                return load_scenario(entry.folder)
+        raise InputError(f"There is no scenario {name} here, in which the trial was played.")
+
     def listed(self) -> Future[list[ListedScenario]]:
         """Return the scenarios that can be loaded by their names, and those with a problem."""
         return self._worker.submit(self._listed)
@@ -113,9 +128,12 @@ class ScenarioLoader:
         return Answer(0, True, data={"name": scenario.name, "title": scenario.title})
 
     def _listed(self) -> list[ListedScenario]:
-        found = list_scenarios([asset_path("scenarios"), self._library])
+        found = self._known()
         self._pictures = {entry.name: entry.preview for entry in found if entry.preview}
         return found
+
+    def _known(self) -> list[ListedScenario]:
+        return list_scenarios([asset_path("scenarios"), self._library])
 
     def _found(self, folder: str) -> Path:
         if is_identifier(folder):

@@ -153,6 +153,8 @@ class SimulatorServer:
             latest=lambda: self._control_loop.latest,
             submit=self._submit,
             unacknowledged=self._control_loop.unacknowledged,
+            arrivals=lambda: self._control_loop.arrivals,
+            find_scenario=self._scenarios.find,
             health=self._health,
             limits=self._limits.clients,
             answers=self._study.unacknowledged_answers,

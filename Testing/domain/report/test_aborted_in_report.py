@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import uuid
 from dataclasses import replace
 
 import pytest
@@ -89,12 +90,41 @@ def test_an_aborted_trial_counts_as_not_passed_in_the_lc_cusum():
     rows = tuple(row(number) for number in range(1, 13))
     whole = StudyData("x", rows, has_order=True)
     shown_at = competence_of([False] * 12).competent_at
-    assert f"12 12 (100 %) 1 of 1 {shown_at} 0" in words_of(report_html(whole))
+    assert f"12 12 (100 %) 1 of 1 {shown_at} 0 0" in words_of(report_html(whole))
     with_one = replace(whole, aborted=(aborted(900, 9), aborted(901, 10, task="trial-run")))
     later = competence_of([False, True, *[False] * 11]).competent_at
     shown_later = "–" if later is None else later
     competent = 0 if later is None else 1
-    assert f"13 12 (92 %) {competent} of 1 {shown_later} 1" in words_of(report_html(with_one))
+    assert f"13 12 (92 %) {competent} of 1 {shown_later} 1 0" in words_of(report_html(with_one))
+
+
+def test_a_trial_without_a_score_counts_as_not_passed_and_is_named():
+    def row(number, **score):
+        values = {"completion_time_s": 90.0, "rmse_mm": 1.0, **score}
+        utc = f"2024-05-17T{number + 8:02d}:00:00Z"
+        others = {"trial_id": str(uuid.UUID(int=number)), "started_utc": utc, "acceptable": True}
+        return TrialRow("A", "hmd", "task-1", number, values, **others)
+
+    rows = (row(1, score=90.0), row(2), row(3, score=90.0))
+    words = words_of(report_html(StudyData("x", rows, has_order=True)))
+    assert "3 2 (67 %) 0 of 1 – 0 1" in words
+    assert "1 finished trial without a score: each counts as not passed" in words
+    assert str(uuid.UUID(int=2)) in words
+
+
+def test_the_report_names_the_trials_that_never_arrived(path):
+    series = str(uuid.UUID(int=77))
+    with Study.open(path) as study:
+        for number in (3, 4, 7, 9):
+            record = make_aborted(950 + number, 2, trainee="A") | {"number": number}
+            AbortedTrials(study).add(record | {"series": series})
+        # What a deleted trainee leaves is no gap.
+        deleted = make_aborted(970, 2, trainee="D") | {"number": 8, "series": series}
+        AbortedTrials(study).add(deleted)
+        study.delete_trainee("D")
+    words = words_of(report_html(read_study_data(path)))
+    assert f"2 started trials of the simulator {series[:8]} never arrived in this study" in words
+    assert "5 to 6" in words
 
 
 def test_aborted_trials_and_their_touches_are_exported(path):

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from rastrainer.command_arguments import check_arguments
+from rastrainer.journal.folder import number_of
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.protocol import CommandName, Phase
 from rastrainer.trial.record import TrialRecord
@@ -224,7 +225,8 @@ def test_a_refused_start_leaves_no_journal_even_if_the_disk_accepted_later_write
     running.loop._writer.submit(lambda: None).result(TIMEOUT_S)
     assert journals(tmp_path) == []
     running.start()
-    assert len(journals(tmp_path)) == 1
+    (path,) = journals(tmp_path)
+    assert number_of(path).number == 1
 
 
 def test_on_a_full_disk_the_trial_pauses_and_continues_once_there_is_room(

@@ -4,12 +4,16 @@ import json
 import os
 import random
 import shutil
+import uuid
+from dataclasses import replace
 
 import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, read_journal
 from rastrainer.protocol import MIN_ABORTED_S, CommandName, Phase
+from rastrainer.study.database.aborted_trials import AbortedTrials
+from rastrainer.study.database.study import Study
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
@@ -114,15 +118,21 @@ def test_a_trial_run_is_stored_too_and_marked(simulation, tmp_path):
     assert record.reason == "practice over"
 
 
-def test_a_trial_that_was_only_viewed_is_not_stored(simulation, tmp_path):
+def test_a_trial_that_was_only_viewed_is_delivered_for_its_number_alone(simulation, tmp_path):
     # So slow that its ten seconds are not over while the start is written to disk.
     with Server(simulation, tmp_path, speed=0.1) as server:
         server.start()
         server.move(ticks=5)
         assert server.do(CommandName.ABORT).ok
-        assert wait_for_offer(server) == ()
+        (record,) = wait_for_offer(server)
+    assert not record.is_kept
     assert read_journal(server.path).integrity is Integrity.INTACT
-    assert find_unacknowledged(tmp_path) == []
+    with Study.open(tmp_path / "study.db") as study:
+        assert not AbortedTrials(study).add(record)
+        assert study.trainees() == ()
+        later = replace(record, trial_id=str(uuid.UUID(int=9)), number=4, elapsed_s=20.0)
+        assert AbortedTrials(study).add(later)
+        assert study.undelivered() == {record.series: ((2, 3),)}
 
 
 def test_a_trial_without_a_touch_is_stored_after_ten_seconds(simulation, tmp_path):
@@ -305,7 +315,7 @@ def test_a_journal_cut_at_any_byte_reports_every_complete_touch(simulation, tmp_
             archive = TrialArchive(folder)
             archive.add_interrupted(path)
             assert not archive.problems
-            assert archive.unacknowledged() == ((record,) if record.is_kept else ())
+            assert archive.unacknowledged() == (record,)
             assert TrialArchive(folder).unacknowledged() == archive.unacknowledged()
 
 

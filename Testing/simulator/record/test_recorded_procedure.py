@@ -13,8 +13,10 @@ from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.journal.recording import Recording, WholeRecording, read_track
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
+from rastrainer.study.journal_check import check_journal
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import InterruptedTrial, find_interrupted
 from rastrainer_simulator.core.simulation import Simulation
@@ -183,12 +185,14 @@ def sampled_depths(entries):
     return depths
 
 
-def test_the_record_has_every_attempt_and_instrument(finished):
+def test_the_record_has_every_attempt_and_instrument(finished, planned):
     path, record = finished
-    written = read_journal(path).of_kind("registered")[-1]["record"]
-    assert TrialRecord.from_json(written) == TrialRecord.from_json(
-        json.loads(json.dumps(record.to_json()))
-    )
+    (registered,) = read_journal(path).of_kind("registered")
+    written = registered["record"] | {"journalSha256": registered["sha256"]}
+    delivered = TrialRecord.from_json(json.loads(json.dumps(record.to_json())))
+    assert TrialRecord.from_json(written) == delivered
+    truth = RevealedTruth.from_json(registered["truth"] | {"trueTreMm": 0.0})
+    check_journal(delivered, truth, path.read_bytes(), planned.scenario)
     procedure = record.procedure
     first, accepted = procedure.attempts
     assert [len(first.checkpoints), len(accepted.checkpoints)] == [1, 0]

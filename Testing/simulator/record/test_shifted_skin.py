@@ -11,6 +11,8 @@ from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.trial_head import UNMOVED, SkinShift
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.protocol import CommandName, Phase
+from rastrainer.study.journal_check import check_journal
+from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.net.views.outgoing import TraceUpdate
@@ -88,6 +90,8 @@ def test_points_on_shifted_skin_stay_hidden_and_survive_a_kill_and_a_replay(simu
     assert revealed.data["skin"] == {**SKIN, "seed": SEED}
     reading = read_journal(server.path)
     assert replay(reading, simulation.setup).difference is None
+    truth, journal = RevealedTruth.from_json(revealed.data), server.path.read_bytes()
+    check_journal(record, truth, journal, simulation.setup.scenario)
     assert archived_trial(reading).truth.skin == SkinShift(3.0, SEED, 0.5)
 
 

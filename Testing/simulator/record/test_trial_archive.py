@@ -2,6 +2,7 @@
 
 import gc
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -72,10 +73,16 @@ def write_trial(folder, *more, trial_id=TRIAL_ID):
     return journal.path
 
 
+def sealed(path):
+    """Return the record as it is delivered: with the hash of its line."""
+    (registered,) = read_journal(path).of_kind("registered")
+    return replace(RECORD, journal_sha256=registered["sha256"])
+
+
 def test_a_registered_trial_is_offered_until_acknowledged_even_after_a_restart(tmp_path):
     path = write_trial(tmp_path)
     archive = TrialArchive(tmp_path)
-    assert archive.unacknowledged() == (RECORD,)
+    assert archive.unacknowledged() == (sealed(path),)
     archive.answer(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": TRIAL_ID}, NOW)
     assert archive.unacknowledged() == ()
     assert TrialArchive(tmp_path).unacknowledged() == ()
@@ -91,10 +98,10 @@ def test_an_acknowledgment_that_arrives_twice_is_written_once(tmp_path):
 
 
 def test_the_truth_of_an_older_trial_is_revealed_only_for_a_registration(tmp_path):
-    write_trial(tmp_path)
+    path = write_trial(tmp_path)
     archive = TrialArchive(tmp_path)
     before = archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
-    assert before["record"] == RECORD.to_json()
+    assert before["record"] == sealed(path).to_json()
     assert not {"headToWorld", "trueTreMm", "seed"} & set(before)
     answer = archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION, NOW)
     assert answer["headToWorld"] == list(HEAD_TO_WORLD.ravel())
@@ -121,9 +128,9 @@ def test_an_older_trial_without_a_registration_is_not_scored(tmp_path):
 
 
 def test_a_score_whose_details_look_like_an_acknowledgment_acknowledges_nothing(tmp_path):
-    write_trial(tmp_path, {"kind": "registration", "arguments": REGISTRATION})
+    path = write_trial(tmp_path, {"kind": "registration", "arguments": REGISTRATION})
     TrialArchive(tmp_path).answer(CommandName.TRIAL_SCORED, SCORE, NOW)
-    assert TrialArchive(tmp_path).unacknowledged() == (RECORD,)
+    assert TrialArchive(tmp_path).unacknowledged() == (sealed(path),)
 
 
 def test_a_score_nested_as_deeply_as_allowed_leaves_a_readable_journal(tmp_path):

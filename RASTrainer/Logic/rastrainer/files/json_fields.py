@@ -56,6 +56,10 @@ class Fields:
         """Return printable text of 1 to `max_length` characters."""
         return self._accepted(name, json_checks.text(max_length))
 
+    def yes_or_no(self, name: str, default: bool) -> bool:
+        """Return true or false; `default` where the field is missing."""
+        return self._accepted(name, json_checks.yes_or_no) if name in self._values else default
+
     def number(self, name: str, minimum: float, maximum: float) -> float:
         """Return a finite number from `minimum` to `maximum`."""
         return self._accepted(name, json_checks.number(minimum, maximum))

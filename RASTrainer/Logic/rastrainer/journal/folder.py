@@ -12,9 +12,11 @@ import json
 import os
 import re
 import sys
-from collections.abc import Collection, Iterator
+import uuid
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import FIRST_BYTES, MAX_LINE_BYTES, SEED_SUFFIX
@@ -218,7 +220,34 @@ def _overwrite(descriptor: int) -> None:
 
 
 _HEADER_BYTES = 512
-_NUMBER = re.compile(rb'"kind":"header","format":"[a-z-]+","version":\d+,"number":(\d+),')
+_NUMBER = re.compile(
+    rb'"kind":"header","format":"[a-z-]+","version":\d+,"number":(\d+),(?:"series":"([0-9a-f-]+)")?'
+)
+
+
+@dataclass(frozen=True, order=True)
+class JournalNumber:
+    """The number of a trial among those of its folder; the trials before it have smaller ones.
+
+    Attributes:
+        number: from 1; 0 if it is unknown.
+        series: UUID of the numbering, which begins with the first journal of a folder.
+    """
+
+    number: int = 0
+    series: str = ""
+
+    def following(self) -> JournalNumber:
+        """Return the next number."""
+        return JournalNumber(self.number + 1, self.series or str(uuid.uuid4()))
+
+
+UNNUMBERED = JournalNumber()
+
+
+def header_number(header: Mapping[str, Any]) -> JournalNumber:
+    """Return the number of the journal with a header; 0 in one from before there were series."""
+    return JournalNumber(header.get("number", 0), header.get("series", ""))
 
 
 def newest_journal(folder: Path) -> Path | None:
@@ -228,12 +257,13 @@ def newest_journal(folder: Path) -> Path | None:
     name.
     """
     paths = folder.glob(f"*{SUFFIX}")
-    return max(paths, key=lambda path: (number_of(path), path.name), default=None)
+    return max(paths, key=lambda path: (number_of(path).number, path.name), default=None)
 
 
-def number_of(path: Path) -> int:
-    """Return the number in a journal's header, or 0."""
+def number_of(path: Path) -> JournalNumber:
+    """Return the number in a journal's header."""
     with contextlib.suppress(OSError), path.open("rb") as file:
         found = _NUMBER.search(file.read(_HEADER_BYTES))
-        return int(found[1]) if found else 0
-    return 0
+        if found:
+            return JournalNumber(int(found[1]), (found[2] or b"").decode("ascii"))
+    return UNNUMBERED

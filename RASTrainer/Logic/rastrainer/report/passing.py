@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
+from collections.abc import Iterable
 from datetime import datetime
 
 import numpy as np
@@ -31,7 +32,7 @@ from rastrainer.study.database.aborted_trials import StoredAbortedTrial
 from rastrainer.study.database.values import moment
 from rastrainer.study.outcomes import mode_title, short_mode_title, task_title
 from rastrainer.study.protocol.study_protocol import pass_mark_of
-from rastrainer.study.study_data import StudyData
+from rastrainer.study.study_data import StudyData, TrialRow
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.scoring import (
     COMMON_BIAS_LIMIT_MM,
@@ -80,6 +81,7 @@ def started_trials(data: StudyData) -> str:
                 "being registered, as is usual; none counts."
             )
         )
+    parts += [paragraph(sentence, "warning") for sentence in _missing(data)]
     if repeats := _repeats(scored):
         parts += [heading("Steps of the protocol that were repeated"), bullets(repeats)]
     silent = sum(not stored.repeat_reason for stored in scored)
@@ -92,6 +94,31 @@ def started_trials(data: StudyData) -> str:
             )
         )
     return section("Started trials", *parts)
+
+
+def _missing(data: StudyData) -> list[str]:
+    """Return what is said about trials without a score, and about those that never arrived."""
+    unscored = _unscored(data.trials)
+    sentences = []
+    if unscored:
+        sentences.append(
+            f"{counted(len(unscored), 'finished trial')} without a score: each counts as not "
+            "passed, and comparisons of scores leave it out "
+            f"({', '.join(sorted(trial.trial_id for trial in unscored))})."
+        )
+    for series, gaps in data.undelivered.items():
+        count = sum(last - first + 1 for first, last in gaps)
+        numbers = ", ".join(f"{a}" if a == b else f"{a} to {b}" for a, b in gaps)
+        sentences.append(
+            f"{counted(count, 'started trial')} of the simulator {series[:8]} never arrived in "
+            f"this study, by the number in the journal's first line: {numbers}. Each went to "
+            "another study, still waits at the simulator, or was made to vanish."
+        )
+    return sentences
+
+
+def _unscored(trials: Iterable[TrialRow]) -> list[TrialRow]:
+    return [trial for trial in trials if SCORE not in trial.values]
 
 
 def _started_rows(data: StudyData, aborted: list[StoredAbortedTrial]) -> list[list[str]]:
@@ -127,7 +154,7 @@ def _repeats(aborted: list[StoredAbortedTrial]) -> list[str]:
 
 HEADER = [
     *("mode", "trials", "passed", "trainees competent", "shown at trial (median)"),
-    "aborted trials among them",
+    *("aborted trials among them", "without a score among them"),
 ]
 
 
@@ -158,7 +185,7 @@ def passing(data: StudyData) -> str:
 
 
 def _failures(data: StudyData, mode: str, mark: float) -> dict[str, list[bool]]:
-    """Return whether each scored trial of each trainee failed, in order.
+    """Return whether each trial of each trainee failed, in order; one without a score did.
 
     Aborted trials that count as not passed are included in order of time.
     """
@@ -167,13 +194,13 @@ def _failures(data: StudyData, mode: str, mark: float) -> dict[str, list[bool]]:
         aborted[record.trainee].append(moment(record.started_utc))
     failures: dict[str, list[bool]] = defaultdict(list)
     for trial in sorted(data.of_mode(mode), key=lambda trial: trial.number):
-        if "score" in trial.values:
-            own = aborted[trial.trainee]
-            while own and own[0] <= moment(trial.started_utc):
-                own.pop(0)
-                failures[trial.trainee].append(True)
-            passed = passes(trial.values["score"], trial.acceptable, mark)
-            failures[trial.trainee].append(not passed)
+        own = aborted[trial.trainee]
+        while own and own[0] <= moment(trial.started_utc):
+            own.pop(0)
+            failures[trial.trainee].append(True)
+        score = trial.values.get(SCORE)
+        passed = score is not None and passes(score, trial.acceptable, mark)
+        failures[trial.trainee].append(not passed)
     for trainee, own in aborted.items():
         if own:
             failures[trainee] += [True] * len(own)
@@ -199,6 +226,7 @@ def _row(
         f"{len(competent)} of {len(failures)}",
         f"{np.median(competent):g}" if competent else "–",
         str(len(_aborted(data, mode))),
+        str(len(_unscored(data.of_mode(mode)))),
     ]
 
 
@@ -231,7 +259,8 @@ def _words(data: StudyData, mark: float) -> str:
     )
     return (
         f"A trial passes with {mark:g} of 100 points ({source}) and "
-        f"{_acceptable(compared_method(data))}; one that was aborted after a touch is not passed. "
+        f"{_acceptable(compared_method(data))}; one that was aborted after a touch, or has no "
+        "score, is not passed. "
         "LC-CUSUM (Biau and Porcher 2010) calls a trainee competent "
         "once the trials of a mode, over all tasks, speak clearly enough for a failure rate of "
         f"{percent(ADEQUATE_FAILURES)} against one of {percent(INADEQUATE_FAILURES)}. Fewer than "

@@ -20,6 +20,7 @@ from rastrainer.protocol import TRIAL_RUN
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
+from rastrainer.study.journal_check import check_journal
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import pass_mark_of
 from rastrainer.trial import ctps
@@ -86,6 +87,16 @@ def score_references(study: Study) -> Mapping[str, ScoreReference] | None:
     """
     protocol = StudyProgress(study).protocol()
     return None if protocol is None else protocol.references
+
+
+def checks_journals(study: Study) -> bool:
+    """Return whether the protocol of a study asks for trials with their journals.
+
+    Raises:
+        InputError: the study cannot be read.
+    """
+    protocol = StudyProgress(study).protocol()
+    return protocol is not None and protocol.checks_journals
 
 
 def scored_with_journal(
@@ -184,10 +195,16 @@ def score(
     scenario: Scenario,
     references: Mapping[str, ScoreReference] | None,
     records: Path | None,
+    journal: bytes | None,
     progress: Progress,
 ) -> TrialAnalysis:
-    """Return a registered trial with its score; arguments and errors of `scored_with_journal`."""
+    """Return a registered trial with its score; arguments and errors of `scored_with_journal`.
+
+    If its `journal` came with it, the trial must follow from that.
+    """
     progress(_READING, 0.0)
+    if journal is not None:
+        check_journal(analysis.record, truth, journal, scenario)
     return scored_with_journal(analysis, truth, scenario, references, records)
 
 

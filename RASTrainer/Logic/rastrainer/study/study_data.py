@@ -80,6 +80,8 @@ class StudyData:
         has_order: Whether the order of the trials is known.
         gap: What is missing of an incomplete virtual cohort, as a sentence; else "".
         aborted: Aborted trials, including trial runs, by trainee in order.
+        undelivered: First and last numbers of trials that never arrived, by their simulator's
+            series.
         standings: Of active trainees in their curricula, by pseudonym.
         ratings: Forms that raters have filled in for replays of the trials.
     """
@@ -98,6 +100,7 @@ class StudyData:
     has_order: bool = False
     gap: str = ""
     aborted: tuple[StoredAbortedTrial, ...] = ()
+    undelivered: Mapping[str, tuple[tuple[int, int], ...]] = field(default_factory=dict)
     ratings: tuple[Rating, ...] = ()
     standings: Mapping[str, CurriculumStanding] = field(default_factory=dict)
 
@@ -226,6 +229,7 @@ def _from_database(place: StudyPlace) -> StudyData:
             aborted=tuple(
                 stored for name in sorted(consenting) for stored in AbortedTrials(study).of(name)
             ),
+            undelivered=study.undelivered(),
             standings={
                 name: standing
                 for name, standing in CurriculumStore(study).standings().items()

@@ -56,6 +56,8 @@ class AbortedTrial:
         touch_rule: Which touches counted, a `TouchRule`.
         method: By what it would have been registered; a `PLAYED_METHODS`.
         traced: Number of points that were traced over the skin.
+        number: Of the trial among those of its simulator's folder; 0 if unknown.
+        series: UUID of that numbering.
     """
 
     trial_id: str
@@ -75,6 +77,8 @@ class AbortedTrial:
     touch_rule: str
     method: RegistrationMethod = RegistrationMethod.FIDUCIALS
     traced: int = 0
+    number: int = 0
+    series: str = ""
 
     @property
     def done(self) -> str:
@@ -99,7 +103,7 @@ class AbortedTrial:
 
     @property
     def is_kept(self) -> bool:
-        """Whether it is worth storing: it has a touch, even a refused one, or took some time."""
+        """Whether a study stores it: it has a touch, even a refused one, or took some time."""
         touches = len(self.points) + self.rejected_touches + self.undone_touches
         return touches > 0 or self.elapsed_s > MIN_ABORTED_S
 
@@ -125,6 +129,8 @@ class AbortedTrial:
         is_left_out = {
             "method": self.method is RegistrationMethod.FIDUCIALS,
             "traced": not self.traced,
+            "number": not self.number,
+            "series": not self.series,
         }
         return {key: item for key, item in json_object(self).items() if not is_left_out.get(key)}
 

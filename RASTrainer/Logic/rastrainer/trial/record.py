@@ -34,6 +34,7 @@ from rastrainer.trial.how_played import HowPlayed
 
 TIME_LIMIT_S = 1e6
 TOUCH_LIMIT = 1_000_000
+NUMBER_LIMIT = 1_000_000_000
 VERSIONS_LIMIT = 32
 MOTION_LIMIT = 100
 DISPLAY_LIMIT = 16
@@ -100,6 +101,10 @@ class TrialRecord:
             has no trace.
         skin: how the skin lay on the head, its seed left out; the truth reveals that.
         played: who moved the arm, and more; None of a trial that no simulator recorded.
+        number: Of the trial among those of its simulator's folder; 0 if unknown.
+        series: UUID of that numbering.
+        journal_sha256: Hash of the journal's line of this record, which stands for all lines up to
+            it; "" in that line itself.
     """
 
     trial_id: str
@@ -123,6 +128,9 @@ class TrialRecord:
     trace: tuple[TracePoint, ...] = ()
     skin: SkinShift = UNMOVED
     played: HowPlayed | None = None
+    number: int = 0
+    series: str = ""
+    journal_sha256: str = ""
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -168,6 +176,9 @@ class TrialRecord:
             "trace": not self.trace,
             "skin": self.skin.is_none,
             "played": self.played is None,
+            "number": not self.number,
+            "series": not self.series,
+            "journalSha256": not self.journal_sha256,
         }
         return {key: item for key, item in values.items() if not is_left_out.get(key)}
 
@@ -302,6 +313,8 @@ SHARED_CHECKS = {
         json_checks.mapping(VERSIONS_LIMIT, "names with their versions as text", json_checks.text())
     ),
     "touchRule": Argument(json_checks.one_of(*(rule.value for rule in TouchRule))),
+    "number": Argument(json_checks.whole_number(0, NUMBER_LIMIT), 0),
+    "series": Argument(json_checks.text(36, 0), ""),
 }
 """Of the keys that the records of finished and of aborted trials share."""
 
@@ -326,4 +339,5 @@ _CHECKS = {
     "trace": Argument(trace_points, ()),
     "skin": Argument(SkinShift.from_json, UNMOVED),
     "played": Argument(_optional(HowPlayed.from_json), None),
+    "journalSha256": Argument(json_checks.text(64, 0), ""),
 }

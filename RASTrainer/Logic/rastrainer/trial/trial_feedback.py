@@ -16,6 +16,7 @@ from rastrainer.registration.target_error import CommonBias
 from rastrainer.statistics.competence import LcCusum, lc_cusum, lc_cusum_limit
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.advice import Advice, TouchFinding, advise, touch_findings
+from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import (
     COMMON_BIAS_LIMIT_MM,
     CONTACT_LIMIT_S,
@@ -44,7 +45,8 @@ class PastTrial:
         completion_time_s: As recorded.
         score: The latest, above 0 up to 100.
         acceptable: Whether it was within all limits of its score.
-        is_aborted: Whether it was aborted after a touch: not passed, without time or score.
+        is_aborted: Whether it was aborted after a touch, or can have no score: not passed, without
+            time or score.
         method: By which it was registered, or would have been; trials are compared with those of
             the same method.
     """
@@ -59,13 +61,14 @@ class PastTrial:
     method: RegistrationMethod = RegistrationMethod.FIDUCIALS
 
     @classmethod
-    def failed(cls, record: AbortedTrial) -> PastTrial:
-        """Return an aborted trial that counts as not passed."""
+    def failed(cls, record: AbortedTrial | TrialRecord) -> PastTrial:
+        """Return a trial without a score that counts as not passed."""
+        seconds = record.elapsed_s if isinstance(record, AbortedTrial) else record.completion_time_s
         return cls(
             record.trial_id,
             record.task,
             record.mode,
-            record.elapsed_s,
+            seconds,
             score=0.0,
             acceptable=False,
             is_aborted=True,

@@ -140,6 +140,7 @@ class ClientConnection(asyncio.BufferedProtocol):
     Attributes:
         name: what the peer called itself, at first its address.
         scores: whether it has said that it registers and scores trials.
+        offered: UUIDs of the trials that it was offered.
         host: the peer's, for the log.
         header_version: what the peer speaks.
         is_silent: it has not sent a single message.
@@ -149,6 +150,7 @@ class ClientConnection(asyncio.BufferedProtocol):
     def __init__(self, owner: ConnectionOwner):
         self.name = self.host = "a client"
         self.scores = False
+        self.offered: set[str] = set()
         self.header_version = 2
         self.is_silent = True
         self.closed = asyncio.Event()

@@ -29,12 +29,18 @@ from rastrainer.igtl.content import (
     Transform,
 )
 from rastrainer.igtl.message import Message
-from rastrainer.protocol import PROTOCOL_VERSION, CommandName, DeviceName, Phase, Rate
+from rastrainer.protocol import PROTOCOL_VERSION, CommandName, DeviceName, Rate
+from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.steps import StepAnswers
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.net.igtl.connection import ClientConnection, Outgoing
 from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher, heartbeat
+from rastrainer_simulator.net.igtl.registration_check import (
+    CHECKED,
+    RegistrationCheck,
+    SubmitCommand,
+)
 from rastrainer_simulator.net.igtl.server import IgtlServer
 from rastrainer_simulator.net.igtl.told import told
 from rastrainer_simulator.net.limits import LinkLimits
@@ -49,7 +55,15 @@ _OWN_DEVICES = frozenset(
         *DeviceName.LINK_TO_WORLD,
     }
 )
-SubmitCommand = Callable[[str, Mapping[str, Any], str], "Future[Answer]"]
+_OF_SCORING_CLIENTS = frozenset(
+    {
+        *CHECKED,
+        CommandName.TRIAL_SCORED,
+        CommandName.GET_JOURNAL,
+        CommandName.ACKNOWLEDGE_TRIAL,
+    }
+)
+"""Commands of the clients that receive the trials, register them and score them."""
 OFFERS_AT_ONCE = 8
 """Trials in one round of offers."""
 _NUMBERS = 2**32
@@ -57,9 +71,13 @@ _NUMBERS = 2**32
 
 @dataclass
 class _Turn:
-    """One client's commands: how many the simulation has, and which are waiting."""
+    """One client's commands: how many the simulation has, and which are waiting.
+
+    While a registration is being checked, the commands after it wait.
+    """
 
     at_work: int = 0
+    is_checking: bool = False
     waiting: deque[tuple[Command, Mapping[str, Any]]] = field(default_factory=deque)
     waiting_bytes: int = 0
 
@@ -100,6 +118,10 @@ class CommandHandler:
 
     def _submit_waiting(self, connection: ClientConnection, turn: _Turn) -> None:
         while turn.waiting and turn.at_work < self._limits.commands_at_once:
+            is_checked = turn.waiting[0][0].name in CHECKED
+            if turn.is_checking or (is_checked and turn.at_work):
+                return
+            turn.is_checking = is_checked
             command, arguments = turn.waiting.popleft()
             turn.waiting_bytes -= len(command.body)
             turn.at_work += 1
@@ -114,6 +136,7 @@ class CommandHandler:
         if turn is None:
             return
         turn.at_work -= 1
+        turn.is_checking = False
         if done.cancelled() or done.exception() is not None:
             self._refuse(connection, command, "The simulator could not carry the command out.")
         else:
@@ -167,6 +190,8 @@ class SimulatorLink:
         latest: Callable[[], SimulationState],
         submit: SubmitCommand,
         unacknowledged: Callable[[], Sequence[AbortedTrial | TrialRecord]],
+        arrivals: Callable[[], int],
+        find_scenario: Callable[[str], Scenario],
         health: Callable[[], Mapping[str, Any]] = dict,
         limits: LinkLimits | None = None,
         answers: Callable[[], Sequence[StepAnswers]] = tuple,
@@ -179,6 +204,8 @@ class SimulatorLink:
             submit: takes a command's name, checked arguments and sender, and returns the
                 answer's future immediately.
             unacknowledged: gives the records of the trials that no client has acknowledged.
+            arrivals: counts these since the start.
+            find_scenario: gives the scenario of a name, the present one for ""; in any thread.
             health: gives what the heartbeat reports about the simulator, ready for JSON.
             limits: what clients may cost.
             answers: gives a study's answers that Slicer has not taken yet.
@@ -187,7 +214,9 @@ class SimulatorLink:
         self.server = IgtlServer(self, limits)
         self.publisher = Publisher(latest)
         self.offers = TrialOffers(unacknowledged, lambda: self.server.clients)
-        self._last_phase = Phase.IDLE
+        self._arrivals = arrivals
+        self._offered_arrivals = arrivals()
+        self._check = RegistrationCheck(submit, latest, find_scenario)
         self._submit_command = submit
         self._health = health
         self._answers = answers
@@ -217,12 +246,12 @@ class SimulatorLink:
             self._slicer_left()
 
     def publish(self, state: SimulationState) -> None:
-        """Publish what is due, and offer a newly registered trial."""
+        """Publish what is due, and offer a trial that has just been registered or aborted."""
         self.publisher.publish(state)
-        phase = state.training.phase
-        if phase is Phase.REGISTERED and self._last_phase is not phase:
+        arrivals = self._arrivals()
+        if arrivals != self._offered_arrivals:
+            self._offered_arrivals = arrivals
             self.offers.offer_newest()
-        self._last_phase = phase
 
     async def beat(self) -> None:
         """Send the heartbeat every second and repeat the offers; never returns."""
@@ -255,11 +284,12 @@ class SimulatorLink:
     def _submit(
         self, connection: ClientConnection, name: str, arguments: Mapping[str, Any]
     ) -> Future[Answer]:
-        if name != CommandName.HELLO:
-            return self._submit_command(name, arguments, connection.name)
-        greeted: Future[Answer] = Future()
-        greeted.set_result(self._greet(connection, arguments))
-        return greeted
+        if name == CommandName.HELLO:
+            return _answered(self._greet(connection, arguments))
+        if sentence := _not_for(connection, name, arguments):
+            return _answered(Answer(0, False, sentence))
+        submit = self._check.submit if name in CHECKED else self._submit_command
+        return submit(name, arguments, connection.name)
 
     def _greet(self, connection: ClientConnection, arguments: Mapping[str, Any]) -> Answer:
         spoken = {
@@ -280,8 +310,25 @@ class SimulatorLink:
         return Answer(0, True, data={**spoken, **requested})
 
 
+def _not_for(connection: ClientConnection, name: str, arguments: Mapping[str, Any]) -> str:
+    """Return why a command is not for this client; "" if it is."""
+    if name not in _OF_SCORING_CLIENTS:
+        return ""
+    if not connection.scores:
+        return f"{name} is for clients that register and score: send Hello, with scores, first."
+    if name == CommandName.ACKNOWLEDGE_TRIAL and arguments["trialId"] not in connection.offered:
+        return "This trial was not offered over this connection."
+    return ""
+
+
+def _answered(answer: Answer) -> Future[Answer]:
+    done: Future[Answer] = Future()
+    done.set_result(answer)
+    return done
+
+
 class TrialOffers:
-    """Offers the trials that no client has acknowledged.
+    """Offers the trials that no client has acknowledged to the clients that score.
 
     Clients keep trials by their UUID, so an offer that arrives twice does no harm.
     """
@@ -298,7 +345,7 @@ class TrialOffers:
         self._start = 0
 
     def offer_newest(self) -> None:
-        """Offer the trial that was registered last, after the aborted ones.
+        """Offer the aborted trials, then the one that was registered last.
 
         In a study, a client counts a repeat only if it knows which trials were aborted before.
         """
@@ -322,4 +369,6 @@ class TrialOffers:
             command = Command(number, name, body)
             offer = Outgoing(Message(DeviceName.COMMAND, command))
             for connection in self._clients():
-                connection.send(offer)
+                if connection.scores:
+                    connection.offered.add(record.trial_id)
+                    connection.send(offer)

@@ -11,6 +11,8 @@ import numpy as np
 from rastrainer.igtl.content import CommandReply
 from rastrainer.igtl.message import Message, MessageReader
 from rastrainer.protocol import Proximity
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.net.igtl.server import IgtlServer
 from rastrainer_simulator.net.igtl.simulator_link import SimulatorLink
 from rastrainer_simulator.net.limits import LinkLimits
@@ -112,6 +114,7 @@ class SimulatedLoop:
         self.latest = at_rest()
         self.commands = []
         self.unacknowledged = ()
+        self.arrivals = 0
         self.answer = lambda name, _arguments: Answer(0, True, data={"did": name})
 
     def submit(self, name, arguments, sender):
@@ -133,6 +136,8 @@ class LinkServer:
             lambda: simulated.latest,
             simulated.submit,
             lambda: simulated.unacknowledged,
+            lambda: simulated.arrivals,
+            lambda _name: load_scenario(asset_path("scenarios", "colin27")),
             limits=limits,
         )
         self.server = self.link.server

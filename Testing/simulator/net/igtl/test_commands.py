@@ -40,11 +40,31 @@ ARGUMENTS = {
     "StudyStep": {"trainee": "P07", "kind": "trial", "task": "task-2", "mode": "hmd"},
     "Curriculum": {"trainee": "P07"},
     "GetTrial": {"trialId": TRIAL},
+    "GetJournal": {"trialId": TRIAL},
     "AcknowledgeTrial": {"trialId": TRIAL},
 }
 
 
-@pytest.mark.parametrize("name", COMMAND_ARGUMENTS)
+OF_SCORING_CLIENTS = (
+    *("UseRegistration", "SubmitRegistration", "TrialScored", "GetJournal", "AcknowledgeTrial"),
+)
+
+
+@pytest.mark.parametrize("name", OF_SCORING_CLIENTS)
+def test_a_client_that_does_not_score_neither_registers_nor_scores_nor_acknowledges(
+    client, link_server, name
+):
+    for hello in ({}, {**HELLO, "scores": False}):
+        if hello:
+            client.send_command("Hello", hello)
+        reply = client.send_command(name, ARGUMENTS[name])
+        assert reply.error == (
+            f"{name} is for clients that register and score: send Hello, with scores, first."
+        )
+    assert link_server.simulated.commands == []
+
+
+@pytest.mark.parametrize("name", [n for n in COMMAND_ARGUMENTS if n not in OF_SCORING_CLIENTS])
 def test_every_command_of_the_protocol_is_answered(client, name):
     arguments = ARGUMENTS.get(name, {})
     given = {key: value for key, value in arguments.items() if value is not None}

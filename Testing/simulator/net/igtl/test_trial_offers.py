@@ -54,6 +54,7 @@ def collector(link_server):
 
 def test_trial_is_offered_the_moment_it_is_registered(collector, link_server):
     link_server.simulated.unacknowledged = (record("old"), record("new"))
+    link_server.simulated.arrivals = 1
     registered = at_rest(training=TrainingState(1, Phase.REGISTERED, trial_id="new"))
     assert collector.after(lambda: link_server.link.publish(registered)) == ["new"]
     assert collector.after(lambda: link_server.link.publish(registered)) == []
@@ -63,6 +64,7 @@ def test_aborted_trials_are_offered_before_one_finished_later(link_server):
     """A client that has just connected would otherwise count a repeat before it knows of both."""
     aborted = AbortedTrial.from_json(make_aborted())
     link_server.simulated.unacknowledged = (aborted, record("old"), record("repeat"))
+    link_server.simulated.arrivals = 1
     registered = at_rest(training=TrainingState(1, Phase.REGISTERED, trial_id="repeat"))
     with Collector(link_server, "TrialAborted", "TrialCompleted") as collector:
         offered = collector.after(lambda: link_server.link.publish(registered))

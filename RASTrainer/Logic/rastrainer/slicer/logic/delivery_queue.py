@@ -145,7 +145,8 @@ class AbortedTrialLogic:
     before it, too: a repeat counts in a study only once a reason was given for it.
 
     Attributes:
-        kept: emits each received `AbortedTrial` once it is in the study.
+        kept: emits each received `AbortedTrial` once it is in the study; nothing is stored of one
+            in which nothing was done.
         problemFound: emits a sentence about one that could not be stored.
     """
 
@@ -164,7 +165,7 @@ class AbortedTrialLogic:
             link.trialAborted,
             work,
             lambda delivery: lambda: self._keep(delivery),
-            self.kept.emit,
+            self._accept,
             _("An aborted trial could not be stored: {error}"),
             inTurn=False,
         )
@@ -177,6 +178,10 @@ class AbortedTrialLogic:
     def forgetWaiting(self) -> None:
         """Drop what has not started: the simulator offers it again, for another study."""
         self._queue.forgetWaiting()
+
+    def _accept(self, record: AbortedTrial) -> None:
+        if record.is_kept:
+            self.kept.emit(record)
 
     def _keep(self, delivery: Delivery) -> AbortedTrial:
         record = AbortedTrial.from_json(delivery)

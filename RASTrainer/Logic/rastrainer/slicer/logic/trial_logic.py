@@ -8,7 +8,8 @@ until it is acknowledged, and it is acknowledged only when it is in the study; w
 without its truth is scored again over the next connection, and after the study was away.
 
 A trial is scored in an order that rules out cheating: the registration is submitted, which makes it
-final; the simulator reveals the truth; the score is computed, sent and stored.
+final; the simulator reveals the truth; the score is computed, sent and stored. Where the study
+asks for it, the trial and the truth must follow from the trial's journal, which is fetched first.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.delivery_queue import Delivery, DeliveryQueue
+from rastrainer.slicer.logic.journal_request import End, fetchJournal
 from rastrainer.slicer.program.child_process import Run, runHere
 from rastrainer.slicer.scene.trial_scene import showTrial
 from rastrainer.slicer.signal import Listening, Signal
@@ -37,6 +39,7 @@ from rastrainer.study.delivered_trial import (
     REGISTER,
     SCORE,
     DeliveredTrial,
+    checks_journals,
     score_references,
     store_delivered,
     with_progress,
@@ -55,8 +58,6 @@ RETRY_S = 5.0
 ANSWER_TIMEOUT_S = 60.0
 """No user waits for these answers, and what times out is requested again only over the next
 connection: a busy simulator gets the time it needs."""
-
-End = Callable[[Exception], None]
 
 
 class TrialLogic:
@@ -282,7 +283,18 @@ class TrialLogic:
         def score(answer: Mapping[str, Any]) -> None:
             truth = RevealedTruth.from_json(answer)
             self._work.do(
-                lambda: self._storeScore(analysis, truth),
+                self._checksJournals,
+                lambda isChecked: fetch(truth) if isChecked else compute(truth, None),
+                end,
+            )
+
+        def fetch(truth: RevealedTruth) -> None:
+            trialId = analysis.record.trial_id
+            fetchJournal(self._ask, trialId, lambda journal: compute(truth, journal), end)
+
+        def compute(truth: RevealedTruth, journal: bytes | None) -> None:
+            self._work.do(
+                lambda: self._storeScore(analysis, truth, journal),
                 lambda scored: report(scored, truth),
                 lambda error: refuse(error, truth),
             )
@@ -324,7 +336,13 @@ class TrialLogic:
 
         self._link.send(command, arguments, takeAnswer, ANSWER_TIMEOUT_S)
 
-    def _storeScore(self, analysis: TrialAnalysis, truth: RevealedTruth) -> TrialAnalysis:
+    def _checksJournals(self) -> bool:
+        with self._openStudy() as study:
+            return checks_journals(study)
+
+    def _storeScore(
+        self, analysis: TrialAnalysis, truth: RevealedTruth, journal: bytes | None
+    ) -> TrialAnalysis:
         record = analysis.record
         with self._openStudy() as study:
             scored = self._run(
@@ -335,6 +353,7 @@ class TrialLogic:
                 self._findScenario(record.scenario),
                 score_references(study),
                 self._records,
+                journal,
             )
             study.add_results(record.trial_id, score=scored.score, procedure=scored.procedure)
             return with_progress(scored, study)

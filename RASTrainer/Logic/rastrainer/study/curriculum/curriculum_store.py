@@ -1,6 +1,7 @@
 """Which curriculum each trainee of a study follows, and which trials count for their standing.
 
-Each choice is stored, the last one counts. Scored trials count, and aborted ones as failures.
+Each choice is stored, the last one counts. Scored trials count, and as failures those
+that were aborted or can have no score.
 """
 
 from __future__ import annotations
@@ -22,18 +23,21 @@ from rastrainer.study.database.aborted_trials import stored_of
 from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import TRAINEE_ID
-from rastrainer.study.database.study_trials import METHOD, decoded, json_text
+from rastrainer.study.database.study_trials import METHOD, decoded, json_text, unscored
 from rastrainer.study.database.values import StoredProcedure, moment, utc_now
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol, pass_mark_of
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.procedure_outcome import ProcedureScore
+from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore
 
 _STAMPS = """
     SELECT pseudonym,
         (SELECT count(*) FROM aborted_trials WHERE aborted_trials.trainee_id = trainees.id),
         (SELECT max(scores.id) FROM scores JOIN trials ON trials.trial_id = scores.trial_id
+            WHERE trials.trainee_id = trainees.id),
+        (SELECT count(*) FROM truths JOIN trials ON trials.trial_id = truths.trial_id
             WHERE trials.trainee_id = trainees.id),
         (SELECT max(procedure_outcomes.id) FROM procedure_outcomes
             JOIN trials ON trials.trial_id = procedure_outcomes.trial_id
@@ -178,9 +182,13 @@ def counted_trials(connection: Connection, pseudonym: str) -> tuple[CountedTrial
         if score is not None
     ]
     timed += [
-        (moment(stored.record.started_utc), "", _aborted(stored.record))
+        (moment(stored.record.started_utc), "", _failed(stored.record))
         for stored in stored_of(connection, pseudonym)
         if stored.record.counts_as_failed
+    ]
+    timed += [
+        (moment(record.started_utc), "", _failed(record))
+        for record in unscored(connection, pseudonym)
     ]
     return tuple(trial for *_when, trial in sorted(timed, key=lambda each: each[:2]))
 
@@ -214,13 +222,14 @@ def _scored(
     )
 
 
-def _aborted(record: AbortedTrial) -> CountedTrial:
+def _failed(record: AbortedTrial | TrialRecord) -> CountedTrial:
+    phase = record.phase if isinstance(record, AbortedTrial) else ""
     return CountedTrial(
         record.task,
         record.mode,
         record.scenario,
         record.method.value,
         is_aborted=True,
-        is_in_procedure=record.phase in {phase.value for phase in PROCEDURE_PHASES},
+        is_in_procedure=phase in {each.value for each in PROCEDURE_PHASES},
         started_utc=record.started_utc,
     )

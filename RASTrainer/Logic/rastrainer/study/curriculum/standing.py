@@ -38,7 +38,7 @@ class CountedTrial:
         score: Of the procedure where there is one, else of the touches; 0 of an aborted trial.
         acceptable: Whether it was within all limits of its score.
         parts: Desirability of each part of the score, 0 to 1.
-        is_aborted: Whether it was aborted after a touch.
+        is_aborted: Whether it was aborted after a touch, or can have no score.
         is_in_procedure: Whether it was aborted in a procedure.
         started_utc: ISO 8601.
     """

@@ -8,7 +8,7 @@ from datetime import datetime
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.study.database import study_trainees, study_trials
+from rastrainer.study.database import deliveries, study_trainees, study_trials
 from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import TRAINEE_ID, check_not_deleted
@@ -44,6 +44,8 @@ class AbortedTrials:
     ) -> bool:
         """Store an aborted trial; return whether it was new.
 
+        Of one in which nothing was done, only the number is noted.
+
         An unknown trainee is added without consent, as in `Study.add_trial`.
 
         Args:
@@ -68,7 +70,9 @@ class AbortedTrials:
             return stored_of(connection, pseudonym)
 
     def attempts(self, pseudonym: str) -> tuple[PastTrial, ...]:
-        """Return what progress is computed from, as started: scored trials and aborted failures.
+        """Return what progress is computed from, as started: scored trials and failures.
+
+        Failures are aborted trials with a touch, and trials that can have no score.
 
         Raises:
             InputError: the study has no trainee of this pseudonym.
@@ -86,6 +90,10 @@ class AbortedTrials:
                 (moment(stored.record.started_utc), PastTrial.failed(stored.record))
                 for stored in stored_of(connection, pseudonym)
                 if stored.record.counts_as_failed
+            ]
+            timed += [
+                (moment(record.started_utc), PastTrial.failed(record))
+                for record in study_trials.unscored(connection, pseudonym)
             ]
             return tuple(trial for _when, trial in sorted(timed, key=lambda each: each[0]))
 
@@ -136,6 +144,9 @@ def _add(connection: Connection, record: AbortedTrial, text: str) -> bool:
             f"Another trial is stored under the UUID {record.trial_id}; the stored one is kept."
         )
     if row is not None:
+        return False
+    deliveries.note(connection, record)
+    if not record.is_kept:
         return False
     study_trainees.create_where_missing(connection, record.trainee, consent=False)
     connection.execute(

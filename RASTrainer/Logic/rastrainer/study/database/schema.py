@@ -204,6 +204,15 @@ STATEMENTS = (
     )
     """,
     "INSERT INTO trainee_numbers VALUES (1, 0)",
+    # Which trials of each simulator's folder have arrived, by their number alone: it remains when
+    # a trainee is deleted, so that only what never arrived is a gap.
+    """
+    CREATE TABLE deliveries (
+        series TEXT NOT NULL,
+        number INTEGER NOT NULL CHECK (number > 0),
+        PRIMARY KEY (series, number)
+    )
+    """,
 )
 
 

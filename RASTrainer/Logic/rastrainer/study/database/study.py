@@ -14,7 +14,7 @@ from rastrainer.errors import InputError
 from rastrainer.files import writing
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
-from rastrainer.study.database import study_trainees, study_trials
+from rastrainer.study.database import deliveries, study_trainees, study_trials
 from rastrainer.study.database.database import LockWait, PostgresAddress, StudyDatabase, study_place
 from rastrainer.study.database.postgres_database import PostgresDatabase
 from rastrainer.study.database.sqlite_database import ReadOnlySqliteDatabase, SqliteDatabase
@@ -269,6 +269,11 @@ class Study:
         """Return the outcomes of all trials of a task and mode, in order of storing."""
         with self._database.reading() as connection:
             return study_trials.outcomes(connection, task, mode)
+
+    def undelivered(self) -> Mapping[str, tuple[tuple[int, int], ...]]:
+        """Return the gaps in what arrived, by series; see `deliveries.missing`."""
+        with self._database.reading() as connection:
+            return deliveries.missing(connection)
 
     def unrevealed(self) -> tuple[TrialRecord, ...]:
         """Return the records of trials without truth, oldest first."""

@@ -15,7 +15,7 @@ from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
-from rastrainer.study.database import study_trainees
+from rastrainer.study.database import deliveries, study_trainees
 from rastrainer.study.database.database import Connection, Rows
 from rastrainer.study.database.study_trainees import TRAINEE_ID, check_not_deleted
 from rastrainer.study.database.values import (
@@ -63,6 +63,7 @@ def add(connection: Connection, record: TrialRecord, json_object: Mapping[str, A
     text = record_text(json_object)
     if not check(connection, record):
         return False
+    deliveries.note(connection, record)
     study_trainees.create_where_missing(connection, record.trainee, consent=False)
     connection.execute(
         f"INSERT INTO trials VALUES (?, ({TRAINEE_ID}), ?, ?, ?, ?, ?, ?, ?)",
@@ -257,6 +258,20 @@ def _past_trial(
         score.acceptable,
         method=RegistrationMethod(method),
     )
+
+
+def unscored(connection: Connection, pseudonym: str) -> tuple[TrialRecord, ...]:
+    """Return a trainee's trials that have no score although their truth is known: none will come.
+
+    Trial runs are left out.
+    """
+    rows = connection.execute(
+        f"SELECT record_json FROM trials WHERE trainee_id = ({TRAINEE_ID}) AND task != ? "
+        "AND trial_id IN (SELECT trial_id FROM truths) "
+        "AND trial_id NOT IN (SELECT trial_id FROM scores)",
+        (pseudonym, protocol.TRIAL_RUN),
+    ).fetchall()
+    return tuple(decoded(text, TrialRecord.from_json) for (text,) in rows)
 
 
 def unrevealed(connection: Connection) -> tuple[TrialRecord, ...]:

@@ -42,6 +42,7 @@ _KEYS = (
     *("formatVersion", "name", "title", "modes", "modeOrder", "tasks", "taskOrder"),
     *("repetitions", "trialRun", "breaks", "questionnaires", "scoring"),
     *("guidance", "ghost", "tutorial", "procedures", "methods", "skin", "allows"),
+    "checkJournals",
 )
 
 
@@ -81,6 +82,7 @@ class StudyProtocol:
         skins: By task, how far the skin shifts and is indented in its trials, as of `skin_amounts`;
             without one, as the scenario says.
         allows: What counts in the trials although it is not how a trainee plays, `Allowance`s.
+        checks_journals: Whether a trial is scored only if it follows from its journal.
     """
 
     name: str
@@ -103,6 +105,7 @@ class StudyProtocol:
     methods: Mapping[str, str] = field(default_factory=dict)
     skins: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     allows: tuple[str, ...] = ()
+    checks_journals: bool = True
 
     def to_json(self) -> dict[str, Any]:
         """Return the object that the file holds."""
@@ -123,6 +126,7 @@ class StudyProtocol:
             **{name: value for name, value in chosen.items() if value},
             **{name: value for name, value in by_task.items() if value},
             **({"allows": list(self.allows)} if self.allows else {}),
+            "checkJournals": self.checks_journals,
             "taskOrder": self.task_order,
             "repetitions": self.repetitions,
             "trialRun": {"minutes": self.trial_run_min},
@@ -214,6 +218,7 @@ def _protocol(fields: Fields) -> StudyProtocol:
             fields, "skin", tasks, lambda entries, task: read_skin(entries, task).amounts
         ),
         allows=_allowances(fields),
+        checks_journals=fields.yes_or_no("checkJournals", True),
     )
     if len(modes) * len(tasks) * protocol.repetitions > MAX_STEPS:
         raise fields.error("repetitions", f"so few that there are at most {MAX_STEPS} trials")

@@ -1,0 +1,102 @@
+"""A client's registration is accepted only if it is the fit of the trial's own points.
+
+The simulator has the touches and the trace, so it registers them itself and compares. What goes
+into the journal is its own outcome: the same for every client, whose numpy may round otherwise.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import TRACED_METHODS, CommandName, Phase
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.touch_registration import GivenPoints, register_trial
+from rastrainer_simulator.state import Answer, OperatorCommand, SimulationState
+from rastrainer_simulator.texts.texts import Texts
+from rastrainer_simulator.training.rules import refusal
+
+SubmitCommand = Callable[[str, Mapping[str, Any], str], "Future[Answer]"]
+CHECKED: Mapping[str, frozenset[str]] = {
+    CommandName.USE_REGISTRATION: frozenset({Phase.VERIFYING.value}),
+    CommandName.SUBMIT_REGISTRATION: frozenset({Phase.REGISTERED.value, Phase.SCORED.value}),
+}
+"""Commands with a registration, and the phases of its trial in which one is accepted."""
+TOLERANCE, TRACE_TOLERANCE = 1e-6, 1e-4
+"""Of each number of a matrix (mm in its last column) and of the FRE. A trace is matched in steps,
+which enlarge a difference of 1e-11 mm in its points to 1e-6."""
+_REST_S = 0.002
+
+
+class RegistrationCheck:
+    """Registers a trial in a thread, and submits the outcome if a client's is the same."""
+
+    def __init__(
+        self,
+        submit: SubmitCommand,
+        latest: Callable[[], SimulationState],
+        find_scenario: Callable[[str], Scenario],
+    ) -> None:
+        """Prepare.
+
+        Args:
+            submit: has the simulation carry out a command.
+            latest: gives its newest state.
+            find_scenario: gives the scenario of a name, the present one for ""; may raise
+                `InputError`; called in the thread.
+        """
+        self._submit_command = submit
+        self._latest = latest
+        self._find_scenario = find_scenario
+        self._worker = ThreadPoolExecutor(max_workers=1, thread_name_prefix="registration")
+
+    def submit(self, name: str, arguments: Mapping[str, Any], sender: str) -> Future[Answer]:
+        """Have a command of `CHECKED` carried out if its registration is the trial's."""
+        return self._worker.submit(self._carry_out, name, arguments, sender)
+
+    def _carry_out(self, name: str, arguments: Mapping[str, Any], sender: str) -> Answer:
+        trial = {"trialId": arguments["trialId"]}
+        found = self._submit_command(CommandName.GET_TRIAL, trial, sender).result()
+        if not found.ok:
+            return found
+        if found.data["phase"] not in CHECKED[name]:
+            return Answer(0, False, self._refusal(name, arguments))
+        try:
+            fit = self._fit(found.data, arguments)
+        except InputError as error:
+            return Answer(0, False, str(error))
+        return self._submit_command(name, fit, sender).result()
+
+    def _refusal(self, name: str, arguments: Mapping[str, Any]) -> str:
+        """Return why a registration is not due; the state may have changed meanwhile."""
+        command = OperatorCommand(name, arguments)
+        sentence = refusal(command, self._latest().training, Texts())
+        return sentence or f"{name} is not due in this trial."
+
+    def _fit(self, data: Mapping[str, Any], arguments: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the arguments that the trial's own points give.
+
+        Raises:
+            InputError: they are not those of the client, or the points cannot be registered.
+        """
+        record = TrialRecord.from_json(data["record"]) if "record" in data else None
+        given = GivenPoints.of_answer(data) if record is None else GivenPoints.of_record(record)
+        scenario = self._find_scenario("" if record is None else record.scenario)
+        registered = register_trial(given, scenario, pause=lambda: time.sleep(_REST_S))
+        fit = registered.arguments(arguments["trialId"])
+        own = (*fit["matrix"], fit["freMm"])
+        theirs = (*arguments["matrix"], arguments["freMm"])
+        tolerance = TRACE_TOLERANCE if given.method in TRACED_METHODS else TOLERANCE
+        off = float(np.abs(np.subtract(own, theirs)).max())
+        if off > tolerance:
+            raise InputError(
+                f"The registration must be the rigid one of the trial's points: its matrix and FRE "
+                f"may be off by {tolerance:g}, and are by {off:.3g}."
+            )
+        return fit

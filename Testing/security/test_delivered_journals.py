@@ -1,0 +1,237 @@
+"""A study with a protocol scores a trial only if it follows from the journal that came with it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.journal.folder import journals_of
+from rastrainer.journal.journal_file import NO_LINE, encode_line, read_journal
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.slicer.logic.trial_logic import TrialLogic
+from rastrainer.study.curriculum.curriculum_store import counted_trials
+from rastrainer.study.database.aborted_trials import AbortedTrials
+from rastrainer.study.database.study import Study
+from rastrainer.study.journal_check import check_journal
+from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.trial.analysis import RevealedTruth
+from rastrainer.trial.record import TrialRecord
+from rastrainer_simulator.cli.main import main
+from Testing.domain.study.played_study import STUDIES
+from Testing.end_to_end.faulty_proxy import SlicerSide
+from Testing.end_to_end.finished_trials import COLIN, write_finished_trials
+from Testing.end_to_end.simulator_process import SimulatorProcess
+from Testing.end_to_end.test_trial_over_openigtlink import Player, play
+from Testing.slicer.simulator_double import SimulatorDouble, run_logic_until
+
+TIMEOUT_S = 120.0
+
+
+@pytest.fixture(scope="module")
+def scenario():
+    return load_scenario(COLIN)
+
+
+@pytest.fixture(scope="module")
+def played(tmp_path_factory, scenario):
+    """The folder of a simulator in which a trial was played, and the trial's UUID."""
+    records = tmp_path_factory.mktemp("played") / "records"
+    with (
+        SimulatorProcess(records, "--no-views", "--speed", "8") as simulator,
+        Player(simulator.port) as player,
+    ):
+        return records, play(player, scenario)["StartTask"]["trialId"]
+
+
+def received(folder, port, scenario, **protocol):
+    """Receive one trial in a study with a protocol; return its score, and what was reported."""
+    path = folder / "study.db"
+    with Study.open(path) as study:
+        published = read_study_protocol(STUDIES / "published-protocol.json")
+        StudyProgress(study).set_protocol(replace(published, **protocol))
+    scored, problems = [], []
+
+    def make(scene, link, open_study, work):
+        logic = TrialLogic(scene, link, lambda _name: scenario, open_study, work)
+        logic.trialScored.connect(scored.append)
+        logic.problemFound.connect(problems.append)
+        return logic
+
+    slicer = SlicerSide(path, port, make)
+    try:
+        run_logic_until(slicer.link, slicer.work, lambda: scored or problems, TIMEOUT_S)
+        run_logic_until(slicer.link, slicer.work, lambda: not slicer.work.isBusy, TIMEOUT_S)
+    finally:
+        slicer.close()
+    with Study.open(path) as study:
+        ((name,),) = [[each.pseudonym for each in study.trainees()]]
+        (trial,) = study.history(name)
+        (attempt,) = AbortedTrials(study).attempts(name)
+        (counted,) = counted_trials_of(study, name)
+    assert attempt.is_aborted == counted.is_aborted == (trial.score is None)
+    return trial.score, problems
+
+
+def counted_trials_of(study, name):
+    with study.database.reading() as connection:
+        return counted_trials(connection, name)
+
+
+def test_a_trial_that_was_played_is_scored(played, scenario, tmp_path, capsys):
+    records, trial = played
+    with SimulatorProcess(records, "--no-views") as simulator:
+        score, problems = received(tmp_path, simulator.port, scenario)
+    assert problems == []
+    assert score is not None
+    study = ["--study", str(tmp_path / "study.db")]
+    (path,) = journals_of(records, trial)
+    assert main(["verify", str(path), *study]) == 0
+    invented = tmp_path / "invented"
+    invented.mkdir()
+    write_finished_trials(invented, range(1))
+    assert main(["verify", *map(str, invented.iterdir()), *study]) == 1
+    assert "the study has no such finished trial" in capsys.readouterr().out
+    assert main(["replay", "--verify", str(path)]) == 0
+
+
+@pytest.mark.parametrize("is_checked", [True, False])
+def test_an_invented_trial_in_a_real_simulator_is_scored_only_by_a_study_that_wants_it(
+    tmp_path, scenario, is_checked
+):
+    records = tmp_path / "records"
+    records.mkdir()
+    write_finished_trials(records, range(1))
+    with SimulatorProcess(records, "--no-views") as simulator:
+        score, problems = received(tmp_path, simulator.port, scenario, checks_journals=is_checked)
+    assert (score is None) == is_checked
+    assert [("was not scored: Its journal" in problem) for problem in problems] == [
+        True
+    ] * is_checked
+
+
+def test_an_invented_trial_of_an_invented_simulator_is_not_scored(played, tmp_path, scenario):
+    """Sixty lines speak the protocol, and send the journal of a trial that was played."""
+    records, trial = played
+    reading = read_journal(journals_of(records, trial)[0])
+    (registered,) = reading.of_kind("registered")
+    truth = registered["truth"]
+    fiducials = scenario.task("task-1").fiducials
+    pose = np.reshape(truth["headToWorld"], (4, 4))
+    invented = {
+        **registered["record"],
+        "points": [
+            point | {"positionMm": (pose[:3, :3] @ place + pose[:3, 3]).tolist()}
+            for point, place in zip(registered["record"]["points"], fiducials, strict=True)
+        ],
+        "journalSha256": registered["sha256"],
+    }
+    answers = {
+        "SubmitRegistration": {"headToWorld": truth["headToWorld"], "trueTreMm": 0.0},
+        "GetJournal": {"text": reading.path.read_text("ascii"), "next": None},
+    }
+    with SimulatorDouble(lambda name, _arguments: answers.get(name, {})) as simulator:
+        offering = SimulatorOffer(simulator, invented)
+        score, problems = received(tmp_path, offering.port, scenario)
+    assert score is None
+    assert "Its journal tells otherwise: the record." in problems[0]
+
+
+class SimulatorOffer:
+    """Offers a trial to everybody who greets a double."""
+
+    def __init__(self, simulator, record):
+        self.port = simulator.port
+        answer = simulator.responder
+
+        def respond(name, arguments):
+            if name == "Hello":
+                simulator.send_command("TrialCompleted", record)
+            return answer(name, arguments)
+
+        simulator.responder = respond
+
+
+@pytest.fixture(scope="module")
+def evidence(played):
+    """The entries of the played trial's journal."""
+    records, trial = played
+    return read_journal(journals_of(records, trial)[0]).entries
+
+
+def sealed(entries):
+    """Return a whole consistent chain, its record with the hash of its line, and its truth."""
+    lines, previous = [], NO_LINE
+    for number, entry in enumerate(entries, start=1):
+        bare = {k: v for k, v in entry.items() if k not in ("n", "previous", "sha256")}
+        line, previous = encode_line(number, previous, bare)
+        lines.append(line)
+        if entry["kind"] == "registered":
+            record, sha256, truth = entry["record"], previous, entry["truth"]
+    record = TrialRecord.from_json(record | {"journalSha256": sha256})
+    return record, RevealedTruth.from_json(truth | {"trueTreMm": 0.0}), b"".join(lines)
+
+
+def changed(entries, kind, **values):
+    """Return entries with values in the last one of a kind; a function gets the old value."""
+    last = max(n for n, entry in enumerate(entries) if entry["kind"] == kind)
+    entry = dict(entries[last])
+    for key, value in values.items():
+        entry[key] = value(entry[key]) if callable(value) else value
+    return [*entries[:last], entry, *entries[last + 1 :]]
+
+
+FORGED = {
+    "a better time": lambda entries: changed(
+        entries, "registered", record=lambda old: old | {"completionTimeS": 20.0}
+    ),
+    "a touch moved in the record": lambda entries: changed(
+        entries,
+        "registered",
+        record=lambda old: (
+            old
+            | {"points": [*old["points"][:-1], old["points"][-1] | {"positionMm": [500, 0, 300]}]}
+        ),
+    ),
+    "a touch where the tip was not": lambda entries: changed(
+        changed(entries, "touch", positionMm=[500, 0, 300]),
+        "registered",
+        record=lambda old: (
+            old
+            | {"points": [*old["points"][:-1], old["points"][-1] | {"positionMm": [500, 0, 300]}]}
+        ),
+    ),
+    "no contact": lambda entries: changed(
+        entries,
+        "registered",
+        record=lambda old: old | {"motion": dict.fromkeys(old["motion"], 0.0)},
+    ),
+    "an easier pose": lambda entries: changed(
+        entries,
+        "registered",
+        truth=lambda old: old | {"headToWorld": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]},
+    ),
+    "another trainee": lambda entries: changed(entries, "header", trainee="bert"),
+}
+
+
+@pytest.mark.parametrize("forge", FORGED.values(), ids=FORGED)
+def test_a_chain_that_is_whole_must_also_tell_of_the_trial(evidence, scenario, forge):
+    check_journal(*sealed(evidence), scenario)
+    with pytest.raises(InputError, match="Its journal tells otherwise"):
+        check_journal(*sealed(forge(list(evidence))), scenario)
+
+
+def test_an_altered_line_another_journal_and_another_pose_are_refused(evidence, scenario):
+    record, truth, journal = sealed(evidence)
+    lines = journal.splitlines(keepends=True)
+    moved = replace(truth, head_to_world=tuple(np.eye(4).ravel()))
+    with pytest.raises(InputError, match=r"Line 9 of its journal was altered"):
+        check_journal(record, truth, b"".join(lines[:8] + lines[9:]), scenario)
+    with pytest.raises(InputError, match="is not the one that was announced"):
+        check_journal(replace(record, journal_sha256="0" * 64), truth, journal, scenario)
+    with pytest.raises(InputError, match="the head's pose"):
+        check_journal(record, moved, journal, scenario)
