@@ -30,6 +30,7 @@ SETS = 2000
 TABLES: dict[str, tuple[Sequence[str], Callable[[int], Sequence[Row]]]] = {
     "learning": (learning.HEADER, learning.series),
     "cohorts": (learning.COHORT_HEADER, learning.cohorts),
+    "null cohorts": (learning.NULL_HEADER, learning.null_cohorts),
     "groups": (groups.HEADER, groups.one_population),
     "several groups": (groups.POWER_HEADER, groups.several_populations),
     "sequences": (modes.HEADER, modes.sequences),
