@@ -59,7 +59,7 @@ def intraclass_correlations(ratings: np.ndarray) -> IntraclassCorrelations:
 
     The coefficients are those of Shrout and Fleiss (1979). Their 95 % limits are generalized
     confidence limits (Weerahandi 1993): those of McGraw and Wong (1996, table 7) hold the truth in
-    as few as 73 % of simulated studies where raters differ as much as objects; see
+    as few as 75 % of simulated studies where raters differ as much as objects; see
     docs/error-rates.md. Raters who differ by nothing but a constant leave no limits.
 
     Raises:
