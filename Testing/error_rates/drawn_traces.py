@@ -55,7 +55,7 @@ CASES = (
     *itertools.product((STROKES,), (100, 200), (0.0, 2.0)),
     (STROKES, 400, 0.0),
 )
-LEAST_HELD, ENOUGH = 0.9, 200
+LEAST_HELD, ENOUGH = 0.9, 400
 """Asked of traces with so many points, on skin at rest."""
 
 
