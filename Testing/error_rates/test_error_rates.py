@@ -20,7 +20,7 @@ from Testing.error_rates.registered import common_biases, errors_along_skin, reg
 FEW = {
     "goals": 30,
     "next task": 20,
-    "agreement": 20,
+    "agreement": 40,
     "several groups": 5,
     "target errors": 5,
     "learning": 10,
