@@ -42,10 +42,10 @@ PUBLISHED = (
     ("patients, SEEG", "2.34", "10.1093/neuros/nyaa428"),
 )
 HEADER = (
-    *("Procedure", "n", "lines (by robot)", "trainees", "target, RMS (mm)", "by registration (mm)"),
+    *("Kind", "n", "lines (by robot)", "trainees", "target, RMS (mm)", "by registration (mm)"),
     *("by hand (mm)", "by robot and hand (mm)", "entry, RMS (mm)", "angle, RMS (°)"),
     "deepest plunge (mm)",
-    *("least distance kept (mm)", "hits", "acceptable"),
+    *("least distance kept (mm) (hits)", "acceptable"),
 )
 PHASES = {
     "running": "touching",
@@ -296,8 +296,7 @@ def _row(title: str, group: _Group) -> list[str]:
         fixed(group.rms("entryPointError"), 2),
         fixed(group.angle_deg, 2),
         fixed(group.plunge_mm, 1),
-        "–" if group.least_kept_mm is None else fixed(group.least_kept_mm, 1),
-        str(group.hits),
+        "–" if group.least_kept_mm is None else f"{fixed(group.least_kept_mm, 1)} ({group.hits})",
         f"{group.acceptable} of {len(group.trials)}",
     ]
 
