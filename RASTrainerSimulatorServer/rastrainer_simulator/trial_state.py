@@ -241,7 +241,8 @@ class TrajectoryState:
         line: as the registration in use shows it.
         alignments: how often the guide was locked.
         guide: as it was locked last; None before.
-        is_self_aligned: whether it was locked as the robot aligns it by itself.
+        is_self_aligned: whether the robot brought the guide onto the line, or it was locked as
+            the robot would have brought it; what hands changed of it since makes it no less so.
         drill_depth: the deepest that the drill was.
         instrument_depth: where the instrument was released; None before.
         times_s: by phase, pauses excluded.

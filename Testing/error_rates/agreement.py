@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -15,18 +16,21 @@ from rastrainer.statistics.agreement import (
     kappa_of_table,
     quadratic_kappa,
 )
-from Testing.error_rates.measured import Measured, share_text
+from rastrainer.statistics.intervals import TAIL, scipy_module
+from Testing.error_rates.measured import Measured, share_of, share_text
 
 HEADER = (
-    "two raters",
+    "raters",
     "interval contains the truth",
     "truth",
     "mean width of the interval",
     "no interval",
+    "limits of McGraw and Wong (previous method)",
 )
 REPLAYS = (10, 20, 40)
+RATERS, RATED = (2, 3, 5), (10, 40)
 LOWEST, HIGHEST = 1, 5
-TOTALS = ((0.3, 0.6), (0.5, 1.0))
+TOTALS = ((0.3, 0.6), (1.0, 0.5), (1.0, 1.0))
 """Standard deviations between raters and of the rest, in those between replays."""
 MARKS = ((0.3, 0.4), (0.3, 0.8))
 """By how much the second rater is milder, and the standard deviation of a mark, in those between
@@ -40,78 +44,89 @@ SEED = 20240
 def intervals(sets: int) -> Sequence[Measured]:
     """Return the coverage for totals and for single marks."""
     found = []
-    for between, rest in TOTALS:
+    for (between, rest), raters, replays in itertools.product(TOTALS, RATERS, RATED):
+        case = f"ICC(2,1), {raters} raters, SD between them {between:g}, rest {rest:g}"
+        case = f"{case}, {replays} replays"
+        draw = functools.partial(_totals, replays, raters, between, rest)
         truth = 1.0 / (1.0 + between**2 + rest**2)
-        for replays in REPLAYS:
-            draw = functools.partial(_single, replays, between, rest)
-            case = f"ICC(2,1), raters differ by SD {between:g}, rest {rest:g}, {replays} replays"
-            found.append(_measured(case, draw, truth, sets, ASKED))
-    truth = 2.0 / (2.0 + TOTALS[0][0] ** 2 + TOTALS[0][1] ** 2)
-    for replays in REPLAYS:
-        draw = functools.partial(_average, replays, *TOTALS[0])
-        case = "ICC(2,k), raters differ by SD {:g}, rest {:g}, {} replays"
-        found.append(_measured(case.format(*TOTALS[0], replays), draw, truth, sets, ASKED))
+        found.append(_measured(case, draw, _single, truth, sets, ASKED, _by_satterthwaite))
     for milder, rest in MARKS:
         truth = _true_kappa(milder, rest)
         for replays in REPLAYS:
-            draw = functools.partial(_kappa, replays, milder, rest)
+            draw = functools.partial(_marks, replays, milder, rest)
             case = f"kappa, one rater milder by {milder:g}, rest {rest:g}, {replays} replays"
             asked = ASKED if replays >= REPLAYS[-1] else ASKED_OF_FEW
-            found.append(_measured(case, draw, truth, sets, asked))
+            found.append(_measured(case, draw, _kappa, truth, sets, asked))
     return found
 
 
 def _measured(
     case: str,
-    draw: Callable[[np.random.Generator], Agreement],
+    draw: Callable[[np.random.Generator], np.ndarray],
+    rate: Callable[[np.ndarray], Agreement],
     truth: float,
     sets: int,
     asked: float,
+    rate_before: Callable[[np.ndarray], Agreement] | None = None,
 ) -> Measured:
     random = np.random.default_rng([SEED, *case.encode()])
-    agreements, missing = [], 0
+    agreements, before, missing = [], [], 0
     for _ in range(sets):
+        ratings = draw(random)
         try:
-            agreement = draw(random)
+            agreement = rate(ratings)
         except InputError:
             missing += 1
             continue
         missing += agreement.interval is None
         agreements += [agreement] if agreement.interval is not None else []
+        before += [rate_before(ratings).holds(truth)] if rate_before else []
     widths = [each.interval[1] - each.interval[0] for each in agreements]
-    share = float(np.mean([each.holds(truth) for each in agreements]))
+    share = share_of([each.holds(truth) for each in agreements])
+    previous = share_text(share_of(before)) if before else "–"
     beside = (fixed(truth, 2), fixed(float(np.mean(widths)), 2), share_text(missing / sets))
-    return Measured(case, share, len(agreements), at_least=asked, beside=beside)
+    return Measured(case, share, len(agreements), at_least=asked, beside=(*beside, previous))
 
 
-def _totals(replays: int, between: float, rest: float, random: np.random.Generator) -> np.ndarray:
-    """Return the totals (n, 2) of two raters who were drawn from many."""
-    quality = random.normal(0.0, 1.0, (replays, 1))
-    return quality + random.normal(0.0, between, (1, 2)) + random.normal(0.0, rest, (replays, 2))
+def _totals(
+    replays: int, raters: int, between: float, rest: float, random: np.random.Generator
+) -> np.ndarray:
+    """Return the totals (n, k) of raters who were drawn from many."""
+    quality, leniency = random.normal(0.0, 1.0, (replays, 1)), random.normal(0.0, between, raters)
+    return quality + leniency + random.normal(0.0, rest, (replays, raters))
 
 
-def _single(replays: int, between: float, rest: float, random: np.random.Generator) -> Agreement:
-    return intraclass_correlations(_totals(replays, between, rest, random)).single
+def _single(totals: np.ndarray) -> Agreement:
+    return intraclass_correlations(totals).single
 
 
-def _average(replays: int, between: float, rest: float, random: np.random.Generator) -> Agreement:
-    return intraclass_correlations(_totals(replays, between, rest, random)).average
+def _by_satterthwaite(totals: np.ndarray) -> Agreement:
+    """Return ICC(2,1) with the limits of McGraw and Wong (1996, table 7)."""
+    value, (n, k) = _single(totals).value, totals.shape
+    objects, raters = totals.mean(axis=1, keepdims=True), totals.mean(axis=0, keepdims=True)
+    rows, columns = k * np.var(objects, ddof=1), n * np.var(raters, ddof=1)
+    rest = totals - objects - raters + totals.mean()
+    error = np.sum(rest**2) / ((n - 1) * (k - 1))
+    ratio, share = columns / error, n * (1 + (k - 1) * value) - k * value
+    above = (k - 1) * (n - 1) * (k * value * ratio + share) ** 2
+    dof = above / ((n - 1) * k**2 * value**2 * ratio**2 + share**2)
+    quantile = scipy_module("stats").f.isf
+    first, second = float(quantile(TAIL, n - 1, dof)), float(quantile(TAIL, dof, n - 1))
+    others = k * columns + (k * n - k - n) * error
+    low = n * (rows - first * error) / (first * others + n * rows)
+    high = n * (second * rows - error) / (others + n * second * rows)
+    return Agreement(value, (float(low), float(high)))
 
 
-def _marks(
-    replays: int, milder: float, rest: float, random: np.random.Generator
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return marks (n,) of the same replays by two raters, 1 to 5."""
+def _marks(replays: int, milder: float, rest: float, random: np.random.Generator) -> np.ndarray:
+    """Return marks (2, n) int of the same replays by two raters, 1 to 5."""
     quality = random.normal(3.0, 1.0, replays)
-    first, second = (
-        np.clip(np.rint(quality + offset + random.normal(0.0, rest, replays)), LOWEST, HIGHEST)
-        for offset in (0.0, milder)
-    )
-    return first.astype(int), second.astype(int)
+    marks = [quality + offset + random.normal(0.0, rest, replays) for offset in (0.0, milder)]
+    return np.clip(np.rint(marks), LOWEST, HIGHEST).astype(int)
 
 
-def _kappa(replays: int, milder: float, rest: float, random: np.random.Generator) -> Agreement:
-    return quadratic_kappa(*_marks(replays, milder, rest, random), LOWEST, HIGHEST)
+def _kappa(marks: np.ndarray) -> Agreement:
+    return quadratic_kappa(*marks, LOWEST, HIGHEST)
 
 
 @functools.lru_cache

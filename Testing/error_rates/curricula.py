@@ -35,6 +35,8 @@ CHOICES_HEADER = (
 )
 TASKS = 5
 MOST_TRIALS = 120
+DAY = 10
+"""Trials on a day, which is good or bad by chance."""
 START, TASK_SD, TRAINEE_SD, TRIAL_SD, CEILING = 52.0, 12.0, 6.0, 8.0, 88.0
 LEARNING, TRANSFER = 0.12, 0.03
 """Share of what is left up to the ceiling that a trial adds to its task, and to each other one."""
@@ -46,7 +48,10 @@ CURRICULUM = Curriculum(
 
 
 def goals(sets: int) -> list[Measured]:
-    """Return how often trainees who fail as often, and learn nothing, reach each goal."""
+    """Return how often trainees who fail as often, and learn nothing, reach each goal.
+
+    In the last rows, their failure rate changes from day to day, and is as high on average.
+    """
     row = {count: Assignment("one", "task-1", trials=count) for count in (1, 2, 3, 5)}
     competent = Assignment("one", "task-1", goal=GoalKind.COMPETENT, trials=0)
     found = []
@@ -62,20 +67,32 @@ def goals(sets: int) -> list[Measured]:
         for failing in (0.4, 0.05):
             for trials in (10, 30, 60):
                 random = np.random.default_rng((5, number, trials, round(100 * failing)))
-                reached = [_is_reached(assignment, failing, trials, random) for _ in range(sets)]
+                rates = np.full((sets, trials), failing)
+                reached = [_is_reached(assignment, own, random) for own in rates]
                 case = f"{what}, fails in {100 * failing:.0f} of 100, {trials} trials"
                 is_asked = assignment is competent and trials == 30
                 limits = {"at_most": 0.06} if failing > 0.1 else {"at_least": 0.8}
                 found.append(
                     Measured(case, share_of(reached), sets, **(limits if is_asked else {}))
                 )
+    for apart in (0.1, 0.2, 0.3):
+        random = np.random.default_rng((5, 9, round(100 * apart)))
+        days = 0.4 + apart * random.choice([-1.0, 1.0], (sets, 3))
+        reached = [_is_reached(competent, own, random) for own in np.repeat(days, DAY, axis=1)]
+        found.append(
+            Measured(
+                f"LC-CUSUM, fails in {100 * (0.4 - apart):.0f} of 100 on good days and "
+                f"{100 * (0.4 + apart):.0f} on bad ones, {3 * DAY} trials",
+                share_of(reached),
+                sets,
+            )
+        )
     return found
 
 
-def _is_reached(
-    assignment: Assignment, failing: float, trials: int, random: np.random.Generator
-) -> bool:
-    passed = random.random(trials) >= failing
+def _is_reached(assignment: Assignment, failing: np.ndarray, random: np.random.Generator) -> bool:
+    """Return whether trials (n,) that fail with these probabilities reach the goal."""
+    passed = random.random(len(failing)) >= failing
     played = [_trial("task-1", 80.0 if each else 40.0) for each in passed]
     return _stand(Curriculum("c", "C", (assignment,)), played).reached == 1
 

@@ -4,11 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from rastrainer.statistics.trend import TrendVerdict, cohort_trend_p, falling_trend
+from rastrainer.report.comparisons import CONFIRMATORY, compare_modes
+from rastrainer.report.learning import learning_trends
+from rastrainer.report.trainees import groups
+from rastrainer.statistics.trend import ALPHA, TrendVerdict, cohort_trend_p, falling_trend
+from rastrainer.study.outcomes import MAIN_OUTCOMES
+from rastrainer.study.study_data import StudyData
+from rastrainer_simulator.virtual.outcome_model import OutcomeModel
+from Testing.drawn_study import draw_study
 from Testing.error_rates.measured import Measured, share_of, share_text
 
 HEADER = ("series of one trainee", "shown to fall", "steady", "undecided")
 COHORT_HEADER = ("12 trainees, 5 trials each", "shown to fall")
+NULL_HEADER = ("what the report says", "said falsely", "without correction")
 
 
 def _noise(kind: str, random: np.random.Generator, shape: tuple[int, int]) -> np.ndarray:
@@ -89,3 +97,49 @@ def cohorts(sets: int, seed: int = 2) -> list[Measured]:
         shown = [cohort_trend_p(study) < 0.05 for study in rows]
         found.append(Measured(words, share_of(shown), sets, at_most, at_least))
     return found
+
+
+def null_cohorts(sets: int, seed: int = 3) -> list[Measured]:
+    """Return how often reports say something false of a quarter as many cohorts without effects.
+
+    Their 12 trainees do five tasks in two modes, of which half begin with each, and do not improve.
+    """
+    random = np.random.default_rng(seed)
+    model = OutcomeModel([105.0, 125.0, 130.0, 135.0, 140.0], [1.5] * 5, learning=0.0)
+    orders = [("desktop", "hmd"), ("hmd", "desktop")] * 6
+    cohorts = [draw_study(model, 12, orders[0], random, orders) for _ in range(max(1, sets // 4))]
+    # Each column is a statement; the last one stands for any.
+    said, uncorrected = (
+        np.column_stack([own, own.any(axis=1)])
+        for own in map(np.array, zip(*map(_said, cohorts), strict=True))
+    )
+    words = ("trainees get better (6 tests)", "modes differ (3 tests)", "there are groups", "any")
+    return [
+        Measured(
+            statement,
+            share_of(said[:, column]),
+            len(cohorts),
+            at_most=0.06 if statement != "any" else 0.11,
+            beside=(share_text(share_of(uncorrected[:, column])),),
+        )
+        for column, statement in enumerate(words)
+    ]
+
+
+def _said(study: StudyData) -> tuple[list[bool], list[bool]]:
+    """Return whether each statement is made, and whether it would be without correction."""
+    trends = [trend for trend in learning_trends(study).values() if trend is not None]
+    found = compare_modes(study, MAIN_OUTCOMES, "desktop", "hmd")
+    modes = [one for one in found if one.outcome.name in CONFIRMATORY]
+    has_groups = "None are reported" not in groups(study)
+    said = [
+        any(trend.is_shown for trend in trends),
+        any(one.adjusted_p < ALPHA for one in modes),
+        has_groups,
+    ]
+    uncorrected = [
+        any(trend.p < ALPHA for trend in trends),
+        any(one.result.p < ALPHA for one in modes),
+        has_groups,
+    ]
+    return said, uncorrected

@@ -13,6 +13,7 @@ from Testing.error_rates import (
     cohort,
     compared_methods,
     curricula,
+    drawn_traces,
     equal_hands,
     groups,
     learning,
@@ -30,6 +31,7 @@ SETS = 2000
 TABLES: dict[str, tuple[Sequence[str], Callable[[int], Sequence[Row]]]] = {
     "learning": (learning.HEADER, learning.series),
     "cohorts": (learning.COHORT_HEADER, learning.cohorts),
+    "null cohorts": (learning.NULL_HEADER, learning.null_cohorts),
     "groups": (groups.HEADER, groups.one_population),
     "several groups": (groups.POWER_HEADER, groups.several_populations),
     "sequences": (modes.HEADER, modes.sequences),
@@ -49,6 +51,7 @@ TABLES: dict[str, tuple[Sequence[str], Callable[[int], Sequence[Row]]]] = {
     "propagation": (propagation.HEADER, propagation.targets),
     "methods": (method_errors.HEADER, method_errors.measured),
     "match warnings": (match_warnings.HEADER, match_warnings.measured),
+    "drawn traces": (drawn_traces.HEADER, drawn_traces.measured),
     "cheats": (cheats.HEADER, cheats.played),
     "biased aim": (biased_aim.HEADER, biased_aim.scores),
     "equal hands": (equal_hands.HEADER, equal_hands.usual),

@@ -20,10 +20,11 @@ from Testing.error_rates.registered import common_biases, errors_along_skin, reg
 FEW = {
     "goals": 30,
     "next task": 20,
-    "agreement": 20,
+    "agreement": 40,
     "several groups": 5,
     "target errors": 5,
     "learning": 10,
+    "null cohorts": 40,
     "propagation": 5,
     "groups": 10,
     "recovery": 5,
@@ -32,7 +33,15 @@ FEW = {
     "sequences": 15,
 }
 """Fewer data sets for costly tables."""
-COSTLY = {"biased aim", "equal hands", "match warnings", "methods", "played cohort", "slow hands"}
+COSTLY = {
+    "biased aim",
+    "drawn traces",
+    "equal hands",
+    "match warnings",
+    "methods",
+    "played cohort",
+    "slow hands",
+}
 """Computed in full by `make soak` only."""
 
 

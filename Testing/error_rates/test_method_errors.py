@@ -3,6 +3,7 @@
 import pytest
 
 from rastrainer.protocol import RegistrationMethod
+from Testing.error_rates import drawn_traces
 from Testing.error_rates.method_errors import CHUNK, keys, play, stored
 
 
@@ -30,6 +31,16 @@ def test_each_chunk_is_stored_once_and_is_one_of_those_to_be_played():
     assert len(known) == len(set(known))
     assert set(known) <= {(method.value, shift, chunk) for method, shift, chunk in keys(2000)}
     assert {one.trials for one in stored()} == {CHUNK}
+
+
+def test_each_drawn_trace_is_stored_once_and_one_is_drawn_and_matched_again():
+    known = {one.key: one for one in drawn_traces.stored()}
+    assert len(known) == len(drawn_traces.stored())
+    assert set(known) <= set(drawn_traces.keys(drawn_traces.SEEDS))
+    kept = known["colin27", drawn_traces.STROKES, 200, 0.0, 0]
+    again = drawn_traces.play(*kept.key)
+    assert again.error_mm == pytest.approx(kept.error_mm, abs=0.05)
+    assert again.slide_mm == pytest.approx(kept.slide_mm, rel=0.05)
 
 
 @pytest.mark.soak

@@ -1,5 +1,7 @@
 """A procedure's lines, error arrows and table in the scene, also after saving and opening it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from vtk.util.numpy_support import vtk_to_numpy
@@ -29,6 +31,8 @@ def analysis():
     off = transforms.rigid(rotation(random, 2.0), np.array([0.4, -0.7, 0.5]))
     procedure = made_up_procedure()
     done = recorded(procedure, truth @ off, depth=60.0)
+    first, *others = done.instruments
+    done = replace(done, instruments=(replace(first, self_aligned=True), *others))
     return procedure, analyze_procedure(done, procedure, made_up_meshes(), truth)
 
 
@@ -57,7 +61,7 @@ def check(scene, found):
         assert column(scene, "target point error (mm)")[row] == pytest.approx(whole, abs=1e-4)
         split = {
             "registration": np.linalg.norm(shown[1] - plan[1]),
-            "hand": np.linalg.norm(placed[1] - shown[1]),
+            "hand or robot": np.linalg.norm(placed[1] - shown[1]),
         }
         for cause, length in split.items():
             in_table = column(scene, f"target point error, by {cause} (mm)")[row]
@@ -70,6 +74,9 @@ def test_the_lines_in_a_scene_have_the_errors_shown_in_its_table(headless_scene,
     scene, found = headless_scene.scene, analysis[1]
     showProcedureErrors(scene, found)
     check(scene, found)
+    aligned = findNode(scene, "vtkMRMLTableNode", Role.PROCEDURE_ERRORS).GetTable()
+    first, second = map(aligned.GetColumnByName("aligned by").GetValue, (0, 1))
+    assert (first, second) == ("robot", "hand")
     names = [node.GetName() for node in nodesOf(scene, LINE, Role.TRUE_LINE)]
     assert names == ["Left, true", "Right, true"]
     assert all(node.GetLocked() for role in ROLES for node in nodesOf(scene, LINE, role))

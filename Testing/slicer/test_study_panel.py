@@ -62,7 +62,7 @@ def test_a_study_begins_with_a_protocol_only_after_confirmation(panel, tmp_path)
     assert "practice freely" in panel.text("protocolText")
     panel.answer("Begin the study", "Yes")
     panel.press("beginStudyButton")
-    assert panel.text("protocolText") == "Desktop against headset, as in the published study"
+    assert panel.text("protocolText") == "Desktop against headset, after the published study"
     with pytest.raises(AssertionError, match="is hidden"):
         panel.press("beginStudyButton")
 

@@ -316,9 +316,10 @@ def procedure_summary(record: TrialRecord, scenario: Scenario, head_to_world: np
     outcome = procedure_outcome(record, scenario, head_to_world)
     assert outcome is not None, "the trial has a procedure"
     procedure = scenario.procedure(outcome.analysis.record.procedure)
-    lines = [f"{procedure.title}, errors by registration and by hand in brackets"]
+    lines = [f"{procedure.title}, errors by registration and by hand or robot in brackets"]
     for each in outcome.analysis.trajectories:
-        lines.append(f"  {each.trajectory.name}")
+        who = "the robot" if each.instrument.self_aligned else "hand"
+        lines.append(f"  {each.trajectory.name}, aligned by {who}")
         for name, error in (("Target point error", each.target), ("Entry point error", each.entry)):
             parts = f"({error.registration_mm:.2f} and {error.hand_mm:.2f})"
             lines.append(_line(f"  {name}", error.length_mm, f"mm {parts}"))

@@ -189,6 +189,8 @@ class Simulation:
             motion = commanded_motion(command, self._axes.of_camera, tool)
         if isinstance(motion, str):
             return TrainingReply(False, motion)
+        if command.name == CommandName.ALIGN_GUIDE:
+            self._training.note_self_alignment()
         self._teleoperation.start(motion)
         self._operator = command.sender
         return TrainingReply(True)

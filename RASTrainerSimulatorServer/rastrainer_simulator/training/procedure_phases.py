@@ -245,7 +245,8 @@ class ProcedurePhases:
             aligned,
             alignments=aligned.alignments + 1,
             guide=guide,
-            is_self_aligned=GuideAlignment.of(guide, aligned.line).is_exact,
+            is_self_aligned=aligned.is_self_aligned
+            or GuideAlignment.of(guide, aligned.line).is_exact,
             drill_depth=0.0,
         )
         return TrialStep(

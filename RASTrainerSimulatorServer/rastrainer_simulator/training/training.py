@@ -145,6 +145,14 @@ class Training:
             self._kept.leave(left, now.feed)
         return reply
 
+    def note_self_alignment(self) -> None:
+        """Remember that the robot brings the guide onto the current line."""
+        procedure = self.state.procedure
+        assert procedure is not None, "the phase has a procedure"
+        assert procedure.present is not None, "the phase has a trajectory"
+        aligned = replace(procedure.present, is_self_aligned=True)
+        self.state = replace(self.state, procedure=procedure.with_present(aligned))
+
     def trace(self, now: TouchMoment) -> tuple[Event, ...]:
         """Leave a point where the tip is if a stroke is being drawn there; return the events."""
         if not tracing.takes_point(self.state.trace, now, self._settings):

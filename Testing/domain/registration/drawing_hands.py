@@ -1,4 +1,4 @@
-"""Virtual trainees who trace Colin27 with guidance or at will, and what their traces reveal."""
+"""Virtual trainees who trace a head with guidance or in strokes, and what their traces reveal."""
 
 from __future__ import annotations
 
@@ -20,6 +20,8 @@ AIMED_MM = 3.0
 """Standard deviation, on each axis, of where a hand begins that aims at the ring."""
 EACH_LOOK = 4
 """Points that are drawn between two glances at the ring."""
+SHORTEST, LONGEST = 20, 60
+"""Of a stroke without guidance, in points; they are 1 mm apart."""
 
 
 def draw_by_guidance(head: HeadMesh, guide: TraceGuide, seed: int, count: int) -> np.ndarray:
@@ -45,6 +47,30 @@ def draw_by_guidance(head: HeadMesh, guide: TraceGuide, seed: int, count: int) -
                 at = at + heading
             shown = guide.next_place(places, is_drawing=True)
     return places[:count]
+
+
+def draw_in_strokes(
+    head: HeadMesh, rows: np.ndarray, random: np.random.Generator, count: int
+) -> np.ndarray:
+    """Return points (count, 3) of a hand without guidance: straight strokes along the skin.
+
+    Each begins at any of some vertices (rows), and goes in any direction.
+    """
+    lengths = random.integers(SHORTEST, LONGEST + 1, -(-count // SHORTEST))
+    at = head.vertices[random.choice(rows, len(lengths))]
+    heading = random.normal(size=at.shape)
+    path = []
+    for _ in range(LONGEST):
+        nearest = head.skin.tree.nearest(at)
+        path.append(nearest.positions)
+        normals = head.skin.triangle_normals[nearest.triangles]
+        heading -= np.einsum("ij,ij->i", heading, normals)[:, None] * normals
+        heading /= np.linalg.norm(heading, axis=1, keepdims=True)
+        at = nearest.positions + heading
+    strokes = np.stack(path, axis=1)
+    return np.concatenate(
+        [stroke[:length] for stroke, length in zip(strokes, lengths, strict=True)]
+    )[:count]
 
 
 def expected_mm(knowledge: PoseKnowledge, targets: np.ndarray) -> np.ndarray:

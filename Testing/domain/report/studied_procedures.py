@@ -20,10 +20,11 @@ SHIFT_MM = np.array([0.3, 0.4, 0.0])
 TOO_DEEP_MM = 1.2
 
 
-def outcome(kind: ProcedureKind, number: int = 0) -> ProcedureOutcome:
+def outcome(kind: ProcedureKind, number: int = 0, by_robot: bool = False) -> ProcedureOutcome:
     """Return the outcome of a procedure whose lines are shifted, and its instruments too deep.
 
-    `number` makes the shift larger, and the hands stay the same.
+    `number` makes the shift larger, and the hands stay the same. `by_robot` has the robot align the
+    guide on the first line, and the instrument is twice as much too deep there.
     """
     procedure = replace(made_up_procedure(), name=kind.value, kind=kind)
     shift = transforms.rigid(np.eye(3), SHIFT_MM * (1 + number))
@@ -32,20 +33,27 @@ def outcome(kind: ProcedureKind, number: int = 0) -> ProcedureOutcome:
         replace(one, instrument_depth_mm=one.instrument_depth_mm + TOO_DEEP_MM)
         for one in done.instruments
     )
+    if by_robot:
+        twice = deeper[0].instrument_depth_mm + TOO_DEEP_MM
+        first = replace(deeper[0], self_aligned=True, instrument_depth_mm=twice)
+        deeper = (first, *deeper[1:])
     done = replace(done, instruments=deeper)
     analysis = analyze_procedure(done, procedure, made_up_meshes(), np.eye(4))
     return ProcedureOutcome(analysis, score_procedure(ProcedureMeasures.of(analysis), 300.0))
 
 
-def with_procedures(data: StudyData) -> StudyData:
-    """Return a study whose trials continued with a procedure, of each kind in turn."""
+def with_procedures(data: StudyData, by_robot: bool = False) -> StudyData:
+    """Return a study whose trials continued with a procedure, of each kind in turn.
+
+    `by_robot` has the robot align the guide on the first of the two lines of each.
+    """
     kinds = list(ProcedureKind)
     return replace(
         data,
         trials=tuple(
             replace(
                 trial,
-                procedure=StoredProcedure.of(outcome(kinds[row % len(kinds)], row % 4)),
+                procedure=StoredProcedure.of(outcome(kinds[row % len(kinds)], row % 4, by_robot)),
             )
             for row, trial in enumerate(data.trials)
         ),

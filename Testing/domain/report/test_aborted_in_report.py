@@ -71,6 +71,24 @@ def test_a_report_without_aborted_trials_says_so(tmp_path):
     assert "aborted with" not in words
 
 
+def test_started_and_finished_trials_are_those_of_one_method():
+    def row(number, method="fiducials"):
+        values = {"completion_time_s": 90.0, "rmse_mm": 1.0, "score": 90.0}
+        utc = f"2024-05-17T{number + 8:02d}:00:00Z"
+        return TrialRow("A", "hmd", "task-1", number, values, started_utc=utc, method=method)
+
+    def aborted(number, **changes):
+        record = make_aborted(number, trainee="A", mode="hmd", **changes)
+        return StoredAbortedTrial(AbortedTrial.from_json(record))
+
+    rows = (*map(row, range(1, 6)), *(row(number, "landmarks") for number in range(6, 9)))
+    data = StudyData("x", rows, has_order=True, aborted=(aborted(900), aborted(901)))
+    others = tuple(aborted(number, method="landmarks", points=[]) for number in range(902, 905))
+    words = words_of(report_html(replace(data, aborted=(*data.aborted, *others))))
+    assert "5 of 7 started trials were finished" in words
+    assert "leaves out 6 trials by landmarks" in words
+
+
 def test_a_report_of_a_csv_has_no_section_on_started_trials():
     row = TrialRow("A", "hmd", "1", 1, {"completion_time_s": 9.0, "rmse_mm": 1.0})
     assert "started trials" not in words_of(report_html(StudyData("x", (row,))))

@@ -326,7 +326,7 @@ def test_a_large_cohort_gets_tables_curves_and_a_methods_paragraph():
     assert "30 users:" in words
     assert "the means follow a·n^−b + c" in words
     assert "Completion time, s Desktop 30 12 140.2 90.4 −46.2 [" in words
-    assert "< .001 30 / 0 / 0" in words
+    assert "< .001 < .001 30 / 0 / 0" in words
     assert "Motion metrics" in words
     assert "Smoothness, SPARC" in words
     assert "30 trainees did 720 trials" in words

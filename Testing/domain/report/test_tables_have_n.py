@@ -35,7 +35,7 @@ FIRST_CELLS = {
     "Method",
     "Scale",
     "Group",
-    "Procedure",
+    "Kind",
     "Procedure, mean times (s)",
     "trainee",
     "what",

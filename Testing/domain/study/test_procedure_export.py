@@ -40,6 +40,20 @@ def test_both_parts_of_an_error_are_exported_and_depth_errors_add_up(data):
     assert float(first["target_by_registration_mm"]) == pytest.approx(0.5)
 
 
+def test_the_columns_of_the_hand_are_empty_where_the_robot_aligned_the_guide():
+    rows = rows_of(with_procedures(cohort(1), by_robot=True).trials)
+    assert [row["aligned_by"] for row in rows[:2]] == ["robot", "hand"]
+    for row in rows:
+        by_robot = row["aligned_by"] == "robot"
+        for hand, robot in (
+            ("entry_by_hand_mm", "entry_by_robot_mm"),
+            ("target_by_hand_mm", "target_by_robot_and_hand_mm"),
+            ("angle_by_hand_deg", "angle_by_robot_deg"),
+        ):
+            assert (row[hand] == "", row[robot] == "") == (by_robot, not by_robot)
+        assert float(row["depth_by_hand_mm"]) == pytest.approx(TOO_DEEP_MM * (1 + by_robot))
+
+
 def test_trials_without_a_procedure_have_no_row(data):
     touches = [replace(trial, procedure=None) for trial in data.trials]
     assert rows_of(touches) == []

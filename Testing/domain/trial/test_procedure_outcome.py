@@ -58,6 +58,18 @@ def test_a_procedure_is_analyzed_and_scored_once_the_truth_is_known(record):
     assert found.score.reference_s > 400.0
 
 
+def test_a_guide_that_the_robot_aligned_leaves_less_time_and_is_named_in_the_feedback(record):
+    by_hand = analyze_trial(record, SCENARIO, truth=REVEALED).procedure
+    first, *others = record.procedure.instruments
+    instruments = (replace(first, self_aligned=True), *others)
+    changed = replace(record, procedure=replace(record.procedure, instruments=instruments))
+    by_robot = analyze_trial(changed, SCENARIO, truth=REVEALED).procedure
+    assert by_robot.score.reference_s == by_hand.score.reference_s - 30.0
+    assert by_robot.score.score < by_hand.score.score
+    told = [each["selfAligned"] for each in by_robot.summary()["trajectories"]]
+    assert told == [True, *[False] * 4]
+
+
 def test_the_score_of_the_registration_equals_that_of_a_trial_with_touches_only(record):
     alone = replace(record, procedure=None)
     scored = analyze_trial(alone, SCENARIO, truth=REVEALED)

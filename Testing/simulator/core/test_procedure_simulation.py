@@ -179,6 +179,16 @@ def test_the_stick_takes_over_the_guide_from_the_robot(surgeon):
     assert surgeon.state.motion is Motion.NONE
 
 
+def test_a_guide_that_hands_moved_off_after_the_robot_counts_as_aligned_by_the_robot(surgeon):
+    surgeon.to(Phase.ALIGNING)
+    assert surgeon.align() == "reached"
+    for _ in range(20):
+        surgeon.step(RIGHT)
+    assert not surgeon.state.alignment.is_exact
+    surgeon.must(CommandName.LOCK_GUIDE)
+    assert surgeon.state.training.procedure.present.is_self_aligned
+
+
 def test_the_robot_does_not_align_the_guide_where_the_setting_forbids_it(planned):
     procedure = replace(planned.settings.procedure, self_alignment=False)
     setup = replace(planned, settings=replace(planned.settings, procedure=procedure))

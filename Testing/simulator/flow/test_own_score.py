@@ -211,6 +211,9 @@ def test_without_slicer_the_simulator_registers_and_scores_a_procedure(trainee, 
     (line,) = own["details"]["procedure"]["trajectories"]
     assert line["name"] == "Right frontal lesion"
     assert line["targetMm"] > 0.0
+    assert line["selfAligned"]
+    facts = {fact.label: fact.value for fact in trainee.menu.facts}
+    assert facts["Guide aligned by the robot"] == "1 of 1 lines"
 
 
 @pytest.mark.soak

@@ -240,6 +240,11 @@ def scoreText(outcome: ProcedureOutcome) -> str:
         text += " " + _("{trajectory} hit {structure}.").format(
             trajectory=trajectory, structure=structure
         )
+    selfAligned = sum(each.instrument.self_aligned for each in analysis.trajectories)
+    if selfAligned:
+        text += " " + _(
+            "The robot aligned {count} of {lines} lines: only their depth is by hand."
+        ).format(count=selfAligned, lines=len(analysis.trajectories))
     for trajectory in analysis.missed_bone:
         text += " " + _("{trajectory} missed the skull.").format(trajectory=trajectory)
     if not score.acceptable:
@@ -261,6 +266,11 @@ def _row(errors: TrajectoryErrors) -> tuple[str, ...]:
 
 def _tip(errors: TrajectoryErrors) -> str:
     depth, depthShown, depthHand = errors.depth
+    entry = _("Entry: registration {shown} mm, hand {hand} mm.")
+    angle = _("Angle: registration {shown}°, hand {hand}°.")
+    if errors.instrument.self_aligned:
+        entry = _("Entry: registration {shown} mm, robot {hand} mm.")
+        angle = _("Angle: registration {shown}°, robot {hand}°.")
     plunge = "–" if errors.plunge_mm is None else f"{fixed(errors.plunge_mm, 1)} mm"
     lines = [
         _(
@@ -271,10 +281,10 @@ def _tip(errors: TrajectoryErrors) -> str:
             shown=fixed(depthShown, 2),
             hand=fixed(depthHand, 2),
         ),
-        _("Entry: registration {shown} mm, hand {hand} mm.").format(
+        entry.format(
             shown=fixed(errors.entry.registration_mm, 2), hand=fixed(errors.entry.hand_mm, 2)
         ),
-        _("Angle: registration {shown}°, hand {hand}°.").format(
+        angle.format(
             shown=fixed(errors.registration_angle_deg, 2), hand=fixed(errors.hand_angle_deg, 2)
         ),
         _("Plunge depth {plunge}.").format(plunge=plunge),

@@ -8,7 +8,8 @@ error in the head is
     T⁻¹a − p = (T⁻¹R⁻¹p − p) + (T⁻¹a − T⁻¹R⁻¹p)
 
 from the planned point to the reached one: what the registration caused and what the hand caused,
-exactly. All vectors here are in the head's frame, RAS mm.
+exactly. All vectors here are in the head's frame, RAS mm. Where the robot brought the guide onto
+the line (`PlacedInstrument.self_aligned`), the second part is the robot's, but for the depth.
 
 Terms, as in reviews of the accuracy of stereotactic placement (Vakharia et al. 2017,
 10.1111/epi.13713): the entry point error is the distance of the planned entry from the axis of the
@@ -211,6 +212,7 @@ class TrajectoryErrors:
             "guideTipRas": self.axis_start.tolist(),
             "tipRas": self.tip.tolist(),
             "alignments": self.instrument.alignments,
+            "selfAligned": self.instrument.self_aligned,
             "timesS": dict(self.instrument.times_s),
         }
 

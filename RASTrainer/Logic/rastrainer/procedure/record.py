@@ -112,7 +112,8 @@ class PlacedInstrument:
         alignments: how often the guide was locked.
         drill_depth_mm: the deepest that the drill was beyond the guide's tip.
         instrument_depth_mm: where the instrument was released, beyond the guide's tip.
-        self_aligned: whether the robot moved the guide to the plan before it was locked last.
+        self_aligned: whether the robot brought the guide onto the line, before hands changed it or
+            not.
         times_s: by phase, from `aligning` to `inserting`, without pauses.
         feed: metrics of the feed by name, such as the drill's path in mm.
     """

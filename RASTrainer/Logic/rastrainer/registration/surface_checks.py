@@ -158,8 +158,8 @@ def find_match_warnings(
                 "slides",
                 f"The match may slide: targets in the brain may be off by up to "
                 f"{slide.distance_mm:.1f} mm {slide.way}, and the {slide.place} of the head most, "
-                "however small the residual is; trace places that face other ways, such as nose, "
-                "brows, temples and cheeks.",
+                "however small residual and interval are; trace places that face other ways, such "
+                "as nose, brows, temples and cheeks.",
             )
         )
     if measures.rivals or measures.best_starts < LEAST_BEST_SHARE * measures.starts:

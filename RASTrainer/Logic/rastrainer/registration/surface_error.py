@@ -107,7 +107,8 @@ def surface_target_error(
     An offset that all points share, such as that of the tip's calibration, moves the whole head and
     adds 3σ² of its standard deviation on each axis, as with fiducials. The interval is that of
     fiducials, too (`rastrainer.registration.target_error.target_error`), and has the same blind
-    spots: errors that neighboring points share.
+    spots: errors that neighboring points share. Of drawn traces it holds less often; see
+    docs/error-rates.md.
     """
     return error_of_covariance(
         target,

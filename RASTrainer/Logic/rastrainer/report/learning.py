@@ -32,7 +32,7 @@ from rastrainer.statistics.trend import (
     CohortTrend,
     LearningCurve,
     TrendVerdict,
-    cohort_trend,
+    cohort_trends,
     fit_learning_curve,
 )
 from rastrainer.study.outcomes import MAIN_OUTCOMES, Outcome, mode_title, short_mode_title
@@ -51,6 +51,7 @@ HEADER: Line = [
         "last",
         "change [95 %]",
         "p (Page)",
+        "p (Holm)",
     ),
     "alone: better / steady / undecided",
 ]
@@ -60,20 +61,16 @@ Points = dict[str, list[tuple[float, float]]]
 
 def learning(data: StudyData) -> str:
     """Return the curves of each mode over the trials, or over the tasks if the order is unknown."""
+    points, trends = _all_points(data), learning_trends(data)
     charts, rows, sentences = [], [], []
-    for outcome in (o for o in MAIN_OUTCOMES if o.name in SHOWN):
-        for index, mode in enumerate(data.modes):
-            points = _points(data, mode, outcome)
-            if not points:
-                continue
-            series = [[value for _, value in own] for own in points.values()]
-            trend = cohort_trend(series, outcome.better) if data.has_order else None
-            curve = _curve(trend, outcome)
-            charts.append(_chart(data, outcome, mode, index, points, curve))
-            if data.has_order:
-                rows.append(_row(outcome, mode, trend, len(points)))
-            if curve is not None and trend is not None and len(trend.means) >= MIN_CURVE_TRIALS:
-                sentences.append(_sentence(outcome, mode, curve))
+    for (outcome, mode), own in points.items():
+        trend, index = trends.get((outcome, mode)), data.modes.index(mode)
+        curve = _curve(trend, outcome)
+        charts.append(_chart(data, outcome, mode, index, own, curve))
+        if data.has_order:
+            rows.append(_row(outcome, mode, trend, len(own)))
+        if curve is not None and trend is not None and len(trend.means) >= MIN_CURVE_TRIALS:
+            sentences.append(_sentence(outcome, mode, curve))
     return section(
         "Learning curves",
         figure(
@@ -85,6 +82,26 @@ def learning(data: StudyData) -> str:
         bullets(sentences) if sentences else "",
         paragraph(_limits(data)),
     )
+
+
+def learning_trends(data: StudyData) -> dict[tuple[Outcome, str], CohortTrend | None]:
+    """Return how trainees changed, by outcome and mode; nothing if the order is unknown."""
+    if not data.has_order:
+        return {}
+    points = _all_points(data)
+    tested = [
+        ([[value for _, value in own] for own in of_mode.values()], outcome.better)
+        for (outcome, _mode), of_mode in points.items()
+    ]
+    return dict(zip(points, cohort_trends(tested), strict=True))
+
+
+def _all_points(data: StudyData) -> dict[tuple[Outcome, str], Points]:
+    shown = [outcome for outcome in MAIN_OUTCOMES if outcome.name in SHOWN]
+    found = {
+        (outcome, mode): _points(data, mode, outcome) for outcome in shown for mode in data.modes
+    }
+    return {key: points for key, points in found.items() if points}
 
 
 def _points(data: StudyData, mode: str, outcome: Outcome) -> Points:
@@ -138,7 +155,7 @@ def _row(outcome: Outcome, mode: str, trend: CohortTrend | None, trainees: int) 
         outcome.text(trend.means[0]),
         outcome.text(trend.means[-1]),
         change,
-        "–" if trend.p is None else p_text(trend.p),
+        *("–" if p is None else p_text(p) for p in (trend.p, trend.adjusted_p)),
         " / ".join(map(str, counts)),
     ]
 
@@ -156,12 +173,12 @@ def _words() -> str:
     return (
         "First and last: means of the trainees at their first trial and at the last that all of "
         "them did. Change: between these two by each trainee's regression line over ln(trial), the "
-        "mean of all. Page's test "
-        f"(one-sided, {percent(ALPHA)}) asks whether all trainees together get better. Each "
-        "trainee alone: better by the permutation test of the slope (one-sided; one in twenty who "
-        f"do not learn passes it by chance), steady where a change by {percent(STEADY)} of the "
-        "mean is excluded, and undecided where the trials allow both. These tests are not "
-        "corrected for being several."
+        "mean of all. Page's test (one-sided) asks whether all trainees together get better: that "
+        "is shown where its p, corrected by Holm's method for all such tests of this table, is "
+        f"below {percent(ALPHA)}. Each trainee alone: better by the permutation test of the slope "
+        "(one-sided; one in twenty who do not learn passes it by chance), steady where a change by "
+        f"{percent(STEADY)} of the mean is excluded, and undecided where the trials allow both; "
+        "these tests are not corrected for being several."
     )
 
 

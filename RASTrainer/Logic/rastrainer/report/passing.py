@@ -267,7 +267,9 @@ def _words(data: StudyData, mark: float) -> str:
         f"{fewest} trials in a mode cannot show it, even if all are passed: the score of "
         f"{fewest - 1} passed trials would be reached by chance, within {TRAINING_TRIALS} trials, "
         f"by {100 * too_likely:.1f} % of those who fail in {percent(INADEQUATE_FAILURES)}, and at "
-        f"most {percent(FALSE_DISCOVERY)} of them may be called competent."
+        f"most {percent(FALSE_DISCOVERY)} of them may be called competent. This takes "
+        "trials as independent: of trainees who fail as often, but on good days and bad ones, "
+        "several times as many are called competent."
     )
 
 

@@ -1,10 +1,10 @@
-"""Procedures: how much of the target point error the registration and the hands caused."""
+"""Procedures: how much of the target point error registration, hands and robot caused."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -42,9 +42,10 @@ PUBLISHED = (
     ("patients, SEEG", "2.34", "10.1093/neuros/nyaa428"),
 )
 HEADER = (
-    *("Procedure", "n", "lines", "trainees", "target, RMS (mm)", "by registration (mm)"),
-    *("by hand (mm)", "entry, RMS (mm)", "angle, RMS (°)", "deepest plunge (mm)"),
-    *("least distance kept (mm)", "hits", "acceptable"),
+    *("Kind", "n", "lines (by robot)", "trainees", "target, RMS (mm)", "by registration (mm)"),
+    *("by hand (mm)", "by robot and hand (mm)", "entry, RMS (mm)", "angle, RMS (°)"),
+    "deepest plunge (mm)",
+    *("least distance kept (mm) (hits)", "acceptable"),
 )
 PHASES = {
     "running": "touching",
@@ -59,8 +60,8 @@ TIME_HEADER = (
     "alignments a line",
 )
 TRAINEE_HEADER = (
-    *("trainee", "n", "lines", "target, RMS (mm)", "by registration (mm)", "by hand (mm)"),
-    "score, mean",
+    *("trainee", "n", "lines (by robot)", "target, RMS (mm)", "by registration (mm)"),
+    *("by hand (mm)", "by robot and hand (mm)", "score, mean"),
 )
 
 LEAST_TRAINEES = 3
@@ -134,6 +135,12 @@ class _Group:
         """Who carried them out, sorted."""
         return tuple(sorted({trial.trainee for trial in self.trials}))
 
+    def aligned_by(self, *, robot: bool) -> _Group:
+        """Return the same with only the lines on which the robot, or a hand, aligned the guide."""
+        return replace(
+            self, lines=tuple(line for line in self.lines if line["selfAligned"] is robot)
+        )
+
     @property
     def by_trainee(self) -> list[_Group]:
         """The procedures of each trainee, in the order of `trainees`."""
@@ -162,15 +169,18 @@ def procedures(data: StudyData) -> str:
     if len(rows) > 1:
         rows.append(_row("all", everything))
     caption = (
-        "Every trajectory: how far the registration alone put its target, and how far the hand "
-        "ended from there. Below the line, the hand caused the larger part."
+        "Every trajectory whose guide was aligned by hand: how far the registration alone put its "
+        "target, and how far the hand ended from there. Below the line, the hand caused the larger "
+        "part."
     )
+    by_hand = {kind: group.aligned_by(robot=False) for kind, group in kinds.items()}
+    charted = {kind: group for kind, group in by_hand.items() if group.lines}
     return section(
         "Procedures: from the registration to the target",
         bullets(_sentences(everything, len(data.trials))),
         table([list(HEADER)], rows, "wide"),
         paragraph(_explanation(), "small"),
-        figure([split_chart(kinds)], caption),
+        figure([split_chart(charted)], caption) if charted else "",
         table([list(TIME_HEADER)], [_time_row(KINDS[kind][0], kinds[kind]) for kind in kinds]),
         heading("Trainees"),
         table([list(TRAINEE_HEADER)], _trainee_rows(everything)),
@@ -189,19 +199,52 @@ def procedures(data: StudyData) -> str:
 
 def _sentences(group: _Group, trials: int) -> list[str]:
     registration = group.rms("targetPointError", "byRegistrationMm")
-    hand = group.rms("targetPointError", "byHandMm")
     return [
         f"{len(group.trials)} of {counted(trials, 'trial')} continued with a procedure: "
         f"{counted(len(group.lines), 'line')} in all, by "
         f"{counted(len(group.trainees), 'trainee')}. The target point error was "
         f"{fixed(group.rms('targetPointError'), 2)} mm (RMS over all lines); the part that the "
-        f"registration caused was {fixed(registration, 2)} mm, that of the hands "
-        f"{fixed(hand, 2)} mm.",
+        f"registration caused was {fixed(registration, 2)} mm.",
+        *_after_registration(group),
         *_over_trainees(group),
         f"{group.acceptable} of {len(group.trials)} procedures were acceptable "
         f"({percent(group.acceptable / len(group.trials))}); "
         f"{_hits(group.hits)}.",
     ]
+
+
+def _after_registration(group: _Group) -> list[str]:
+    """Return what hands and robot caused, on the lines that each of them aligned."""
+    said = (
+        (False, "by hand: there the hands caused", "mm."),
+        (
+            True,
+            "by the robot: there robot and hands caused",
+            "mm, of which only the depth is by hand. Comparisons of hands and registration leave "
+            "these lines out.",
+        ),
+    )
+    return [
+        f"{_lines(group, robot=robot)} aligned {words} {_rms_text(group, robot=robot)} {rest}"
+        for robot, words, rest in said
+        if group.aligned_by(robot=robot).lines
+    ]
+
+
+def _rms_text(group: _Group, *, robot: bool) -> str:
+    """Return what the registration did not cause of the target point error; "–" without lines."""
+    own = group.aligned_by(robot=robot)
+    return fixed(own.rms("targetPointError", "byHandMm"), 2) if own.lines else "–"
+
+
+def _lines(group: _Group, *, robot: bool) -> str:
+    count = len(group.aligned_by(robot=robot).lines)
+    return f"{counted(count, 'line')} {'was' if count == 1 else 'were'}"
+
+
+def _lines_cell(group: _Group) -> str:
+    by_robot = len(group.aligned_by(robot=True).lines)
+    return f"{len(group.lines)} ({by_robot})" if by_robot else str(len(group.lines))
 
 
 def _hits(count: int) -> str:
@@ -211,11 +254,15 @@ def _hits(count: int) -> str:
 
 
 def _over_trainees(group: _Group) -> list[str]:
-    """Return the errors over the trainees, whose lines are not independent; nothing for too few."""
-    if len(group.trainees) < LEAST_TRAINEES:
+    """Return the errors on lines aligned by hand, over the trainees; nothing for too few.
+
+    Lines of a trainee are not independent.
+    """
+    trainees = [one for own in group.by_trainee if (one := own.aligned_by(robot=False)).lines]
+    if len(trainees) < LEAST_TRAINEES:
         return []
     own = [
-        [one.rms("targetPointError", part) for one in group.by_trainee]
+        [one.rms("targetPointError", part) for one in trainees]
         for part in ("mm", "byRegistrationMm", "byHandMm")
     ]
     whole, registration, hand = map(np.array, own)
@@ -226,8 +273,8 @@ def _over_trainees(group: _Group) -> list[str]:
     elif difference.interval[1] < 0:
         verdict = "the hands caused more than the registration"
     return [
-        f"Each trainee's own RMS was {_on_average(spread)}.",
-        f"Over {len(group.trainees)} trainees, {verdict}: registration minus hands, as RMS of each "
+        f"On lines aligned by hand, each trainee's own RMS was {_on_average(spread)}.",
+        f"Over {len(trainees)} trainees, {verdict}: registration minus hands, as RMS of each "
         f"trainee, was {_on_average(difference)}.",
     ]
 
@@ -241,16 +288,15 @@ def _row(title: str, group: _Group) -> list[str]:
     return [
         title,
         str(len(group.trials)),
-        str(len(group.lines)),
+        _lines_cell(group),
         str(len(group.trainees)),
         fixed(group.rms("targetPointError"), 2),
         fixed(group.rms("targetPointError", "byRegistrationMm"), 2),
-        fixed(group.rms("targetPointError", "byHandMm"), 2),
+        *(_rms_text(group, robot=robot) for robot in (False, True)),
         fixed(group.rms("entryPointError"), 2),
         fixed(group.angle_deg, 2),
         fixed(group.plunge_mm, 1),
-        "–" if group.least_kept_mm is None else fixed(group.least_kept_mm, 1),
-        str(group.hits),
+        "–" if group.least_kept_mm is None else f"{fixed(group.least_kept_mm, 1)} ({group.hits})",
         f"{group.acceptable} of {len(group.trials)}",
     ]
 
@@ -276,10 +322,10 @@ def _trainee_rows(everything: _Group) -> list[list[str]]:
         [
             name,
             str(len(group.trials)),
-            str(len(group.lines)),
+            _lines_cell(group),
             fixed(group.rms("targetPointError"), 2),
             fixed(group.rms("targetPointError", "byRegistrationMm"), 2),
-            fixed(group.rms("targetPointError", "byHandMm"), 2),
+            *(_rms_text(group, robot=robot) for robot in (False, True)),
             fixed(float(np.mean(group.scores)), 1),
         ]
         for name, group in zip(everything.trainees, everything.by_trainee, strict=True)
@@ -291,7 +337,8 @@ def _explanation() -> str:
         "n counts procedures. RMS are over all lines, which are not independent: those of one "
         "procedure share a registration. The trainee saw the plan where their own registration put "
         "it; the error of each target is the sum of two vectors, from the plan to where it was "
-        "shown, and from there to the instrument's tip. Their lengths do not add up: the two parts "
+        "shown, and from there to the instrument's tip: the second is the hand's, or the robot's "
+        "where it brought the guide onto the line. Their lengths do not add up: the two parts "
         "may cancel out. A procedure is acceptable where each instrument meets the skull, no entry "
         f"is off by more than {ENTRY_LIMIT_MM:g} mm, no target by more than {TARGET_LIMIT_MM:g} mm "
         f"and no line by more than {ANGLE_LIMIT_DEG:g}°, no drill goes more than "

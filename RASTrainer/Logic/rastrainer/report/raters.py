@@ -50,8 +50,9 @@ _INTRODUCTION = (
 )
 _NOTE = (
     "ICC: two-way random effects, absolute agreement, of a single rater and of the mean of all "
-    "(Shrout and Fleiss 1979; limits: McGraw and Wong 1996). κ: quadratic weights (Cohen 1968; "
-    "limits by the jackknife on Fisher's z). Words: below 0.5 poor, to 0.75 moderate, to 0.9 good, "
+    "(Shrout and Fleiss 1979; limits: generalized, Weerahandi 1993; two raters say little about "
+    "others, so that three or more narrow them most). κ: quadratic weights (Cohen 1968; limits by "
+    "the jackknife on Fisher's z). Words: below 0.5 poor, to 0.75 moderate, to 0.9 good, "
     "above excellent (Koo and Li 2016). All take replays as independent, which those of one "
     "trainee are not quite."
 )

@@ -13,13 +13,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.statistics.intervals import mean, scipy_module
+from rastrainer.statistics.paired import holm
 
 ALPHA = 0.05
 MIN_TRIALS = 4
@@ -143,6 +144,7 @@ class CohortTrend:
             None of a single one.
         interval: 95 % interval of it; None of a single one.
         p: One-sided, of all getting better (Page's test); None of a single one.
+        adjusted_p: The same, adjusted for all tests of a study; None of a single one.
         verdicts: How many trainees alone show what.
     """
 
@@ -151,23 +153,40 @@ class CohortTrend:
     change: float | None
     interval: tuple[float, float] | None
     p: float | None
+    adjusted_p: float | None
     verdicts: Counter[TrendVerdict]
 
     @property
     def is_shown(self) -> bool:
         """Whether getting better is more than chance."""
-        if self.p is None:
+        if self.adjusted_p is None:
             return self.verdicts[TrendVerdict.FALLS] > 0
-        return self.p < ALPHA
+        return self.adjusted_p < ALPHA
 
 
-def cohort_trend(series: Sequence[Sequence[float]], better: int) -> CohortTrend | None:
-    """Return the trend of several trainees; None if no trainee has four trials.
+Series = Sequence[Sequence[float]]
+
+
+def cohort_trends(tested: Sequence[tuple[Series, int]]) -> list[CohortTrend | None]:
+    """Return the trend of several trainees in each of some outcomes, with p adjusted (Holm).
+
+    There is none where no trainee has four trials.
 
     Args:
-        series: Of each trainee the values of all trials, in their order.
-        better: -1 where less is better, 1 where more is.
+        tested: Of each outcome, the values of all trials of each trainee, in their order; and -1
+            where less is better, 1 where more is.
     """
+    found = [_cohort_trend(*each) for each in tested]
+    p_values = {
+        place: each.p for place, each in enumerate(found) if each is not None and each.p is not None
+    }
+    adjusted = dict(zip(p_values, holm(np.array([*p_values.values()])).tolist(), strict=True))
+    return [
+        each and replace(each, adjusted_p=adjusted.get(place)) for place, each in enumerate(found)
+    ]
+
+
+def _cohort_trend(series: Series, better: int) -> CohortTrend | None:
     long = [np.asarray(own, dtype=float) for own in series if len(own) >= MIN_TRIALS]
     if not long:
         return None
@@ -180,7 +199,8 @@ def cohort_trend(series: Sequence[Sequence[float]], better: int) -> CohortTrend 
         changes = mean(rows @ change_weights(common))
         change, interval = changes.value, changes.interval
         p = cohort_trend_p(toward * rows)
-    return CohortTrend(len(rows), tuple(rows.mean(axis=0).tolist()), change, interval, p, verdicts)
+    means = tuple(rows.mean(axis=0).tolist())
+    return CohortTrend(len(rows), means, change, interval, p, p, verdicts)
 
 
 MIN_FIT_TRIALS = 5

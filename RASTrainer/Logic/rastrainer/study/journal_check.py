@@ -47,7 +47,7 @@ def check_journal(
         _check_record(record, entries[0], registered)
         _check_touches(record, [e for e in entries if e["n"] < registered["n"]])
         _check_motion(record, entries)
-        _check_pose(truth, entries[0], registered, scenario)
+        _check_pose(truth, registered, scenario)
     except InputError:
         raise
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:

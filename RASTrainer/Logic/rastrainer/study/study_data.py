@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
@@ -318,7 +319,8 @@ def _procedure_values(procedure: StoredProcedure) -> dict[str, float]:
         "procedure_duration_s": analysis["durationS"],
         "procedure_target_rms_mm": analysis["targetPointErrorRmsMm"],
         "procedure_target_by_registration_rms_mm": analysis["targetPointErrorByRegistrationRmsMm"],
-        "procedure_target_by_hand_rms_mm": analysis["targetPointErrorByHandRmsMm"],
+        **_of_hands(procedure),
+        "procedure_self_aligned": float(procedure.self_aligned),
         "procedure_entry_rms_mm": analysis["entryPointErrorRmsMm"],
         "procedure_angle_rms_deg": analysis["angularDeviationRmsDeg"],
         "procedure_alignments": float(analysis["alignments"]),
@@ -326,6 +328,19 @@ def _procedure_values(procedure: StoredProcedure) -> dict[str, float]:
         "procedure_plunge_mm": score.measures.plunge_mm,
         "procedure_hits": float(score.measures.hits),
     }
+
+
+def _of_hands(procedure: StoredProcedure) -> dict[str, float]:
+    """Return what hands caused on the trajectories that they aligned; nothing without any."""
+    lengths = [
+        one["targetPointError"]["byHandMm"]
+        for one in procedure.trajectories
+        if not one["selfAligned"]
+    ]
+    if not lengths:
+        return {}
+    rms = math.sqrt(sum(length**2 for length in lengths) / len(lengths))
+    return {"procedure_target_by_hand_rms_mm": rms}
 
 
 def _score_parts(score: TrialScore) -> dict[str, float]:

@@ -38,10 +38,11 @@ ABORTED_TOUCH_COLUMNS = (
 )
 PROCEDURE_COLUMNS = (
     *("trainee", "mode", "task", "number", "trial_id", "procedure", "kind", "trajectory"),
-    *("entry_mm", "entry_by_registration_mm", "entry_by_hand_mm"),
-    *("target_mm", "target_by_registration_mm", "target_by_hand_mm"),
+    *("aligned_by", "entry_mm", "entry_by_registration_mm", "entry_by_hand_mm"),
+    *("entry_by_robot_mm", "target_mm", "target_by_registration_mm", "target_by_hand_mm"),
+    "target_by_robot_and_hand_mm",
     *("radial_mm", "depth_mm", "depth_by_registration_mm", "depth_by_hand_mm"),
-    *("angle_deg", "angle_by_registration_deg", "angle_by_hand_deg"),
+    *("angle_deg", "angle_by_registration_deg", "angle_by_hand_deg", "angle_by_robot_deg"),
     *("plunge_mm", "nearest_no_go", "kept_mm", "alignments"),
     *("aligning_s", "drilling_s", "inserting_s", "procedure_score", "procedure_score_version"),
 )
@@ -175,8 +176,10 @@ def touches_csv(trials: Iterable[tuple[TrialRow, StoredTrial]]) -> str:
 def procedures_csv(trials: Iterable[TrialRow]) -> str:
     """Return the errors of procedures against the truth as CSV, one trajectory per row.
 
-    Both parts of an error are lengths of vectors, which do not add up; depth errors do. A plunge
-    depth is empty where the instrument missed the skull.
+    What is not due to the registration is in the columns of the hand where hands aligned the guide,
+    and in those of the robot where it did, in which only the depth is by hand. Both parts of an
+    error are lengths of vectors, which do not add up; depth errors do. A plunge depth is empty
+    where the instrument missed the skull.
     """
     rows = []
     for trial in trials:
@@ -197,18 +200,30 @@ def _error_cells(errors: Mapping[str, Any]) -> list[str]:
     entry, target = errors["entryPointError"], errors["targetPointError"]
     kept = errors["keptMm"]
     nearest = min(kept, key=kept.get, default="")
-    lengths = [e[key] for e in (entry, target) for key in ("mm", "byRegistrationMm", "byHandMm")]
-    keys = (
-        *("depthErrorMm", "depthErrorByRegistrationMm", "depthErrorByHandMm"),
-        *("angularDeviationDeg", "angularDeviationByRegistrationDeg", "angularDeviationByHandDeg"),
-        "plungeMm",
-    )
+    is_robot = errors["selfAligned"]
+
+    def parts(whole: float, by_registration: float, others: float) -> list[str]:
+        by_hand, by_robot = (None, others) if is_robot else (others, None)
+        return [_number(value) for value in (whole, by_registration, by_hand, by_robot)]
+
+    depth = ("depthErrorMm", "depthErrorByRegistrationMm", "depthErrorByHandMm")
     times = errors["timesS"]
     return [
         plain_cell(errors["trajectory"]),
-        *map(_number, lengths),
+        "robot" if is_robot else "hand",
+        *(
+            cell
+            for error in (entry, target)
+            for cell in parts(error["mm"], error["byRegistrationMm"], error["byHandMm"])
+        ),
         _number(errors["radialError"]["mm"]),
-        *(_number(errors[key]) for key in keys),
+        *(_number(errors[key]) for key in depth),
+        *parts(
+            errors["angularDeviationDeg"],
+            errors["angularDeviationByRegistrationDeg"],
+            errors["angularDeviationByHandDeg"],
+        ),
+        _number(errors["plungeMm"]),
         plain_cell(nearest),
         _number(kept.get(nearest)),
         str(errors["alignments"]),

@@ -40,6 +40,8 @@ MAX_MEASURE = 1e6
 
 VERIFYING_S, ALIGNING_S, DRILLING_S, HANDLING_S = 15.0, 45.0, 15.0, 10.0
 """Times of the reference: once, and three for each trajectory. Our own convention."""
+SELF_ALIGNING_S = 15.0
+"""In place of the time for aligning, where the robot aligned the guide."""
 STAND_OFF_MM, INSERTION_MM_S = 30.0, 8.0
 """Distance that the instrument travels before its entry, and its speed, in the reference."""
 
@@ -172,19 +174,21 @@ class ProcedureScore:
         )
 
 
-def reference_duration_s(touching_s: float, procedure: Procedure) -> float:
+def reference_duration_s(touching_s: float, procedure: Procedure, self_aligned: int = 0) -> float:
     """Return the reference duration of a procedure.
 
     Args:
         touching_s: reference time of the trial's task, which is touched first.
         procedure: the plan; a longer trajectory takes longer.
+        self_aligned: on how many trajectories the robot aligned the guide, which takes less time.
     """
     inserting = sum(
         (STAND_OFF_MM + trajectory.length_mm) / INSERTION_MM_S
         for trajectory in procedure.trajectories
     )
     each = ALIGNING_S + DRILLING_S + HANDLING_S
-    return touching_s + VERIFYING_S + each * len(procedure.trajectories) + inserting
+    saved = self_aligned * (ALIGNING_S - SELF_ALIGNING_S)
+    return touching_s + VERIFYING_S + each * len(procedure.trajectories) + inserting - saved
 
 
 def score_procedure(measures: ProcedureMeasures, reference_s: float) -> ProcedureScore:
@@ -304,7 +308,8 @@ def procedure_outcome(
         )
     analysis = analyze_procedure(done, procedure, meshes, head_to_world)
     touching = score_reference(scenario, record.task, references, record.method).time_s
-    reference_s = reference_duration_s(touching, procedure)
+    self_aligned = sum(one.self_aligned for one in done.instruments)
+    reference_s = reference_duration_s(touching, procedure, self_aligned)
     score = score_procedure(ProcedureMeasures.of(analysis), reference_s)
     return ProcedureOutcome(analysis, score)
 
@@ -314,6 +319,7 @@ def _summary(errors: TrajectoryErrors) -> dict[str, Any]:
     depth, depth_by_registration, depth_by_hand = errors.depth
     return {
         "name": errors.trajectory.name,
+        "selfAligned": errors.instrument.self_aligned,
         "targetMm": errors.target.length_mm,
         "byRegistrationMm": errors.target.registration_mm,
         "byHandMm": errors.target.hand_mm,

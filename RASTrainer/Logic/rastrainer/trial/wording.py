@@ -73,7 +73,7 @@ ENGLISH: Mapping[str, str] = {
     "by fiducials.",
     "competent": "Your trials have shown competence since number {number}: of those who still fail "
     "in {failing:.0f} % of their trials, {risk:.0f} % get this far by chance within {trials} "
-    "trials (LC-CUSUM).",
+    "trials, and more where good and bad days alternate (LC-CUSUM).",
     "not competent": "{share:.0f} % of the way to demonstrated competence (LC-CUSUM; trials so "
     "far: {trials}).",
 }

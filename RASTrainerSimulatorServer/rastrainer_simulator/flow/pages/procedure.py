@@ -126,7 +126,18 @@ def procedure_facts(session: TrainingSession, result: TrialResult) -> list[Fact]
     if None not in numbers:
         values = dict(zip(("error", "registration", "hand"), numbers, strict=True))
         facts.append(Fact(say("procedure-errors.rms"), say("procedure-errors.split mm", **values)))
+    each = _trajectories_of(details)
+    aligned = sum(one.get("selfAligned") is True for one in each)
+    if aligned:
+        text = say("procedure-errors.robot lines", count=aligned, lines=len(each))
+        facts.append(Fact(say("procedure-errors.robot"), text))
     return facts
+
+
+def _trajectories_of(details: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
+    found = details.get("trajectories")
+    listed = found[:MAX_TRAJECTORIES] if isinstance(found, list) else []
+    return [each for each in listed if isinstance(each, dict)]
 
 
 class ProcedureErrorsPage(SessionPage):
@@ -146,7 +157,8 @@ class ProcedureErrorsPage(SessionPage):
         choice = (self.choice("trajectory", _name(details)),) if several else ()
         title = self.say("procedure-errors.title", name=_name(details))
         items: tuple[MenuItem, ...] = (*choice, self.button("lines"), self.button("back"))
-        texts = (self.say("procedure-errors.text"),)
+        by_robot = details.get("selfAligned") is True
+        texts = (self.say("procedure-errors.robot text" if by_robot else "procedure-errors.text"),)
         return Menu(self.name, title, texts, tuple(self._facts(details)), items)
 
     def accept(self, item: str) -> None:
@@ -162,9 +174,7 @@ class ProcedureErrorsPage(SessionPage):
 
     @property
     def _trajectories(self) -> Sequence[Mapping[str, Any]]:
-        found = procedure_details(self.session.training.result).get("trajectories")
-        listed = found[:MAX_TRAJECTORIES] if isinstance(found, list) else []
-        return [each for each in listed if isinstance(each, dict)]
+        return _trajectories_of(procedure_details(self.session.training.result))
 
     def _facts(self, details: Mapping[str, Any]) -> list[Fact]:
         facts = []

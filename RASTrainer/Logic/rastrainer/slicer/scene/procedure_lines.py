@@ -294,7 +294,7 @@ def _newLine(scene: Any, role: str) -> Any:
 def _showArrows(scene: Any, each: Sequence[TrajectoryErrors]) -> None:
     for role, name, color in (
         (Role.ERRORS_BY_REGISTRATION, _("Errors due to registration"), REGISTERED_COLOR),
-        (Role.ERRORS_BY_HAND, _("Errors due to the hand"), PLACED_COLOR),
+        (Role.ERRORS_BY_HAND, _("Errors due to hand or robot"), PLACED_COLOR),
     ):
         append = vtk.vtkAppendPolyData()
         for errors in each:
@@ -318,7 +318,7 @@ def _showTable(scene: Any, each: Sequence[TrajectoryErrors]) -> Any:
         return [
             Column(f"{title} (mm)", [split.length_mm for split in splits]),
             Column(f"{title}, by registration (mm)", [s.registration_mm for s in splits]),
-            Column(f"{title}, by hand (mm)", [split.hand_mm for split in splits]),
+            Column(f"{title}, by hand or robot (mm)", [split.hand_mm for split in splits]),
         ]
 
     depths = [errors.depth for errors in each]
@@ -328,6 +328,11 @@ def _showTable(scene: Any, each: Sequence[TrajectoryErrors]) -> Any:
         "Procedure errors",
         [
             Column("trajectory", [errors.trajectory.name for errors in each], isText=True),
+            Column(
+                "aligned by",
+                ["robot" if errors.instrument.self_aligned else "hand" for errors in each],
+                isText=True,
+            ),
             *parts("entry point error", [errors.entry for errors in each]),
             *parts("target point error", [errors.target for errors in each]),
             Column("radial error (mm)", [errors.radial.length_mm for errors in each]),
@@ -336,7 +341,7 @@ def _showTable(scene: Any, each: Sequence[TrajectoryErrors]) -> Any:
             Column("depth error, by hand (mm)", [hand for _whole, _shown, hand in depths]),
             Column("angular deviation (°)", [errors.angle_deg for errors in each]),
             Column("angle by registration (°)", [errors.registration_angle_deg for errors in each]),
-            Column("angle by hand (°)", [errors.hand_angle_deg for errors in each]),
+            Column("angle by hand or robot (°)", [errors.hand_angle_deg for errors in each]),
             Column("plunge depth (mm)", [errors.plunge_mm for errors in each]),
             Column(
                 "distance kept (mm)",

@@ -110,7 +110,10 @@ def _procedureRows(procedure: StoredProcedure) -> list[Row]:
     """Return the score of a procedure, beside that of the touches, and its errors."""
     score, analysis = procedure.score, procedure.analysis
     version = _("Version {v}") if score.acceptable else _("not acceptable; version {v}")
-    split = _("registration {registration} mm, hand {hand} mm").format(
+    split = _("registration {registration} mm, hand {hand} mm")
+    if procedure.self_aligned:
+        split = _("registration {registration} mm, robot and hand {hand} mm")
+    split = split.format(
         registration=fixed(analysis["targetPointErrorByRegistrationRmsMm"], 2),
         hand=fixed(analysis["targetPointErrorByHandRmsMm"], 2),
     )

@@ -139,6 +139,11 @@ class StoredProcedure:
     analysis: Mapping[str, Any]
     score: ProcedureScore
 
+    @property
+    def self_aligned(self) -> int:
+        """On how many trajectories the robot aligned the guide."""
+        return sum(bool(one["selfAligned"]) for one in self.trajectories)
+
     @classmethod
     def of(cls, outcome: ProcedureOutcome) -> StoredProcedure:
         """Return an outcome for storage."""
