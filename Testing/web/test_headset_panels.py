@@ -187,7 +187,7 @@ def test_a_banner_is_in_the_room_above_the_head_and_not_in_the_close_up(work):
 CLOSE_UP = """async (inset) => {
   const { headset, stage } = page;
   const { closeUp, room } = headset.panels;
-  for (let turn = 0; turn < 3; turn++) closeUp.draw(stage, room, inset);
+  for (let turn = 0; turn < 3; turn++) closeUp.draw(stage, room, { ...page.state, inset });
   const { x, y, z } = closeUp.camera.position;
   return [[x, -z, y], closeUp.camera.fov];
 }"""
@@ -267,6 +267,11 @@ WITHOUT_ROOM = """() => {
   page.headset.showScreen(page.screen);
   CanvasRenderingContext2D.prototype.fillText = fillText;
   const found = written.length > 0 ? [] : ["nothing is written"];
+  const items = page.screen.menu?.items ?? [];
+  const isLocked = items.some(({ is_enabled }) => !is_enabled);
+  if (!isLocked && items.length > 1 && panels.menu.regions.length < 2) {
+    found.push("only one choice is in sight");
+  }
   written.forEach((one, index) => {
     // Texts of its own that end so have a space before the dots.
     if (/[^ ]…$/.test(one.text)) found.push(`${one.text} is cut`);

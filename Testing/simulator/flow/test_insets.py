@@ -7,6 +7,7 @@ import pytest
 
 from rastrainer_simulator.flow.session.trial_view import AWAY_M, TALLEST_M, across_line, along_skin
 from rastrainer_simulator.trial_state import PlannedLine
+from rastrainer_simulator.viewpoint.view_control import UP
 
 EYE = (0.5, -0.6, 0.6)
 LINES = {
@@ -56,10 +57,10 @@ def test_a_faraway_tool_does_not_shrink_the_line_beyond_visibility():
 
 
 def test_the_view_along_the_skin_widens_the_farther_the_tip_is():
-    fiducial, eye, normal = (0.5, 0.1, 0.25), (0.72, 0.1, 0.25), (0.0, 1.0, 0.0)
+    fiducial, eye = (0.5, 0.1, 0.25), (0.72, 0.1, 0.25)
     near, far, farther = (
-        along_skin(eye, fiducial, normal, (0.5, 0.1 + away, 0.25)) for away in (0.0, 0.1, 5.0)
+        along_skin(eye, fiducial, (0.5, 0.1 + away, 0.25)) for away in (0.0, 0.1, 5.0)
     )
     assert near.angle_deg < far.angle_deg < farther.angle_deg < 90.0
-    assert near.view_up == normal
+    assert near.view_up == UP
     assert (near.position, near.focal_point) == (eye, fiducial)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-import time
 
 import numpy as np
 import pytest
@@ -172,11 +171,6 @@ def test_the_worst_touch_is_shown_from_where_it_is_seen_best(result):
         return np.linalg.norm(np.cross(fiducial - eye, line)) < 0.001
 
     assert not sees_it()
-    # The best views are looked for in a thread beside, one after the other: the replay waits.
-    give_up = time.monotonic() + PATIENCE_S
-    while view._best.of(label) is None:
-        assert time.monotonic() < give_up, f"no best view of {label}"
-        time.sleep(0.01)
     result.until(sees_it, "the best view")
 
 

@@ -9,7 +9,15 @@ from rastrainer.head.mesh import hides, outward_normals, read_head_mesh
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.scenario_check import check_tasks
-from rastrainer_simulator.viewpoint.best_view import BESIDE_DEG, TouchViews
+from rastrainer_simulator.viewpoint.best_view import (
+    BESIDE_DEG,
+    STEEPEST_DEG,
+    HeldTool,
+    PointViews,
+    TouchViews,
+    ViewedPoint,
+    best_view,
+)
 from Testing.simulator.authoring.planned_heads import setup_of
 
 SEEDS = (None, *(pytest.param(seed, marks=pytest.mark.soak) for seed in (11, 12)))
@@ -70,6 +78,40 @@ def test_every_touch_is_visible_within_60_degrees_of_the_normal(made, mesh, view
 
 def degrees(a, b):
     return math.degrees(math.acos(np.dot(a, b) / np.linalg.norm(a) / np.linalg.norm(b)))
+
+
+class SightFrom:
+    """Leaves a point visible only from eyes whose line to it rises or falls by some degrees."""
+
+    def __init__(self, least_deg, most_deg):
+        self.range_deg = least_deg, most_deg
+
+    def is_past_head(self, eye, place):
+        least, most = self.range_deg
+        return least <= abs(90.0 - degrees(np.subtract(eye, place), (0.0, 0.0, 1.0))) < most
+
+    def is_free(self, eye, place):
+        return self.is_past_head(eye, place)
+
+    def off_links(self, eyes, _place):
+        return np.ones(len(eyes))
+
+    off_tool = off_links
+
+
+@pytest.mark.parametrize("normal", [(1.0, 0.0, 0.0), (0.6, 0.0, 0.8), (0.0, 0.8, -0.6)])
+def test_the_view_along_the_skin_rises_or_falls_by_at_most_45_degrees(normal):
+    fiducial = (0.5, 0.1, 0.3)
+    eyes = np.array([np.add(fiducial, 0.5 * np.array(normal))])
+    views = PointViews(ViewedPoint(fiducial, normal, fiducial), eyes, None)
+
+    def beside(least_deg, most_deg):
+        held = HeldTool((0.5, 0.1, 0.9), (0.0, 0.0, -1.0), SightFrom(least_deg, most_deg))
+        return best_view(views, [held]).beside
+
+    assert STEEPEST_DEG == 45.0
+    assert beside(0.0, 45.0) is not None
+    assert beside(46.0, 91.0) is None
 
 
 def test_the_default_camera_alone_leaves_many_touches_hidden(setup):

@@ -1,7 +1,7 @@
 /** The keys, sent to the simulator as they are; it knows what each does. */
 
+import { keyNames, learnKeyName, readKeyNames } from "../key_names";
 import type { Connection } from "../stream/connection";
-import { keyNames, learnKeyName, readKeyNames } from "./key_names";
 
 /** These stay the browser's own. */
 const BROWSERS = new Set(["F3", "F5", "F6", "F11", "F12", "MetaLeft", "MetaRight", "AltLeft", "Tab"]);

@@ -295,7 +295,7 @@ export class Page {
   private drawFlat(flat: FlatView, now: number, model: SceneModel, state: StateNews): void {
     if (this.screen?.menu == null) this.mouse.tell();
     flat.choose(state, now, this.worn?.place(now) ?? null);
-    const hasMoved = flat.fit() || flat.advance(now) || this.isDue;
+    const hasMoved = flat.advance(now) || this.isDue;
     if (!model.pulse(now) && !hasMoved) return;
     this.isDue = false;
     this.place(model);

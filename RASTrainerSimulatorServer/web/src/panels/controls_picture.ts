@@ -1,6 +1,6 @@
 /** A drawing of what the trainee has in their hands; the inputs that do something are colored. */
 
-import { nameOf } from "../input/key_names";
+import { nameOf } from "../key_names";
 import type { Menu } from "../stream/messages";
 import { say, type TextName } from "../texts";
 import { COLORS } from "./pen";

@@ -5,22 +5,21 @@ import { COLORS, LINE, TONES, type Pen, type TextStyle } from "./pen";
 import type { Region } from "./panel";
 
 const PAD = 48;
+const TOP = 42;
 const ROW = 68;
 const GAP = 8;
 const BAR = 10;
-const FACT = 46;
 const GAP_OF_FACT = 24;
 const GAP_OF_VALUE = 32;
 const PICTURE = 300;
-const TITLE = { size: 52, color: COLORS.text, isBold: true };
-const BODY = { size: 33, color: COLORS.soft };
-/** Smaller where the choices would have no room. */
-const BODY_SIZES = [33, 30, 27, 24];
+/** Of paragraphs and labels, and with them title and values: smaller where the choices would have no room. */
+const SIZES = [33, 30, 27, 24] as const;
 /** How many choices are seen at least, if there are so many. */
 const LEAST_ROWS = 4;
+const GAP_OF_TITLE = 14;
 const GAP_OF_TEXT = 12;
+const GAP_OF_FACTS = 10;
 const VALUE = { size: 34, color: COLORS.text, isBold: true };
-const FACT_VALUE = { ...VALUE, size: 32 };
 const LABEL = { size: 34, color: COLORS.text };
 const PALE = { size: 34, color: COLORS.pale };
 const HELP = { size: 29, color: COLORS.soft };
@@ -35,20 +34,17 @@ export function paintMenu(
   image: HTMLImageElement | null,
 ): Region[] {
   const room = width - 2 * PAD;
-  let y = PAD - 6;
-  y += pen.paragraph(menu.title, PAD, y, TITLE, room) + 14;
   const help = menu.items.find((item) => item.name === menu.focus)?.help ?? "";
   const helpHeight = help === "" ? 0 : pen.wrapped(help, HELP, room).length * 38;
   const hasPicture = menu.trend !== null || menu.items.some((item) => item.picture !== "");
-  const others =
-    menu.facts.reduce((sum, fact) => sum + heightOf(pen, fact, room), 10) +
-    (hasPicture ? PICTURE + GAP : 0) +
-    Math.min(menu.items.length, LEAST_ROWS) * (ROW + GAP) +
-    helpHeight;
-  const body = bodyFor(pen, menu.paragraphs, room, height - y - others - PAD);
-  for (const text of menu.paragraphs) y += pen.paragraph(text, PAD, y, body, room) + GAP_OF_TEXT;
-  for (const fact of menu.facts) y += paintFact(pen, fact, y, width);
-  y += 10;
+  const below = (hasPicture ? PICTURE + GAP : 0) + Math.min(menu.items.length, LEAST_ROWS) * (ROW + GAP) + helpHeight + PAD;
+  const styles = SIZES.map(stylesOf);
+  const style = styles.find((each) => heightAbove(pen, menu, each, room) + below <= height) ?? styles.at(-1)!;
+  let y = TOP;
+  y += pen.paragraph(menu.title, PAD, y, style.title, room) + GAP_OF_TITLE;
+  for (const text of menu.paragraphs) y += pen.paragraph(text, PAD, y, style.body, room) + GAP_OF_TEXT;
+  for (const fact of menu.facts) y += paintFact(pen, fact, y, width, style);
+  y += GAP_OF_FACTS;
   if (hasPicture) {
     if (image !== null) pen.picture(image, PAD, y, room, PICTURE);
     y += PICTURE + GAP;
@@ -68,27 +64,49 @@ export function paintMenu(
   return regions;
 }
 
-/** Return the largest style whose paragraphs leave room for the choices below them. */
-function bodyFor(pen: Pen, paragraphs: readonly string[], room: number, height: number): TextStyle {
-  const isLow = (style: TextStyle) =>
-    paragraphs.reduce((sum, text) => sum + pen.wrapped(text, style, room).length * LINE * style.size + GAP_OF_TEXT, 0) <= height;
-  const styles = BODY_SIZES.map((size) => ({ ...BODY, size }));
-  return styles.find(isLow) ?? styles.at(-1)!;
+/** What is above the choices, in one size. */
+interface Styles {
+  readonly title: TextStyle;
+  readonly body: TextStyle;
+  readonly value: TextStyle;
+  /** Height of a label with its value in one line, and of both in two. */
+  readonly fact: readonly [number, number];
+}
+
+function stylesOf(size: number): Styles {
+  const share = size / SIZES[0];
+  return {
+    title: { size: share * 52, color: COLORS.text, isBold: true },
+    body: { size, color: COLORS.soft },
+    value: { ...VALUE, size: Math.max(SIZES.at(-1)!, share * 32) },
+    fact: [share * 46, share * 84],
+  };
+}
+
+/** Return the height of what is above picture and choices. */
+function heightAbove(pen: Pen, menu: Menu, style: Styles, room: number): number {
+  const high = (text: string, of: TextStyle) => pen.wrapped(text, of, room).length * LINE * of.size;
+  return [
+    TOP + high(menu.title, style.title) + GAP_OF_TITLE,
+    ...menu.paragraphs.map((text) => high(text, style.body) + GAP_OF_TEXT),
+    ...menu.facts.map((fact) => heightOf(pen, fact, room, style)),
+    GAP_OF_FACTS,
+  ].reduce((sum, part) => sum + part);
 }
 
 /** Return the height of a label and its value, which take two lines where they do not fit in one. */
-function heightOf(pen: Pen, fact: Fact, room: number): number {
-  const isOneLine = pen.width(fact.label, BODY) + pen.width(fact.value, FACT_VALUE) + GAP_OF_FACT <= room;
-  return isOneLine ? FACT : 2 * FACT - 8;
+function heightOf(pen: Pen, fact: Fact, room: number, { body, value, fact: [one, two] }: Styles): number {
+  return pen.width(fact.label, body) + pen.width(fact.value, value) + GAP_OF_FACT <= room ? one : two;
 }
 
 /** Paint a label and its value; return the height. */
-function paintFact(pen: Pen, fact: Fact, top: number, width: number): number {
+function paintFact(pen: Pen, fact: Fact, top: number, width: number, style: Styles): number {
   const room = width - 2 * PAD;
-  const value = { ...FACT_VALUE, color: fact.tone === "plain" ? COLORS.text : TONES[fact.tone] };
-  const height = heightOf(pen, fact, room);
-  pen.line(fact.label, PAD, top + FACT / 2, BODY, room);
-  pen.lineTo(fact.value, width - PAD, top + height - FACT / 2, value);
+  const value = { ...style.value, color: fact.tone === "plain" ? COLORS.text : TONES[fact.tone] };
+  const height = heightOf(pen, fact, room, style);
+  const middle = style.fact[0] / 2;
+  pen.line(fact.label, PAD, top + middle, style.body, room);
+  pen.lineTo(fact.value, width - PAD, top + height - middle, value);
   pen.box(PAD, top + height - 2, room, 2, COLORS.edge, 0);
   return height;
 }

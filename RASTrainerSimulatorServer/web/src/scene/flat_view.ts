@@ -63,8 +63,16 @@ export class FlatView {
     if (other !== undefined) this.inset.take(other);
   }
 
+  /** Fit the picture to the window, and let its camera fly; return whether either changed it. */
+  advance(now: number): boolean {
+    const isFitted = this.fit();
+    const isFlying = this.flight.advance(now);
+    this.flight.now.look(this.camera, this.size.x / this.size.y);
+    return isFitted || isFlying;
+  }
+
   /** Fit the picture to the window; return whether it had to be changed. */
-  fit(): boolean {
+  private fit(): boolean {
     const { renderer } = this.stage;
     const ratio = Math.min(2, window.devicePixelRatio);
     renderer.getSize(this.size);
@@ -81,16 +89,10 @@ export class FlatView {
     return true;
   }
 
-  /** Let the camera fly; return whether it moves. */
-  advance(now: number): boolean {
-    return this.flight.advance(now);
-  }
-
   /** Draw, with the other camera in the corner if it is wanted. */
   draw(hasInset: boolean): void {
     const { renderer, scene, model } = this.stage;
     const { x: width, y: height } = this.size;
-    this.flight.now.look(this.camera, width / height);
     renderer.setScissorTest(false);
     renderer.setViewport(0, 0, width, height);
     model?.seeThrough(this.covers.view);

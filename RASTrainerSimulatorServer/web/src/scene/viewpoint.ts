@@ -37,11 +37,12 @@ export class Viewpoint {
     this.angle = from.angle + share * (to.angle - from.angle);
   }
 
-  /** Set a camera here. */
+  /** Set a camera here; what is projected into its picture before it is drawn is projected from here. */
   look(camera: PerspectiveCamera, aspect: number): void {
     camera.up.copy(this.up);
     camera.position.copy(this.position);
     camera.lookAt(this.focus);
+    camera.updateMatrixWorld();
     if (camera.fov !== this.angle || camera.aspect !== aspect) {
       camera.fov = this.angle;
       camera.aspect = aspect;
