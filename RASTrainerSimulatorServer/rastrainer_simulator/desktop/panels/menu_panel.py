@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -85,7 +86,8 @@ def menu_panel(
 class _Layout:
     """The layout of a menu, at one scale.
 
-    A picture needs its own width; without one, the widest panel has its text in two columns.
+    A picture needs its own width; without one, the widest panel has its text in two columns, of
+    which the second is wider where a label with its value needs it.
     A trend has the text under it.
     """
 
@@ -109,7 +111,10 @@ class _Layout:
         self._picture_width = round(0.42 * inside) if has_picture else 0
         is_in_columns = not has_picture and width >= theme.WIDE_PANEL_WIDTH
         self._is_split = is_in_columns or menu.trend is not None
-        aside = (inside - self._pad) // 2 if is_in_columns else self._picture_width
+        aside = self._picture_width
+        if is_in_columns:
+            half = (inside - self._pad) // 2
+            aside = min(half, max(inside - self._pad - self._facts_width(), round(0.8 * half)))
         self._left = self._pad + aside + (self._pad if aside else 0)
         self._text_width = self._width - self._pad - self._left
         self._title = brush.wrap(menu.title, theme.TITLE, inside)
@@ -142,6 +147,15 @@ class _Layout:
     def is_clipped(self) -> bool:
         """Whether an item is too wide for its row."""
         return not all(fits(item, self._brush, self._text_width) for item in self._menu.items)
+
+    def _facts_width(self) -> int:
+        """Return the width in which every label has its value beside it."""
+        brush, gap = self._brush, self._brush.px(theme.PAD)
+        widths = (
+            brush.width(fact.label, theme.BODY) + gap + brush.width(fact.value, theme.STRONG)
+            for fact in self._menu.facts
+        )
+        return math.ceil(max(widths, default=0))
 
     def _rows_height(self, count: int) -> int:
         return count * (self._row + self._gap) - self._gap if count else 0
