@@ -23,6 +23,8 @@ HEADSET = "headset"
 PACE_TOLERANCE = 0.1
 MOST_PAUSES = 10
 """More would be slow motion: the trial's time stops in each."""
+_STANDING_STILL = frozenset({Phase.PAUSED.value, Phase.COMPLETE.value})
+"""Phases that take none of the trial's time, however long they last."""
 LEAST_IN_HEADSET = 0.9
 """Share of a trial in the mode `hmd` during which the headset is the view."""
 
@@ -64,8 +66,8 @@ class HowPlayed:
         is_seed_repeated: Whether an earlier trial of the simulator had the same chosen seed.
         speed: Simulated seconds in a second, as set; 0 for as fast as possible. If the trial was
             resumed at another speed, the value farthest from 1.
-        pace: Simulated seconds in a second by the clock, over the whole trial: below `speed` if the
-            simulator was held up.
+        pace: Simulated seconds in a second by the clock, while the trial's own time runs: below
+            `speed` if the simulator was held up. A long pause must not hide that.
         pauses: How often it was paused.
         way_mm: Way of the tip by what moved it, a `MovedBy`.
         feed_commands: Number of commands to feed drill or instrument.
@@ -157,6 +159,7 @@ class PlayRecording:
         self._pauses = 0
         self._simulated_s = self._clock_s = 0.0
         self._times: tuple[float, float] | None = None
+        self._stands_still = False
         self._way_mm: dict[str, float] = defaultdict(float)
         self._feed_commands = 0
         self._view_s: Counter[str] = Counter()
@@ -164,11 +167,8 @@ class PlayRecording:
 
     def add(self, entry: Mapping[str, Any]) -> None:
         """Add the next entry."""
-        kind, times = entry["kind"], (entry["simTime"], entry["monotonic"])
-        if self._times is not None and kind != "continued":
-            self._simulated_s += times[0] - self._times[0]
-            self._clock_s += times[1] - self._times[1]
-        self._times = times
+        self._add_time(entry)
+        kind = entry["kind"]
         if kind in ("header", "continued"):
             self._add_session(entry["session"])
         elif kind == "command" and entry["name"] == CommandName.START_TASK:
@@ -200,6 +200,15 @@ class PlayRecording:
             feed_commands=self._feed_commands,
             view_s=dict(self._view_s),
         )
+
+    def _add_time(self, entry: Mapping[str, Any]) -> None:
+        kind, times = entry["kind"], (entry["simTime"], entry["monotonic"])
+        if self._times is not None and kind != "continued" and not self._stands_still:
+            self._simulated_s += times[0] - self._times[0]
+            self._clock_s += times[1] - self._times[1]
+        self._times = times
+        if kind in ("phase", "continued"):
+            self._stands_still = entry["phase"] in _STANDING_STILL
 
     def _add_session(self, session: Mapping[str, Any]) -> None:
         speed = session["speed"] or 0.0
