@@ -23,8 +23,6 @@ HEADSET = "headset"
 PACE_TOLERANCE = 0.1
 MOST_PAUSES = 10
 """More would be slow motion: the trial's time stops in each."""
-_STANDING_STILL = frozenset({Phase.PAUSED.value, Phase.COMPLETE.value})
-"""Phases that take none of the trial's time, however long they last."""
 LEAST_IN_HEADSET = 0.9
 """Share of a trial in the mode `hmd` during which the headset is the view."""
 
@@ -67,7 +65,7 @@ class HowPlayed:
         speed: Simulated seconds in a second, as set; 0 for as fast as possible. If the trial was
             resumed at another speed, the value farthest from 1.
         pace: Simulated seconds in a second by the clock, while the trial's own time runs: below
-            `speed` if the simulator was held up. A long pause must not hide that.
+            `speed` if the simulator was held up, which no long wait hides.
         pauses: How often it was paused.
         way_mm: Way of the tip by what moved it, a `MovedBy`.
         feed_commands: Number of commands to feed drill or instrument.
@@ -158,8 +156,9 @@ class PlayRecording:
         self._speed = 1.0
         self._pauses = 0
         self._simulated_s = self._clock_s = 0.0
+        self._since_complete = (0.0, 0.0)
         self._times: tuple[float, float] | None = None
-        self._stands_still = False
+        self._phase = Phase.RUNNING.value
         self._way_mm: dict[str, float] = defaultdict(float)
         self._feed_commands = 0
         self._view_s: Counter[str] = Counter()
@@ -202,13 +201,28 @@ class PlayRecording:
         )
 
     def _add_time(self, entry: Mapping[str, Any]) -> None:
+        """Add what has passed since the last entry, except in a pause and after the last point."""
         kind, times = entry["kind"], (entry["simTime"], entry["monotonic"])
-        if self._times is not None and kind != "continued" and not self._stands_still:
-            self._simulated_s += times[0] - self._times[0]
-            self._clock_s += times[1] - self._times[1]
+        is_paused = self._phase == Phase.PAUSED.value
+        if self._times is not None and kind != "continued" and not is_paused:
+            passed = times[0] - self._times[0], times[1] - self._times[1]
+            if self._phase == Phase.COMPLETE.value:
+                # It only counts if more points follow: after an undo, or of a trace.
+                waited = self._since_complete
+                self._since_complete = waited[0] + passed[0], waited[1] + passed[1]
+            else:
+                self._count(passed)
         self._times = times
         if kind in ("phase", "continued"):
-            self._stands_still = entry["phase"] in _STANDING_STILL
+            self._phase = entry["phase"]
+            if self._phase not in (Phase.PAUSED.value, Phase.COMPLETE.value):
+                if self._phase == Phase.RUNNING.value:
+                    self._count(self._since_complete)
+                self._since_complete = (0.0, 0.0)
+
+    def _count(self, passed: tuple[float, float]) -> None:
+        self._simulated_s += passed[0]
+        self._clock_s += passed[1]
 
     def _add_session(self, session: Mapping[str, Any]) -> None:
         speed = session["speed"] or 0.0
