@@ -52,10 +52,6 @@ class SlowPlayer(Player):
         self._pid, self._is_slow = simulator.pid, False
         super().__init__(simulator.port)
 
-    def _keep(self, message):
-        if message.device == "command" and message.content.name == "TrialCompleted":
-            super()._keep(message)
-
     def do(self, name: str, **arguments) -> dict:
         if name == "Capture" and not self._is_slow:
             self._is_slow = True
