@@ -135,10 +135,14 @@ def test_a_foreign_registration_neither_reveals_the_truth_nor_leaves_a_trial_wit
         slicer = SlicerSide(tmp_path / "study.db", simulator.port, make)
         try:
             run_logic_until(slicer.link, slicer.work, lambda: scored, TIMEOUT_S)
+            with Client(port=simulator.port) as bystander:
+                bystander.send_command("Hello", HELLO)
+                other = bystander.send_command("TrialScored", {"trialId": trial, "score": 100.0})
+                assert other.ok
         finally:
             slicer.close()
     with Study.open(tmp_path / "study.db") as study:
-        assert study.trial(trial).score is not None
+        assert 0.0 < study.trial(trial).score.score < 100.0
 
 
 def test_a_procedure_continues_only_with_the_registration_of_its_touches(simulator, scenario):

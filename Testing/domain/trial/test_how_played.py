@@ -18,7 +18,8 @@ def played(*entries) -> HowPlayed:
 
 
 def session(kind="header", speed=1.0, is_seeded=False):
-    return {"kind": kind, "session": {"speed": speed, "isSeeded": is_seeded}}
+    of_session = {"session": {"speed": speed, "isSeeded": is_seeded}}
+    return {"kind": kind, **({"phase": "paused"} if kind == "continued" else {}), **of_session}
 
 
 def sample(x_mm, moved_by):
@@ -55,6 +56,24 @@ def test_a_simulator_that_is_held_up_is_slow_by_the_clock():
     assert (found.speed, found.pace) == (1.0, 0.5)
     # What passes until a trial is resumed is no part of it.
     assert played(session(), session("continued") | {"monotonic": 900.0}).pace == 1.0
+
+
+@pytest.mark.parametrize(
+    ("waits", "then", "pace"),
+    [
+        ("paused", "running", 0.5),
+        ("complete", "verifying", 0.5),
+        # The trial's time has run on: more points follow.
+        ("complete", "running", 902.0 / 904.0),
+    ],
+)
+def test_a_long_wait_does_not_hide_that_the_simulator_was_held_up(waits, then, pace):
+    late = {"simTime": 2.0, "monotonic": 4.0}
+    held_up, wait = {"kind": "reach", **late}, {"kind": "phase", "phase": waits, **late}
+    over = {"kind": "phase", "phase": then, "simTime": 902.0, "monotonic": 904.0}
+    assert played(session(), start(), held_up, wait, over).pace == pace
+    continued = session("continued") | {"phase": waits, **late}
+    assert played(session(), start(), held_up, continued, over).pace == pace
 
 
 def test_pauses_and_views_are_counted():

@@ -64,8 +64,8 @@ class HowPlayed:
         is_seed_repeated: Whether an earlier trial of the simulator had the same chosen seed.
         speed: Simulated seconds in a second, as set; 0 for as fast as possible. If the trial was
             resumed at another speed, the value farthest from 1.
-        pace: Simulated seconds in a second by the clock, over the whole trial: below `speed` if the
-            simulator was held up.
+        pace: Simulated seconds in a second by the clock, while the trial's own time runs: below
+            `speed` if the simulator was held up, which no long wait hides.
         pauses: How often it was paused.
         way_mm: Way of the tip by what moved it, a `MovedBy`.
         feed_commands: Number of commands to feed drill or instrument.
@@ -156,7 +156,9 @@ class PlayRecording:
         self._speed = 1.0
         self._pauses = 0
         self._simulated_s = self._clock_s = 0.0
+        self._since_complete = (0.0, 0.0)
         self._times: tuple[float, float] | None = None
+        self._phase = Phase.RUNNING.value
         self._way_mm: dict[str, float] = defaultdict(float)
         self._feed_commands = 0
         self._view_s: Counter[str] = Counter()
@@ -164,11 +166,8 @@ class PlayRecording:
 
     def add(self, entry: Mapping[str, Any]) -> None:
         """Add the next entry."""
-        kind, times = entry["kind"], (entry["simTime"], entry["monotonic"])
-        if self._times is not None and kind != "continued":
-            self._simulated_s += times[0] - self._times[0]
-            self._clock_s += times[1] - self._times[1]
-        self._times = times
+        self._add_time(entry)
+        kind = entry["kind"]
         if kind in ("header", "continued"):
             self._add_session(entry["session"])
         elif kind == "command" and entry["name"] == CommandName.START_TASK:
@@ -200,6 +199,30 @@ class PlayRecording:
             feed_commands=self._feed_commands,
             view_s=dict(self._view_s),
         )
+
+    def _add_time(self, entry: Mapping[str, Any]) -> None:
+        """Add what has passed since the last entry, except in a pause and after the last point."""
+        kind, times = entry["kind"], (entry["simTime"], entry["monotonic"])
+        is_paused = self._phase == Phase.PAUSED.value
+        if self._times is not None and kind != "continued" and not is_paused:
+            passed = times[0] - self._times[0], times[1] - self._times[1]
+            if self._phase == Phase.COMPLETE.value:
+                # It only counts if more points follow: after an undo, or of a trace.
+                waited = self._since_complete
+                self._since_complete = waited[0] + passed[0], waited[1] + passed[1]
+            else:
+                self._count(passed)
+        self._times = times
+        if kind in ("phase", "continued"):
+            self._phase = entry["phase"]
+            if self._phase not in (Phase.PAUSED.value, Phase.COMPLETE.value):
+                if self._phase == Phase.RUNNING.value:
+                    self._count(self._since_complete)
+                self._since_complete = (0.0, 0.0)
+
+    def _count(self, passed: tuple[float, float]) -> None:
+        self._simulated_s += passed[0]
+        self._clock_s += passed[1]
 
     def _add_session(self, session: Mapping[str, Any]) -> None:
         speed = session["speed"] or 0.0
