@@ -11,8 +11,8 @@ from rastrainer.slicer.link.link_status import LinkState
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.slicer.host.fixtures import host, module_widget  # noqa: F401
 
-PAUSE_S = 1.0
-"""Much longer than a pose or a poll takes."""
+PAUSE_S = 2.5
+"""Much longer than a pose or a poll takes: the module looks once a second."""
 STROKE_S = 2.0
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rastrainer.command_arguments import check_arguments
-from rastrainer.journal.journal_file import read_journal
+from rastrainer.journal.journal_file import read_journal, revealed_seed
 from rastrainer.protocol import CommandName, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.proximity import DEEPEST, Pressing
@@ -138,8 +138,8 @@ def pressed(setup):
     return press(setup, "trial-run", 3, depth_mm=2.0)
 
 
-def written(entries, path):
-    journal = Journal(path)
+def written(entries, path, seed=None):
+    journal = Journal(path, seed)
     journal.write(entries, sync=False)
     journal.close()
     return read_journal(path)
@@ -160,6 +160,12 @@ def test_a_journal_with_depths_replays_to_the_last_bit(setup, pressed, tmp_path)
 
 
 @pytest.fixture
+def seed(pressed):
+    """Seed of the head's pose, which the entries of `begun` do not reveal."""
+    return revealed_seed(pressed.entries)
+
+
+@pytest.fixture
 def begun(pressed):
     """The entries up to the third touch, which are soon replayed."""
     touches = [n for n, entry in enumerate(pressed.entries) if entry["kind"] == "touch"]
@@ -167,14 +173,14 @@ def begun(pressed):
 
 
 @pytest.mark.parametrize("kind", ["sample", "touch", "proximity"])
-def test_a_forged_depth_is_detected_by_the_replay(setup, begun, tmp_path, kind):
+def test_a_forged_depth_is_detected_by_the_replay(setup, begun, seed, tmp_path, kind):
     found = [entry for entry in begun if entry["kind"] == kind and "depthMm" in entry]
     found[-1]["depthMm"] += 0.5
-    report = replay(written(begun, tmp_path / "forged.journal"), setup)
+    report = replay(written(begun, tmp_path / "forged.journal", seed), setup)
     assert "depthMm was" in report.difference
 
 
-def test_a_single_missing_depth_is_detected_by_the_replay(setup, begun, tmp_path):
+def test_a_single_missing_depth_is_detected_by_the_replay(setup, begun, seed, tmp_path):
     del next(entry for entry in begun if entry["kind"] == "touch")["depthMm"]
-    report = replay(written(begun, tmp_path / "forged.journal"), setup)
+    report = replay(written(begun, tmp_path / "forged.journal", seed), setup)
     assert "depthMm was None" in report.difference
