@@ -24,12 +24,7 @@ def guide(outside):
 @pytest.fixture
 def menu(trainee):
     """The trainee at the experiment menu, with the ID P07."""
-    trainee.choose("train")
-    trainee.until_menu("introduction")
-    trainee.choose("skip")
-    trainee.until_menu("controls")
-    trainee.choose("next")
-    trainee.until_menu("experiment")
+    trainee.open_experiment()
     trainee.presenter.on_text(1, "trainee", "P07")
     trainee.step()
     return trainee

@@ -30,12 +30,7 @@ def alone(loop, outside):
         trainee = Trainee(loop, presenter, Keys)
         open_.append((trainee, presenter))
         trainee.until_menu("start")
-        trainee.choose("train")
-        trainee.until_menu("introduction")
-        trainee.choose("skip")
-        trainee.until_menu("controls")
-        trainee.choose("next")
-        trainee.until_menu("experiment")
+        trainee.open_experiment()
         return trainee
 
     yield begin

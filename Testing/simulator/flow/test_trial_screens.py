@@ -65,12 +65,7 @@ def test_a_trial_is_aborted_only_after_the_trainee_confirms(trainee):
 def test_tasks_wait_for_the_previous_one_unless_the_instructor_disables_that(trainee, outside):
     # Where Slicer is connected, an instructor gives each trainee an ID.
     outside.has_slicer = True
-    trainee.choose("train")
-    trainee.until_menu("introduction")
-    trainee.choose("skip")
-    trainee.until_menu("controls")
-    trainee.choose("next")
-    trainee.until_menu("experiment")
+    trainee.open_experiment()
     assert trainee.item("trial-run").help == "Enter your ID first."
     trainee.presenter.on_text(1, "trainee", "P07")
     trainee.step()

@@ -202,6 +202,16 @@ class Trainee:
         self.until(future.done, f"the answer to {name}")
         return future.result()
 
+    def open_experiment(self) -> None:
+        """Go from the start menu past introduction and controls to the experiment menu."""
+        for choice, menu in (
+            ("train", "introduction"),
+            ("skip", "controls"),
+            ("next", "experiment"),
+        ):
+            self.choose(choice)
+            self.until_menu(menu)
+
     def start(self, task: str, trainee: str = "P07", procedure: str = "") -> None:
         """Begin a task as Slicer would, and wait for its screen."""
         start = {"task": task, "trainee": trainee, "procedure": procedure}
