@@ -12,7 +12,7 @@ import csv
 import itertools
 import sys
 from collections.abc import Iterator
-from dataclasses import astuple, dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -33,7 +33,14 @@ from rastrainer.registration.surface_match import match_surface
 from rastrainer.registration.target_error import COMMON_BIAS_SD_MM
 from Testing.domain.registration.drawing_hands import EYE, draw_by_guidance, draw_in_strokes
 from Testing.domain.registration.traces import coarse_start, head_pose
-from Testing.error_rates.match_warnings import FIRST_HEAD, HEADS, NOISE_MM, head_of, rows_of
+from Testing.error_rates.match_warnings import (
+    FIRST_HEAD,
+    HEADS,
+    NOISE_MM,
+    head_of,
+    play_missing,
+    rows_of,
+)
 from Testing.error_rates.measured import Measured, share_of, share_text
 
 HEADER = (
@@ -186,17 +193,5 @@ def stored() -> list[Drawn]:
         ]
 
 
-def play_missing() -> None:
-    """Match what the file lacks, and add each trace to it at once."""
-    if not FILE.exists():
-        header = ",".join(field.name for field in fields(Drawn))
-        FILE.write_text(header + "\n", encoding="utf-8")
-    known = {one.key for one in stored()}
-    for key in keys(SEEDS):
-        if key not in known:
-            with FILE.open("a", encoding="utf-8", newline="") as file:
-                csv.writer(file, lineterminator="\n").writerow(astuple(play(*key)))
-
-
 if __name__ == "__main__":
-    sys.exit(play_missing())
+    sys.exit(play_missing(FILE, Drawn, stored, keys(SEEDS), play))

@@ -10,9 +10,10 @@ from __future__ import annotations
 import csv
 import functools
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import astuple, dataclass, fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.random import Generator
@@ -208,17 +209,31 @@ def stored() -> list[Chunk]:
         ]
 
 
-def play_missing() -> None:
-    """Match what the file lacks, and add each chunk to it at once."""
-    if not FILE.exists():
-        header = ",".join(field.name for field in fields(Chunk))
-        FILE.write_text(header + "\n", encoding="utf-8")
+def play_missing(
+    path: Path,
+    kind: type,
+    stored: Callable[[], Iterable[Any]],
+    keys: Iterable[tuple],
+    play: Callable[..., Any],
+) -> None:
+    """Play what a file lacks, and add each outcome to it at once.
+
+    Args:
+        path: The file; it is begun with a header where it is missing.
+        kind: Dataclass of an outcome, one row of the file.
+        stored: Reads the file.
+        keys: Of all outcomes, as their property `key` has them.
+        play: Returns the outcome of a key.
+    """
+    if not path.exists():
+        header = ",".join(field.name for field in fields(kind))
+        path.write_text(header + "\n", encoding="utf-8")
     known = {one.key for one in stored()}
-    for key in keys(CHUNKS):
+    for key in keys:
         if key not in known:
-            with FILE.open("a", encoding="utf-8", newline="") as file:
+            with path.open("a", encoding="utf-8", newline="") as file:
                 csv.writer(file, lineterminator="\n").writerow(astuple(play(*key)))
 
 
 if __name__ == "__main__":
-    sys.exit(play_missing())
+    sys.exit(play_missing(FILE, Chunk, stored, keys(CHUNKS), play))
