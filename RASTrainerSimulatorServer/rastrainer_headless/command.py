@@ -44,19 +44,15 @@ class HeadlessCommand(vtk.vtkObject):
         self._status = self.CommandUnknown
 
     def SetName(self, name: WireText) -> None:
-        """Name the command."""
         self._name = name
 
     def GetName(self) -> WireText:
-        """Return the command's name."""
         return self._name
 
     def SetCommandContent(self, content: WireText) -> None:
-        """Set the body that travels with the command."""
         self._content = content
 
     def GetCommandContent(self) -> WireText:
-        """Return the body of the command."""
         return self._content
 
     def SetTimeoutSec(self, seconds: float) -> None:

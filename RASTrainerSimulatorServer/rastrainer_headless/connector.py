@@ -85,7 +85,6 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         return self._sockets.port if self._sockets else self._address[1]
 
     def GetState(self) -> int:
-        """Return one of the state constants."""
         return self._state
 
     def Start(self) -> int:

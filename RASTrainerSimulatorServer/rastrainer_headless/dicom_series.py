@@ -96,9 +96,6 @@ def readDicom(path: Path) -> Volume:
     """Read the stack with the most slices in a folder and the folders in it, or in one file.
 
     What is no slice of a patient is ignored: reports, presentation states, directories, pictures.
-
-    Raises:
-        InputError: there is none, or slices of it are missing or do not fit together.
     """
     paths = sorted(each for each in path.rglob("*") if each.is_file()) if path.is_dir() else [path]
     paths = [each for each in paths if isDicom(each)]

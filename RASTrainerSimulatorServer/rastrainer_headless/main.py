@@ -238,11 +238,7 @@ RESULTS = "results.jsonl"
 
 
 def appendResults(folder: Path, results: Mapping[str, Any]) -> None:
-    """Add a trial's `results_json` to the file of results, as one line that is on the disk then.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
+    """Add a trial's `results_json` to the file of results, as one line that is on the disk then."""
     path = folder / RESULTS
     try:
         with path.open("a", encoding="utf-8", newline="\n") as file:
@@ -256,11 +252,7 @@ def appendResults(folder: Path, results: Mapping[str, Any]) -> None:
 def writeOutput(
     folder: Path, application: HeadlessScene, scenario: Scenario, latest: TrialAnalysis
 ) -> dict[str, str]:
-    """Write scene and picture of the latest trial; return the paths of all files.
-
-    Raises:
-        InputError: a file cannot be written.
-    """
+    """Write scene and picture of the latest trial; return the paths of all files."""
     files = {"scene": folder / SCENE, "picture": folder / PICTURE, "results": folder / RESULTS}
     application.save(files["scene"])
     _writePicture(files["picture"], scenario, latest)

@@ -46,11 +46,7 @@ class HeadlessScene:
         self._sequencesLogic.SetMRMLScene(self.scene)
 
     def save(self, path: Path) -> None:
-        """Write the scene and all its files as one bundle (.mrb), whole or not at all.
-
-        Raises:
-            InputError: the bundle cannot be written there.
-        """
+        """Write the scene and all its files as one bundle (.mrb), whole or not at all."""
         messages = slicer.vtkMRMLMessageCollection()
         with tempfile.TemporaryDirectory(dir=path.parent, prefix=".saving-") as folder:
             unfinished = Path(folder, path.name)
@@ -61,11 +57,7 @@ class HeadlessScene:
             unfinished.replace(path)
 
     def load(self, path: Path) -> None:
-        """Replace the scene by that of a bundle (.mrb).
-
-        Raises:
-            InputError: not a bundle that can be read.
-        """
+        """Replace the scene by that of a bundle (.mrb)."""
         messages = slicer.vtkMRMLMessageCollection()
         with tempfile.TemporaryDirectory() as cacheFolder:
             cache = slicer.vtkCacheManager()
@@ -100,7 +92,6 @@ class HeadlessStatusNode(slicer.vtkMRMLScriptedModuleNode):
         self.SetSaveWithScene(False)
 
     def GetCode(self) -> int:
-        """Return the status code; 1 is OK."""
         return self._status.code
 
     def GetSubCode(self) -> int:
@@ -108,11 +99,9 @@ class HeadlessStatusNode(slicer.vtkMRMLScriptedModuleNode):
         return self._status.subcode
 
     def GetErrorName(self) -> str:
-        """Return the name of the error."""
         return self._status.name
 
     def GetStatusString(self) -> str:
-        """Return the message for people."""
         return self._status.message
 
     def setStatus(self, status: Status) -> None:

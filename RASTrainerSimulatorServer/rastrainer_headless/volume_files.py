@@ -23,9 +23,6 @@ def readAnyVolume(path: Path, orientation: str | None = None) -> Volume:
     Args:
         path: of the file or folder.
         orientation: for a file that states none; see `readVolume`.
-
-    Raises:
-        InputError: it cannot be read.
     """
     if path.is_dir() or (path.is_file() and isDicom(path)):
         return readDicom(path)
@@ -39,9 +36,6 @@ def readVolume(path: Path, orientation: str | None = None) -> Volume:
         path: of the file.
         orientation: the directions in which the file's axes run in the patient, such as LAS for
             left, anterior, superior; None takes what the file states.
-
-    Raises:
-        InputError: the file is missing, is no such volume or states no orientation.
     """
     if not path.is_file():
         raise InputError(f"{path} does not exist; give a volume such as a .nii.gz or .nrrd file.")
@@ -78,11 +72,7 @@ def _isCutNifti(path: Path) -> bool:
 
 
 def _oriented(volume: Volume, orientation: str) -> Volume:
-    """Return a volume around the origin whose axes run in the stated directions.
-
-    Raises:
-        InputError: these do not span a space.
-    """
+    """Return a volume around the origin whose axes run in the stated directions."""
     axes = np.zeros((3, 3))
     for axis, letter in enumerate(orientation.upper()[:3]):
         for row, pair in enumerate(("LR", "PA", "IS")):

@@ -207,7 +207,6 @@ class TrainingState:
 
     @property
     def completed_s(self) -> float:
-        """The trial's time at the last point that was touched or traced, s."""
         traced = () if self.trace is None else self.trace.points
         return traced[-1].elapsed if traced else self.touches[-1].elapsed
 
@@ -274,7 +273,6 @@ class SimulationState:
 
     @property
     def guide_axis(self) -> GuideAxis:
-        """The tip of the guide and its axis, which are those of every tool."""
         pose = self.tool_tip_to_world
         return GuideAxis(vector(pose[:3, 3].tolist()), vector(pose[:3, 2].tolist()))
 
@@ -300,7 +298,6 @@ class StartingPoint:
 
     @classmethod
     def after(cls, state: SimulationState) -> StartingPoint:
-        """Return the point of continuation after a state."""
         return cls(state.tick, state.sim_time, state.training.revision, state.camera)
 
 

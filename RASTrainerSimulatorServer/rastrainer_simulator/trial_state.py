@@ -56,11 +56,9 @@ class TraceState:
         return len(self.points) >= MAX_TRACE_POINTS
 
     def begun(self) -> TraceState:
-        """Return the trace with a new stroke."""
         return replace(self, strokes=(*self.strokes, len(self.points)), is_on=True)
 
     def with_point(self, point: TracedPoint) -> TraceState:
-        """Return the trace with one more point."""
         return replace(self, points=(*self.points, point))
 
     def ended(self) -> TraceState:
@@ -70,12 +68,10 @@ class TraceState:
         return replace(self, strokes=strokes, is_on=False)
 
     def cut(self, count: int) -> TraceState:
-        """Return the trace with the first `count` points."""
         strokes = tuple(before for before in self.strokes if before < count)
         return TraceState(self.points[:count], strokes, self.is_on and count == len(self.points))
 
     def undone(self) -> TraceState:
-        """Return the trace without its last stroke."""
         return TraceState(self.points[: self.strokes[-1]], self.strokes[:-1])
 
 
@@ -109,7 +105,6 @@ class FinalRegistration:
 
     @classmethod
     def from_arguments(cls, arguments: Mapping[str, Any]) -> FinalRegistration:
-        """Return what the arguments of UseRegistration or SubmitRegistration hold."""
         return cls(tuple(arguments["matrix"]), arguments["freMm"], arguments["expectedTreMm"])
 
     def agrees_with(self, other: FinalRegistration) -> bool:
@@ -310,7 +305,6 @@ class ProcedureState:
         return left.with_present(timed)
 
     def with_present(self, trajectory: TrajectoryState) -> ProcedureState:
-        """Return the state with the current trajectory replaced."""
         before, after = self.trajectories[: self.trajectory], self.trajectories[self.trajectory :]
         return replace(self, trajectories=(*before, trajectory, *after[1:]))
 

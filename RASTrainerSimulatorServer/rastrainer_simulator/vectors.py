@@ -29,17 +29,14 @@ def in_millimeters(position: Iterable[float]) -> Vector:
 
 
 def add(a: Vector, b: Vector) -> Vector:
-    """Return a + b."""
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
 def subtract(a: Vector, b: Vector) -> Vector:
-    """Return a − b."""
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
 def scale(a: Vector, factor: float) -> Vector:
-    """Return a · factor."""
     return (a[0] * factor, a[1] * factor, a[2] * factor)
 
 
@@ -49,22 +46,18 @@ def dot(a: Vector, b: Vector) -> float:
 
 
 def cross(a: Vector, b: Vector) -> Vector:
-    """Return the vector product a × b."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 def length(a: Vector) -> float:
-    """Return |a|."""
     return math.sqrt(dot(a, a))
 
 
 def distance(a: Vector, b: Vector) -> float:
-    """Return |a − b|."""
     return math.dist(a, b)
 
 
 def unit(a: Vector) -> Vector:
-    """Return a / |a|; the zero vector stays zero."""
     size = length(a)
     return scale(a, 1.0 / size) if size > 0.0 else ZERO
 

@@ -59,7 +59,6 @@ def scaled(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
 
 
 def disk(draw: ImageDraw.ImageDraw, center: tuple[float, float], radius: float, color) -> None:
-    """Fill a circle."""
     x, y = center
     corners = [(x - radius, y - radius), (x + radius, y + radius)]
     draw.ellipse(scaled(corners), fill=color)

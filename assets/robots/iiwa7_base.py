@@ -47,7 +47,6 @@ def _lug_pocket() -> trimesh.Trimesh:
 
 
 def _bolt() -> trimesh.Trimesh:
-    """Return the socket-head screw on a lug."""
     head = cylinder(BOLT_RADIUS, LUG_FLOOR - 1.0, LUG_FLOOR + 6.5, 16)
     socket = cylinder(3.0, LUG_FLOOR + 3.0, LUG_FLOOR + 10.0, 6)
     return moved(difference(head, socket), (LUG_RADIUS + 0.5, 0.0, 0.0))

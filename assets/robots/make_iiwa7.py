@@ -29,7 +29,6 @@ MESH_DECIMALS = 6
 
 
 def main() -> None:
-    """Write the robot's folder."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--output", type=Path, default=Path(__file__).parent / "iiwa7")
     write_robot(parser.parse_args().output)

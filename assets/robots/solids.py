@@ -38,12 +38,10 @@ def hull(points: np.ndarray) -> trimesh.Trimesh:
 
 
 def union(*solids: trimesh.Trimesh) -> trimesh.Trimesh:
-    """Join solids into one."""
     return trimesh.boolean.union(list(solids), engine="manifold")
 
 
 def difference(solid: trimesh.Trimesh, *tools: trimesh.Trimesh) -> trimesh.Trimesh:
-    """Cut tools out of a solid."""
     return trimesh.boolean.difference([solid, *tools], engine="manifold")
 
 

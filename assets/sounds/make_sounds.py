@@ -112,7 +112,6 @@ def _tone(note: Note) -> np.ndarray:
 
 
 def main() -> None:
-    """Write all sounds beside this file."""
     for name, sound in SOUNDS.items():
         write_wave(Path(__file__).with_name(f"{name}.wav"), samples(sound))
 

@@ -219,11 +219,7 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
 
 
 def check_arguments(command: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the checked arguments of a command with defaults.
-
-    Raises:
-        InputError: the command or an argument is unknown, missing or out of range.
-    """
+    """Return the checked arguments of a command with defaults."""
     if command not in COMMAND_ARGUMENTS:
         known = ", ".join(COMMAND_ARGUMENTS)
         raise InputError(f"The command {_quoted(command)} is unknown; known are {known}.")
@@ -245,18 +241,10 @@ def _quoted(word: object) -> str:
 
 
 def decode_json_object(body: str) -> dict[str, Any]:
-    """Return the JSON object in a command's body; an empty body is an empty object.
-
-    Raises:
-        InputError: as `rastrainer.json_checks.decode_message_object`.
-    """
+    """Return the JSON object in a command's body; an empty body is an empty object."""
     return decode_message_object(body or "{}", "The command's body")
 
 
 def decode_answer_object(body: str) -> dict[str, Any]:
-    """Return the JSON object in an answer of the simulator, such as a trial's record.
-
-    Raises:
-        InputError: as `decode_json_object`; it may hold more values.
-    """
+    """Return the JSON object in an answer of the simulator, such as a trial's record."""
     return decode_message_object(body or "{}", "The simulator's message", MAX_RECORD_VALUES)

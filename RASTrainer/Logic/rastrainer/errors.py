@@ -1,4 +1,8 @@
-"""Errors for users: each message is one sentence that says what is needed."""
+"""Errors for users: each message is one sentence that says what is needed.
+
+Whatever reads a file, a message or an argument raises `InputError` where it is not usable; its
+docstring says so only if that surprises.
+"""
 
 
 class RASTrainerError(Exception):

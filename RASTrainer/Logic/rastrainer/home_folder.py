@@ -8,11 +8,7 @@ from rastrainer.errors import InputError
 
 
 def home_folder() -> Path:
-    """Return the user's home folder.
-
-    Raises:
-        InputError: there is none.
-    """
+    """Return the user's home folder."""
     try:
         return Path.home()
     except RuntimeError:

@@ -59,11 +59,7 @@ def decode_message(text: str, most: int = MAX_MESSAGE_VALUES) -> Any:
 
 
 def decode_message_object(text: str, what: str, most: int = MAX_MESSAGE_VALUES) -> dict[str, Any]:
-    """Return the JSON object of a message of at most `most` values; `what` starts the error.
-
-    Raises:
-        InputError: not a JSON object, too deep, too many values, or a number is not finite.
-    """
+    """Return the JSON object of a message of at most `most` values; `what` starts the error."""
     try:
         value = decode_message(text, most)
     except ValueError:
@@ -139,15 +135,10 @@ class Argument:
 
     @property
     def is_required(self) -> bool:
-        """Whether it is required."""
         return self.default is ...
 
     def checked(self, values: Mapping[str, Any], name: str, what: str) -> Any:
-        """Return the accepted value of that name, or the default if it is missing.
-
-        Raises:
-            InputError: the value is not acceptable; `what` begins the sentence.
-        """
+        """Return the accepted value of that name, or the default if it is missing."""
         return accepted(self.check, values[name], what) if name in values else self.default
 
 
@@ -166,11 +157,7 @@ def identifier_of(text: str) -> str:
 
 
 def accepted(check: Callable[[Any], T], value: Any, what: str) -> T:
-    """Return the value that a check accepts.
-
-    Raises:
-        InputError: it does not; the sentence is `what`, "must be" and the words of the check.
-    """
+    """Return the value that a check accepts."""
     try:
         return check(value)
     except InputError:
@@ -307,12 +294,7 @@ def plain_object(value: Any) -> dict[str, Any]:
 
 
 def checked_keys(value: object, keys: Mapping[str, Argument], what: str) -> dict[str, Any]:
-    """Return the checked values of a JSON object's known keys, defaults filled in.
-
-    Raises:
-        InputError: it is no object, or a key is missing or holds something else than it should;
-            `what` begins the sentence.
-    """
+    """Return the checked values of a JSON object's known keys, defaults filled in."""
     if not isinstance(value, Mapping):
         raise InputError(f"{what} must be a JSON object.")
     for key, argument in keys.items():

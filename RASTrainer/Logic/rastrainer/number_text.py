@@ -30,7 +30,6 @@ def signed(value: float, digits: int) -> str:
 
 
 def significant(value: float, digits: int = 3, sign: bool = False) -> str:
-    """Return a number with significant digits, optionally with its sign."""
     return f"{_past_half(value):{'+' if sign else ''}.{digits}g}".replace("-", "−")
 
 
@@ -47,7 +46,6 @@ def p_phrase(p: float) -> str:
 
 
 def percent(share: float) -> str:
-    """Return a share as whole percent."""
     return f"{100 * share:.0f} %"
 
 

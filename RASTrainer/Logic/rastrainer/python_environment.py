@@ -107,7 +107,6 @@ def python_command(module: str, *words: str) -> list[str]:
 
 
 def private_command(python: Path, folder: Path, module: str, *words: str) -> list[str]:
-    """Return what starts a module as a program, on the packages of a folder alone."""
     return [str(python), "-S", "-c", START, str(folder), module, *words]
 
 

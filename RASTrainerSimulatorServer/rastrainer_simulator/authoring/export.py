@@ -54,7 +54,6 @@ class Grid:
         return np.linalg.norm(self.ijk_to_ras[:3, :3], axis=0)
 
     def part(self, slices: tuple[slice, slice, slice]) -> Grid:
-        """Return the grid of a part of the image."""
         first = np.array([each.start for each in slices])
         size = tuple(each.stop - each.start for each in slices)
         return Grid(size, self.ijk_to_ras @ transforms.rigid(np.eye(3), first))
@@ -173,11 +172,7 @@ NO_SOURCE = "Removed before the scenario was shared."
 
 
 def draw_face_removal(folder: Path, picture: Path) -> str:
-    """Draw a scenario's head before and after its face is removed, and return a sentence on it.
-
-    Raises:
-        InputError: the scenario cannot be used, has fiducials on the face, or looks backward.
-    """
+    """Draw a scenario's head before and after its face is removed, and return a sentence on it."""
     scenario = checked_scenario(folder)
     head = read_head_mesh(scenario.head_mesh)
     warning = check_front(head)
@@ -201,9 +196,6 @@ def pack_for_sharing(
         keeps_names: keep title, name and source, which often are the patient's name, and the
             sources of the procedures; otherwise the scenario is named by a number computed from
             its head's surface.
-
-    Raises:
-        InputError: the scenario cannot be used, has fiducials on the face, or looks backward.
     """
     scenario, taken = checked_scenario(folder), []
     head = read_head_mesh(scenario.head_mesh)

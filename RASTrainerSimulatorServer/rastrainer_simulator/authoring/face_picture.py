@@ -28,11 +28,7 @@ def draw_removal(
     heads: tuple[HeadMesh, HeadMesh],
     volumes: tuple[HeadVolume, HeadVolume] | None,
 ) -> None:
-    """Draw a head from three sides, and its images in the middle: before above, after below.
-
-    Raises:
-        InputError: the picture cannot be written.
-    """
+    """Draw a head from three sides, and its images in the middle: before above, after below."""
     rows = []
     for index, head in enumerate(heads):
         parts = _views(head, heads[0])

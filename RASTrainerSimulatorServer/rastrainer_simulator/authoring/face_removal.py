@@ -52,11 +52,7 @@ def nose_tip(mesh: HeadMesh) -> np.ndarray:
 
 
 def check_front(mesh: HeadMesh) -> str:
-    """Return a warning if no nose is found in front of a head; empty if there is one.
-
-    Raises:
-        InputError: the nose is behind.
-    """
+    """Return a warning if no nose is found in front of a head; empty if there is one."""
     behind = HeadMesh(mesh.vertices * np.array([-1.0, -1.0, 1.0]), mesh.triangles)
     front, back = _nose_height(mesh), _nose_height(behind)
     if back > LEAST_NOSE_MM and front < NOT_BEHIND * back:

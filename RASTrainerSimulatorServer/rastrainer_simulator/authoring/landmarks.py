@@ -75,11 +75,7 @@ class ProposedLandmarks:
 
 
 def _propose_landmarks(scenario: Scenario) -> ProposedLandmarks:
-    """Return landmarks for the head of a scenario that the robot can touch in its trials.
-
-    Raises:
-        InputError: the head cannot be read.
-    """
+    """Return landmarks for the head of a scenario that the robot can touch in its trials."""
     mesh = read_head_mesh(scenario.head_mesh)
     found = landmarks_on(mesh)
     missing = [name for name in FACE_LANDMARKS if name not in {each.name for each in found}]
@@ -226,11 +222,7 @@ LONGEST_NAME = 40
 
 
 def read_placed_landmarks(path: Path) -> tuple[Landmark, ...]:
-    """Return the landmarks of a markups file, in its order.
-
-    Raises:
-        InputError: the file is unusable, or a point has no name.
-    """
+    """Return the landmarks of a markups file, in its order."""
     placed = read_markups(path)
     labels = [label.strip() for label in placed.labels or [""] * len(placed.points)]
     if len(labels) > MAX_LANDMARKS:
@@ -245,11 +237,7 @@ def read_placed_landmarks(path: Path) -> tuple[Landmark, ...]:
 
 
 def check_placed_landmarks(folder: Path, landmarks: Sequence[Landmark]) -> list[str]:
-    """Return a sentence for each fault of landmarks on the head of a scenario.
-
-    Raises:
-        InputError: the scenario cannot be read.
-    """
+    """Return a sentence for each fault of landmarks on the head of a scenario."""
     scenario = load_scenario(folder)
     planning = PlanningSetup(scenario, read_head_mesh(scenario.head_mesh))
     return check_on_planned_head(planning, landmarks)
@@ -267,11 +255,7 @@ def check_on_planned_head(planning: PlanningSetup, landmarks: Sequence[Landmark]
 
 
 def write_proposal(folder: Path, path: Path) -> list[str]:
-    """Write landmarks for the head of a scenario to a markups file; return sentences about them.
-
-    Raises:
-        InputError: the scenario cannot be read, or the file not written.
-    """
+    """Write landmarks for the head of a scenario to a markups file; return sentences about them."""
     proposed = _propose_landmarks(load_scenario(folder))
     names = tuple(landmark.name for landmark in proposed.landmarks)
     places = np.array([each.position for each in proposed.landmarks], dtype=float).reshape(-1, 3)

@@ -89,9 +89,6 @@ def make_scenario(
         wait_for_skull: returns the same draft with the skull, which is made meanwhile; None if
             `draft` is complete.
         warn: called with a sentence for each deviation from the options.
-
-    Raises:
-        InputError: the options cannot be met. Nothing is written then.
     """
     with new_folder(folder) as made:
         scenario = without_tasks(draft, options, warn)
@@ -119,11 +116,7 @@ def make_scenario(
 def check_options(
     draft: HeadDraft, options: ScenarioOptions, progress: Progress, warn: Warn
 ) -> None:
-    """Check set-up, plan and placed fiducials as `make_scenario` does.
-
-    Raises:
-        InputError: the options cannot be met.
-    """
+    """Check set-up, plan and placed fiducials as `make_scenario` does."""
     _placed(PlanningSetup(without_tasks(draft, options, warn), draft.head), options, progress, warn)
 
 
@@ -141,11 +134,7 @@ def _placed(
 def without_tasks(
     draft: HeadDraft, options: ScenarioOptions, warn: Warn = lambda _sentence: None
 ) -> Scenario:
-    """Return the scenario of a head without tasks; warn of a first target that is too deep.
-
-    Raises:
-        InputError: the head would not be above the table.
-    """
+    """Return the scenario of a head without tasks; warn of a first target that is too deep."""
     head, setup = draft.head, options.setup
     middle = head.centroid.round(4)
     setup.check_height(float(head.vertices[:, 2].min()), middle)
@@ -215,10 +204,6 @@ def copy_with_plan(
         procedure: replacing the one of the same name, or added; None keeps all as they are.
         landmarks: RAS mm, replacing all others; those near the skin are moved onto it. None keeps
             them.
-
-    Raises:
-        InputError: the scenario cannot be used, or the plan cannot be carried out. Nothing is
-            written then.
     """
     before = checked_scenario(folder)
     head = read_head_mesh(before.head_mesh)
@@ -260,7 +245,6 @@ class HeadProcess:
     """A process that makes the head, and then its skull while the head is already used."""
 
     def __init__(self, process: subprocess.Popen[str], errors: TextIO, folder: Path) -> None:
-        """Keep the process, the file of its standard error and the folder of its draft."""
         self._process = process
         self._errors = errors
         self._folder = folder
@@ -271,9 +255,6 @@ class HeadProcess:
         Args:
             progress: called with each step's name and the share done; may raise to cancel.
             warn: called with each warning.
-
-        Raises:
-            InputError: there is no head in the volume.
         """
         assert self._process.stdout is not None  # It is a pipe.
         for line in self._process.stdout:
@@ -283,11 +264,7 @@ class HeadProcess:
         raise self._failure()
 
     def whole(self) -> HeadDraft:
-        """Wait for the skull too, where one is wanted, and return the whole draft.
-
-        Raises:
-            InputError: there is no skull in the volume.
-        """
+        """Wait for the skull too, where one is wanted, and return the whole draft."""
         assert self._process.stdout is not None  # It is a pipe.
         self._process.stdout.read()
         if self._process.wait() != 0:

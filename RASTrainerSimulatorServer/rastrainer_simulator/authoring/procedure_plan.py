@@ -38,7 +38,6 @@ class GuideReach:
     """Determines where the robot can hold the guide."""
 
     def __init__(self, planning: PlanningSetup) -> None:
-        """`planning` has the robot and the head; its collision takes on the poses."""
         self._collision = planning.collision
         self._reach = PlanReach(planning.setup.robot, planning.kinematics, planning.collision)
 
@@ -79,9 +78,6 @@ def require_usable_procedures(setup: SimulationSetup) -> None:
 
     It takes a second; the scenario has procedures. Only the nominal pose of the
     head is tried, and distances are not checked: `rastrainer scenario check` does both.
-
-    Raises:
-        InputError: a procedure cannot be carried out.
     """
     scenario = setup.scenario
     require_usable_lines(scenario)
@@ -96,11 +92,7 @@ def require_usable_procedures(setup: SimulationSetup) -> None:
 
 
 def _check_on_head(planning: PlanningSetup, procedure: Procedure) -> list[str]:
-    """Return a sentence for each error of a plan on the scenario's head, apart from the reach.
-
-    Raises:
-        InputError: a mesh is unusable.
-    """
+    """Return a sentence for each error of a plan on the scenario's head, apart from the reach."""
     skull = planning.scenario.skull_mesh
     assert skull is not None, "a scenario with procedures has a skull"
     return check_procedure(procedure, planning.mesh, read_procedure_meshes(procedure, skull))
@@ -165,9 +157,6 @@ def measure_procedures(
     Args:
         folder: of the scenario.
         procedure: in place of the scenario's own.
-
-    Raises:
-        InputError: the scenario cannot be read, has no skull, or a mesh is unusable.
     """
     scenario = load_scenario(folder)
     skull = _skull(scenario)
@@ -198,9 +187,6 @@ def with_procedure(
     Returns:
         The scenario, and the meshes of all its no-go structures by file name. A new mesh whose file
         name another procedure has for another structure gets a name of its own.
-
-    Raises:
-        InputError: the scenario has no skull, or a mesh is unusable.
     """
     _skull(scenario)
     others = [each for each in scenario.procedures if each.name != procedure.name]

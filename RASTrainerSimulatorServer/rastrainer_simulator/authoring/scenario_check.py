@@ -143,11 +143,7 @@ def _distance_mm(planning: PlanningSetup, position: np.ndarray) -> float:
 
 
 def check_scenario(folder: Path) -> list[str]:
-    """Return a sentence for each error in the set-up, the plan and the tasks of a scenario.
-
-    Raises:
-        InputError: it cannot be read at all.
-    """
+    """Return a sentence for each error in the set-up, the plan and the tasks of a scenario."""
     scenario = checked_scenario(folder)
     mesh = read_head_mesh(scenario.head_mesh)
     wrong = []
@@ -170,7 +166,6 @@ SHORTEST_PATH_TOLERANCE = 0.01
 
 
 def measured(planning: PlanningSetup, task: Task) -> Task:
-    """Return a task with its complexity index and its shortest path."""
     index = complexity(task.fiducials, planning.mesh, planning.graph, planning.eye).index
     shortest = shortest_path_mm(task.fiducials, planning.mesh, planning.graph)
     return replace(task, complexity=round(index, 2), shortest_path_mm=round(shortest, 1))
@@ -319,11 +314,7 @@ def read_placed_tasks(
 
 
 def _read(mesh: HeadMesh, path: Path, plan: TaskPlan, warn: Warn) -> Task:
-    """Return a task on the skin.
-
-    Raises:
-        InputError: the file cannot be used, or a fiducial is far from the skin or on another one.
-    """
+    """Return a task on the skin."""
     placed = read_markups(path)
     labels = placed.labels or [""] * len(placed.points)
     points = np.array(placed.points, dtype=float)[touch_order(labels)]

@@ -157,9 +157,6 @@ class TaskProposer:
             seed: of the draws.
             begins_easy: use the easiest of many draws as the first task, for a head of which
                 little can be touched: there the others are not much harder.
-
-        Raises:
-            InputError: there is no room for the fiducials, or no draw is demanding enough.
         """
         seeds = np.random.default_rng(seed).integers(0, 2**31, (len(plans), ATTEMPTS))
         proposals: list[Proposal] = []
@@ -178,11 +175,7 @@ class TaskProposer:
         return proposals
 
     def propose(self, plan: TaskPlan, seed: int) -> Proposal:
-        """Return a task as planned.
-
-        Raises:
-            InputError: there is no room for the fiducials.
-        """
+        """Return a task as planned."""
         return self._measured(self._usable_draw(plan, seed))
 
     def _measured(self, draw: _Draw) -> Proposal:

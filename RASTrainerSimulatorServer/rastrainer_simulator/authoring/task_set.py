@@ -94,9 +94,6 @@ class TaskSetProposer:
 
         Their fiducials are on the skin, off the face, touchable in many poses of the head, and
         spread so that the target is located well; their numbers do not overlap.
-
-        Raises:
-            InputError: the robot reaches too little of this head, or there is no room.
         """
         planning, problem = self._planning, ""
         for attempt in range(ATTEMPTS):
@@ -160,7 +157,6 @@ class TaskSetProposer:
         return np.array([self._found[place] for place in places])
 
     def _report(self, step: str, share: float) -> None:
-        """Report the progress, which never decreases."""
         self._share = max(self._share, min(share, MAX_SHARE))
         self._progress(step, self._share)
 

@@ -167,7 +167,6 @@ def arc_lengths(points: np.ndarray, normals: np.ndarray) -> np.ndarray:
 
 
 def easiest_order(transitions: Transitions, members: list[int]) -> list[int]:
-    """Return a cheap order of the members: the best of all greedy orders, improved."""
     orders = [_improved(transitions, _greedy(transitions, members, start)) for start in members]
     return transitions.easiest(orders)[1]
 
@@ -259,7 +258,6 @@ class SurfaceGraph:
         return self._mesh.triangles[point.triangle].tolist()
 
     def _leaving(self, point: NearestPoint) -> list[tuple[float, int]]:
-        """Return the straight paths from a point to the corners of its triangle."""
         corners = self._corners(point)
         lengths = np.linalg.norm(self._mesh.vertices[corners] - point.position, axis=1)
         return list(zip(lengths.tolist(), corners, strict=True))

@@ -65,9 +65,6 @@ class BoardServer:
             on_new_code: Called with each new code for browsers.
             limits: What connections may cost.
             study: Whose trainees are the class; None for a board of seats alone.
-
-        Raises:
-            InputError: the list cannot be read.
         """
         self._client = client
         self._list = SeatList(config)
@@ -84,11 +81,7 @@ class BoardServer:
         )
 
     async def listen(self, host: str, port: int) -> int:
-        """Listen and return the port; 0 is any free one.
-
-        Raises:
-            InputError: the study cannot be read, or the port cannot be used.
-        """
+        """Listen and return the port; 0 is any free one."""
         await self._class.begin()
         return await self._http.listen(host, port)
 

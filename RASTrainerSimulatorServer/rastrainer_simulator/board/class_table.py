@@ -73,7 +73,6 @@ class ClassReader:
             raise
 
     def close(self) -> None:
-        """Close the study."""
         if self._study is not None:
             self._study.close()
         self._study = self._found = None
@@ -135,11 +134,7 @@ class ClassWatch:
         self._task: asyncio.Task[None] | None = None
 
     async def begin(self) -> None:
-        """Read once now, and repeatedly from now on.
-
-        Raises:
-            InputError: the study cannot be read, and waiting would not help.
-        """
+        """Read once now, and repeatedly from now on."""
         if self._thread is None:
             return
         try:

@@ -59,11 +59,7 @@ class SeatList:
     """The seats in a file that only its owner can read."""
 
     def __init__(self, config: Path) -> None:
-        """Read the file in the folder of settings; without one there are no seats.
-
-        Raises:
-            InputError: the file cannot be read, or is no list of seats.
-        """
+        """Read the file in the folder of settings; without one there are no seats."""
         self._path = config / SEATS_FILE
         self._entries: dict[str, SeatEntry] = {}
         if self._path.exists():
@@ -74,21 +70,13 @@ class SeatList:
         return iter(tuple(self._entries.values()))
 
     def put(self, entry: SeatEntry) -> None:
-        """Add a seat, or replace the one with the same `id`, and save the list.
-
-        Raises:
-            InputError: there are too many, or the file cannot be written.
-        """
+        """Add a seat, or replace the one with the same `id`, and save the list."""
         if entry.id not in self._entries and len(self._entries) >= MOST_SEATS:
             raise InputError(f"A board has at most {MOST_SEATS} seats.")
         self._write({**self._entries, entry.id: entry})
 
     def remove(self, seat: str) -> None:
-        """Forget a seat; an unknown one is no error.
-
-        Raises:
-            InputError: the file cannot be written.
-        """
+        """Forget a seat; an unknown one is no error."""
         self._write({id_: entry for id_, entry in self._entries.items() if id_ != seat})
 
     def _write(self, entries: dict[str, SeatEntry]) -> None:
@@ -101,9 +89,6 @@ def checked_address(address: str) -> str:
     """Return the address of a simulator without what follows the port.
 
     One that begins with its host is http on this computer, and https elsewhere.
-
-    Raises:
-        InputError: it is none, or would send the key over the network in the clear.
     """
     try:
         parts = urlsplit(address.strip())
@@ -129,11 +114,7 @@ def checked_address(address: str) -> str:
 
 
 def checked_fingerprint(value: str) -> str:
-    """Return a SHA-256 fingerprint as browsers and simulators show it.
-
-    Raises:
-        InputError: it is none.
-    """
+    """Return a SHA-256 fingerprint as browsers and simulators show it."""
     shown = value.strip().upper()
     if _FINGERPRINT.fullmatch(shown) is None:
         raise InputError("A fingerprint has 32 pairs of hexadecimal digits, separated by colons.")
@@ -214,7 +195,6 @@ class SeatClient:
         return self
 
     async def __aexit__(self, *_exception: object) -> None:
-        """Close all connections."""
         await self._session.close()
 
     async def fingerprint(self, address: str) -> str:

@@ -139,7 +139,6 @@ class WatchedSeat:
         }
 
     async def close(self) -> None:
-        """Stop watching."""
         self._task.cancel()
         await asyncio.gather(self._task, return_exceptions=True)
 
@@ -157,11 +156,7 @@ class WatchedSeat:
             await asyncio.sleep(RETRY_S)
 
     async def _watch_once(self) -> None:
-        """Receive what the simulator sends until the connection ends.
-
-        Raises:
-            InputError: it cannot be watched, or says something else than simulators do.
-        """
+        """Receive what the simulator sends until the connection ends."""
         stream = await self._client.stream(self.entry)
         try:
             await stream.send_str(_BOARD_HELLO)
@@ -181,11 +176,7 @@ class WatchedSeat:
 
 
 def checked_seat(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what a simulator reports about its seat; further members are ignored.
-
-    Raises:
-        InputError: something is missing or cannot be.
-    """
+    """Return what a simulator reports about its seat; further members are ignored."""
     missing = MEMBERS.keys() - values.keys()
     if missing:
         raise InputError(f"What a simulator says of its seat lacks {', '.join(sorted(missing))}.")
@@ -279,11 +270,7 @@ class LiveView:
 
 
 async def _expect_spectator(page: web.WebSocketResponse) -> None:
-    """Wait for the hello of a page that only watches.
-
-    Raises:
-        InputError: the page says something else.
-    """
+    """Wait for the hello of a page that only watches."""
     with contextlib.suppress(asyncio.TimeoutError):
         first = await page.receive(_HELLO_S)
         if first.type is WSMsgType.TEXT:

@@ -123,11 +123,7 @@ def _add_engine(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Simulate the cohort and return the exit status.
-
-    Raises:
-        InputError: an argument, the protocol or the folder cannot be used.
-    """
+    """Simulate the cohort and return the exit status."""
     if not 2 <= arguments.trainees <= MAX_TRAINEES or arguments.seed < 0:
         raise InputError(f"A cohort has 2 to {MAX_TRAINEES} trainees, and its seed is 0 or above.")
     protocol = read_study_protocol(arguments.protocol or asset_path(*SHIPPED_PROTOCOL))

@@ -79,11 +79,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print the comparison and return the exit status.
-
-    Raises:
-        InputError: study, scenario or an option cannot be used, or no trial can be registered.
-    """
+    """Print the comparison and return the exit status."""
     folder = arguments.scenario or asset_path("scenarios", "colin27")
     scenario = load_scenario(folder)
     notes: list[str] = [NOTE]

@@ -63,7 +63,6 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Play the demo and return the exit status."""
     play_demo(arguments.output, arguments.seed, arguments.speed)
     return 0
 
@@ -103,11 +102,7 @@ def play_demo(output: Path, seed: int, speed: float) -> None:
 
 
 def check_slicers_side() -> None:
-    """Check that the package that replaces Slicer is installed.
-
-    Raises:
-        InputError: it is not.
-    """
+    """Check that the package that replaces Slicer is installed."""
     if importlib.util.find_spec("slicer") is None:
         raise InputError(
             "The demo needs slicer-core, which plays the part of 3D Slicer: install it by "

@@ -64,11 +64,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write the export and return the exit status.
-
-    Raises:
-        InputError: the study cannot be read, the folder holds something, or journals are lacking.
-    """
+    """Write the export and return the exit status."""
     formats = arguments.format or [f for f in FORMATS if f != "bids" or arguments.records]
     if "bids" in formats and arguments.records is None:
         raise InputError("Motion-BIDS needs the journals: give their folder with --records.")

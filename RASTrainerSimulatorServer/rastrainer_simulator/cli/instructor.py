@@ -53,11 +53,7 @@ def add_board_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run_board(arguments: argparse.Namespace) -> int:
-    """Serve the board until it is stopped, and return the exit status.
-
-    Raises:
-        InputError: the list of seats or the study cannot be read, or the port cannot be used.
-    """
+    """Serve the board until it is stopped, and return the exit status."""
     check_ports(arguments)
     config = arguments.config or config_folder()
     asyncio.run(_serve(config, arguments.port, arguments.study))
@@ -107,11 +103,7 @@ def add_instructor_pin_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run_instructor_pin(arguments: argparse.Namespace) -> int:
-    """Set or remove the PIN, and return the exit status.
-
-    Raises:
-        InputError: it is no PIN, the two differ, or it cannot be saved.
-    """
+    """Set or remove the PIN, and return the exit status."""
     pin = InstructorPin(arguments.config or config_folder())
     if arguments.remove:
         pin.set("")

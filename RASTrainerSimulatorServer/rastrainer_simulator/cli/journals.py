@@ -34,11 +34,7 @@ def add_verify_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run_verify(arguments: argparse.Namespace) -> int:
-    """Print one line for each journal and return the exit status.
-
-    Raises:
-        InputError: the study cannot be read.
-    """
+    """Print one line for each journal and return the exit status."""
     if arguments.study is None:
         return max([_verify(path) for path in arguments.journals])
     from rastrainer.study.database.study import Study
@@ -84,11 +80,7 @@ def add_measure_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run_measure(arguments: argparse.Namespace) -> int:
-    """Print the metrics and return the exit status.
-
-    Raises:
-        InputError: the journal cannot be read.
-    """
+    """Print the metrics and return the exit status."""
     # Only here: to verify a journal, no metric need be imported.
     from rastrainer.journal.recording import Recording
     from rastrainer.motion.trial_motion import trial_motion

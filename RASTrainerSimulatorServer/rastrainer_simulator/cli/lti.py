@@ -59,11 +59,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Serve until it is stopped, or print what to register, and return the exit status.
-
-    Raises:
-        InputError: settings, key, certificate or study cannot be used, or the port is in use.
-    """
+    """Serve until it is stopped, or print what to register, and return the exit status."""
     if importlib.util.find_spec("jwt") is None:
         raise InputError("This needs PyJWT: install it with pip install 'rastrainer[lti]'.")
     check_ports(arguments)

@@ -29,7 +29,6 @@ def path_of_user(text: str) -> Path:
 
 
 def add_config(parser: argparse.ArgumentParser) -> None:
-    """Add the folder of the user's settings to a command's parser."""
     parser.add_argument(
         "--config", type=Path, metavar="DIR", help="folder of your settings (default: the usual)"
     )
@@ -88,11 +87,7 @@ def add_incomplete(parser: argparse.ArgumentParser) -> None:
 
 
 def read_known_study(arguments: argparse.Namespace) -> StudyData:
-    """Return the study of a command's arguments `study` and `incomplete`.
-
-    Raises:
-        InputError: the study cannot be read, or is incomplete and the option is not given.
-    """
+    """Return the study of a command's arguments `study` and `incomplete`."""
     # Only here: most commands read no study, and need not wait for its import.
     from rastrainer.study.database.cohort_store import IncompleteStudyError
     from rastrainer.study.study_data import read_study_data

@@ -48,7 +48,6 @@ class StatedErrors:
     Attributes:
         fle_mm: (n,) float, RMS length of each point's error.
         localization: The same as covariances.
-        expected_fre_mm: The FRE that they make expected.
         misfit: Probability of residuals as large as the present ones.
     """
 
@@ -59,7 +58,6 @@ class StatedErrors:
 
     @classmethod
     def of(cls, registration: Registration, fle_mm: np.ndarray) -> StatedErrors:
-        """Return the stated errors of a registration that is weighted by 1/FLE²."""
         error = stated_error(fle_mm)
         misfit = misfit_probability(registration, fle_mm)
         return cls(fle_mm, error, expected_fre(registration, error), misfit)
@@ -117,11 +115,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print the registration and return the exit status.
-
-    Raises:
-        InputError: a file cannot be used, or the points cannot be registered.
-    """
+    """Print the registration and return the exit status."""
     left_out: dict[str, tuple[str, ...]] = {}
 
     def read(path: str) -> PointList:
@@ -148,11 +142,7 @@ def run(arguments: argparse.Namespace) -> int:
 def register_files(
     arguments: argparse.Namespace, read: Callable[[str], PointList]
 ) -> tuple[Registration, TargetError | None, StatedErrors | None]:
-    """Return the registration of a command's files, the error to expect, and the stated errors.
-
-    Raises:
-        InputError: a file cannot be used, or the points cannot be registered.
-    """
+    """Return the registration of a command's files, the error to expect, and the stated errors."""
     labels, moving, fixed = pair(read(arguments.moving), read(arguments.fixed))
     fle_mm, weights = _weighting(arguments, labels)
     registration = register(moving, fixed, arguments.type, labels, weights)
@@ -286,9 +276,6 @@ def match_files(
     """Return the match of a command's files and the error to expect at its target.
 
     The points MOVING and FIXED, three landmarks or more, give the start.
-
-    Raises:
-        InputError: a file cannot be used, or its points cannot be matched.
     """
     for option in ("type", "fle", "weights"):
         if getattr(arguments, option) not in (None, "rigid"):

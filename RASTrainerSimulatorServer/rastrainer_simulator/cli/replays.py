@@ -41,11 +41,7 @@ def add_replay_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run_replay(arguments: argparse.Namespace) -> int:
-    """Show the trial, or print the result of the comparison, and return the exit status.
-
-    Raises:
-        InputError: the journal cannot be replayed, or an argument is not usable.
-    """
+    """Show the trial, or print the result of the comparison, and return the exit status."""
     if not arguments.verify:
         return _show(arguments)
     # Only here: the robot and the scenario take time to import.
@@ -125,12 +121,7 @@ def add_rate_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run_rate(arguments: argparse.Namespace) -> int:
-    """Let the rater work, report the progress, and return the exit status.
-
-    Raises:
-        InputError: an argument is not usable, there is nothing to rate, or a replay cannot be
-            shown.
-    """
+    """Let the rater work, report the progress, and return the exit status."""
     check_ports(arguments)
     if arguments.replays < 1:
         raise InputError("--replays must be at least 1.")

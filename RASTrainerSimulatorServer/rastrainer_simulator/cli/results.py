@@ -53,11 +53,7 @@ def add_score_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run_score(arguments: argparse.Namespace) -> int:
-    """Print the scores and return the exit status.
-
-    Raises:
-        InputError: the file or a mean completion time cannot be used.
-    """
+    """Print the scores and return the exit status."""
     modes = trials_by_mode(read_trials(arguments.trials))
     notes = read_notes(arguments.trials.with_suffix(".json"))
     means = {
@@ -145,11 +141,7 @@ def add_report_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run_report(arguments: argparse.Namespace) -> int:
-    """Write the report and return the exit status.
-
-    Raises:
-        InputError: the study cannot be read, or the folder not be written.
-    """
+    """Write the report and return the exit status."""
     # Only here: what `score` needs is imported much faster.
     from rastrainer.report.report import write_report
 
@@ -167,9 +159,6 @@ def _mean_times(given: list[str], modes: list[str]) -> dict[str, float]:
     Args:
         given: `MODE=SECONDS`, or `SECONDS` for all modes; the later one counts.
         modes: The modes of the trials.
-
-    Raises:
-        InputError: no number, or a mode that no trial has.
     """
     means: dict[str, float] = {}
     for text in given:

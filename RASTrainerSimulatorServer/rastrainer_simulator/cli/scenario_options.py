@@ -51,7 +51,6 @@ def add_library(parser: argparse.ArgumentParser) -> None:
 
 
 def add_output(parser: argparse.ArgumentParser) -> None:
-    """Add the folder and the title of a new scenario to an action's parser."""
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR", help="a new one")
     parser.add_argument("--title", help="default: the name of the new folder")
 
@@ -108,11 +107,7 @@ def add_plan(parser: argparse.ArgumentParser) -> None:
 
 
 def options_of(arguments: argparse.Namespace, source: str) -> ScenarioOptions:
-    """Return the options of a command line; `source` is the default for its source.
-
-    Raises:
-        InputError: a text or a number cannot be used.
-    """
+    """Return the options of a command line; `source` is the default for its source."""
     # Only here: it needs the robot, which takes time to import.
     from rastrainer_simulator.authoring.make import ScenarioOptions
 

@@ -43,11 +43,7 @@ class SentStatements:
     """
 
     def __init__(self, study: Path, store: str, home_page: str) -> None:
-        """Read what has been sent.
-
-        Raises:
-            InputError: the file cannot be read.
-        """
+        """Read what has been sent."""
         self.path = study.with_name(f"{study.name}.xapi-sent.json")
         self._key = f"{store} {home_page}"
         self._ids: dict[str, list[str]] = {}
@@ -61,7 +57,6 @@ class SentStatements:
             self._ids = found
 
     def missing(self, all_of_them: list[dict[str, Any]]) -> list[dict[str, Any]]:
-        """Return the statements that have not been sent."""
         known = set(self._ids.get(self._key, ()))
         return [statement for statement in all_of_them if statement["id"] not in known]
 
@@ -108,11 +103,7 @@ class Sender:
         return len(self._refused)
 
     def watch(self, period_s: float) -> None:
-        """Send repeatedly until the process is ended, waiting for an unreachable store.
-
-        Raises:
-            InputError: as `send`.
-        """
+        """Send repeatedly until the process is ended, waiting for an unreachable store."""
         retry_s = FIRST_RETRY_S
         while True:
             try:
@@ -165,11 +156,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Send and return the exit status: 1 if the store does not have everything.
-
-    Raises:
-        InputError: study, addresses or credentials cannot be used, or the store refuses them.
-    """
+    """Send and return the exit status: 1 if the store does not have everything."""
     if arguments.watch is not None and not 1.0 <= arguments.watch <= 86_400.0:
         raise InputError("--watch must be from 1 to 86400 s.")
     settings = read_record_store_settings(arguments.config)

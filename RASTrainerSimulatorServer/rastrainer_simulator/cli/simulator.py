@@ -113,11 +113,7 @@ def add_simulator_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run_simulator(arguments: argparse.Namespace) -> int:
-    """Run the simulator until it is stopped, and return the exit status.
-
-    Raises:
-        InputError: an argument, a file or the address cannot be used.
-    """
+    """Run the simulator until it is stopped, and return the exit status."""
     _check(arguments)
     connect_to = None if arguments.connect is None else _address(arguments.connect)
     # Only here: the robot and the scenario take time to import.

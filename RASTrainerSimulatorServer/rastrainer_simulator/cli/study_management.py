@@ -37,11 +37,7 @@ def add_copy_study_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run_copy_study(arguments: argparse.Namespace) -> int:
-    """Copy, print the number of rows, and return the exit status.
-
-    Raises:
-        InputError: a study cannot be used, or TO holds something.
-    """
+    """Copy, print the number of rows, and return the exit status."""
     if str(arguments.source) == str(arguments.target):
         raise InputError("FROM and TO are the same study.")
     with Study.open_for_reading(arguments.source) as source, Study.open(arguments.target) as target:
@@ -121,12 +117,7 @@ def add_delete_trainee_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run_delete_trainee(arguments: argparse.Namespace) -> int:
-    """Delete the trainee and return the exit status.
-
-    Raises:
-        InputError: there is no such study or trainee, a journal cannot be deleted, or --yes or
-            --records is missing.
-    """
+    """Delete the trainee and return the exit status."""
     with Study.open(arguments.study, must_exist=True) as study:
         count = len(study.history(arguments.pseudonym))
         if not arguments.yes:

@@ -53,11 +53,7 @@ def add_curriculum_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run_curriculum(arguments: argparse.Namespace) -> int:
-    """Set the curriculum if asked to, print the tables, and return the exit status.
-
-    Raises:
-        InputError: there is no such study, trainee or curriculum.
-    """
+    """Set the curriculum if asked to, print the tables, and return the exit status."""
     curriculum = None if arguments.set is None else read_curriculum(arguments.set)
     who = arguments.trainee or ""
     if curriculum is not None or arguments.end:
@@ -128,12 +124,7 @@ def add_pass_mark_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run_pass_mark(arguments: argparse.Namespace) -> int:
-    """Print the mark, write it to the protocol if requested, and return the exit status.
-
-    Raises:
-        InputError: there is no such study, trainee or protocol, someone has too few scored trials
-            or is in both groups, or the groups give no mark.
-    """
+    """Print the mark, write it to the protocol if requested, and return the exit status."""
     both = sorted({*arguments.novices} & {*arguments.experts})
     if both:
         raise InputError(f"{both[0]} is named in both groups; name each person once, in one group.")
@@ -182,7 +173,6 @@ def _last_trials(study: Study, pseudonym: str) -> tuple[PastTrial, ...]:
 
 
 def _method(groups: Sequence[Sequence[Sequence[PastTrial]]]) -> RegistrationMethod:
-    """Return the method by which all trials were registered."""
     methods = {trial.method for group in groups for own in group for trial in own}
     if len(methods) > 1:
         names = " and ".join(sorted(method.value for method in methods))

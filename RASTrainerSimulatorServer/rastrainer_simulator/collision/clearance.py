@@ -48,7 +48,6 @@ class Clearance(NamedTuple):
 
     @property
     def tip_m(self) -> float:
-        """Signed clearance of the tip to the head, m."""
         return self.tip.distance_m
 
     @property
@@ -63,7 +62,6 @@ class Clearance(NamedTuple):
 
     @property
     def worst(self) -> str:
-        """The nearest part: "tip", "shaft", "links", "self" or "table"."""
         parts = ("tip", "shaft", "links", "self", "table")
         return min(parts, key=lambda part: getattr(self, f"{part}_m"))
 
@@ -162,11 +160,7 @@ class HeadClearance:
         self.set_pose(np.eye(4))
 
     def set_pose(self, head_to_world: np.ndarray) -> None:
-        """Set the head's pose, HeadToWorld (4, 4) float, m.
-
-        Raises:
-            InputError: the matrix is not a rigid transform.
-        """
+        """Set the head's pose, HeadToWorld (4, 4) float, m."""
         pose = np.array(head_to_world, dtype=float)
         if pose.shape != (4, 4) or not np.isfinite(pose).all():
             raise InputError("HeadToWorld should be a 4 × 4 matrix of finite numbers.")
@@ -187,7 +181,6 @@ class HeadClearance:
         self._distance_bounds.forget()
 
     def nearest_to_point(self, point: Vector) -> Nearest:
-        """Return the point of the head nearest to a point, World, m."""
         return self._in_world(self._head.nearest_to_point(_moved(self._world_to_head_rows, point)))
 
     def is_crossed(self, start: Vector, end: Vector) -> bool:

@@ -158,9 +158,6 @@ class Collision:
             head_vertices: (n, 3) float, m, head frame, whose z points to the head's top.
             head_triangles: (m, 3) int, a closed surface.
             surroundings: the table and the head's stand.
-
-        Raises:
-            InputError: the head's surface is not closed.
         """
         self._arm = ArmCapsules(shape)
         self._head = HeadClearance(HeadSurface(head_vertices, head_triangles), self._arm)
@@ -173,11 +170,7 @@ class Collision:
         self.set_head_pose(np.eye(4))
 
     def set_head_pose(self, head_to_world: np.ndarray) -> None:
-        """Set the pose of the head, HeadToWorld (4, 4) float, m, and move the stand under it.
-
-        Raises:
-            InputError: the matrix is not a rigid transform.
-        """
+        """Set the pose of the head, HeadToWorld (4, 4) float, m, and move the stand under it."""
         self._head.set_pose(head_to_world)
         self._table.put_stand_under(self._head.base)
 
@@ -226,7 +219,6 @@ class Collision:
         return LineOfSight(self._head, self._arm, self._arm.pose(link_to_world), self.table_height)
 
     def nearest_to_point(self, point: Vector) -> Nearest:
-        """Return the place of the head nearest to a point, World, m."""
         return self._head.nearest_to_point(point)
 
     def nearest_to_shaft(

@@ -174,7 +174,6 @@ def _pushed_back(path: Slide, start: Moved, end: Moved, broken: str) -> Slide | 
 
 
 def _shifted(normal: Vector, gap: float, position: Vector) -> HalfSpace:
-    """Return the half-space that starts `gap` beyond a position along a normal."""
     return HalfSpace(normal, dot(normal, position) + gap)
 
 

@@ -43,11 +43,7 @@ class ClosedSurface:
     """
 
     def __init__(self, vertices: np.ndarray, triangles: np.ndarray) -> None:
-        """Take (n, 3) float vertices and (m, 3) int triangles; equal vertices become one.
-
-        Raises:
-            InputError: the surface is not closed, or holds unusable numbers.
-        """
+        """Take (n, 3) float vertices and (m, 3) int triangles; equal vertices become one."""
         vertices, triangles = _checked(vertices, triangles)
         neighbors = _neighbors(triangles, len(vertices))
         if _volume(vertices, triangles) < 0.0:
@@ -194,9 +190,6 @@ class HeadSurface:
         """Take (n, 3) float vertices and (m, 3) int triangles.
 
         The last surface is cached.
-
-        Raises:
-            InputError: the surface is not closed, or holds unusable numbers.
         """
         self._surface, mesh = _shapes(_Numbers(vertices), _Numbers(triangles))
         vertices = self._surface.vertices

@@ -61,7 +61,6 @@ class LineOfSight:
         return self.is_past_head(eye, place) and bool(off_links[0] > 0.0)
 
     def is_past_head(self, eye: Vector, place: Vector) -> bool:
-        """Return whether a point is seen from an eye past head and table."""
         return eye[2] > self._lowest and not self._head.is_crossed(eye, place)
 
     def is_past_tool(self, eye: Vector, place: Vector) -> bool:

@@ -33,9 +33,6 @@ def surface_points(vertices: np.ndarray, triangles: np.ndarray, spacing: float) 
     """Return points (k, 3) along the edges of a mesh, no two neighbors farther than `spacing`.
 
     `vertices` is (n, 3) float, `triangles` (m, 3) int.
-
-    Raises:
-        InputError: the mesh is so large, or has so many edges, that these are too many points.
     """
     edges = np.sort(
         np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
@@ -166,9 +163,6 @@ def robot_shape(model: RobotModel) -> RobotShape:
     The tool is the link behind the last joint whose mesh comes nearest to the tip; where none has
     a mesh, it is a thin rod from the tip to the wrist. Any other link without a collision mesh
     collides with nothing, as in any URDF.
-
-    Raises:
-        InputError: a mesh cannot be read.
     """
     links = {link.name: link for link in model.links}
     meshes = {
@@ -258,9 +252,6 @@ def capsules_along(points: np.ndarray, start: float, count: int = 5) -> tuple[Ca
     The tool's tip is at the origin. The tool is cut into `count` pieces such that they look
     slenderest from there, so that a taper stays a taper. `points` are
     `surface_points` spaced by at most half a millimeter.
-
-    Raises:
-        InputError: no point is that far up the axis.
     """
     if points[:, 2].max() < start:
         raise InputError("The tool's collision mesh should reach from its tip toward the wrist.")

@@ -180,7 +180,6 @@ class TouchPlanner:
 
 
 def tool_directions(normal: np.ndarray) -> Iterator[tuple[float, np.ndarray]]:
-    """Yield directions of the tool against a normal, and how far each leans, in degrees."""
     frame = _frame(normal)
     for number, (leaning_deg, _azimuth) in enumerate(_LEANINGS):
         yield leaning_deg, _leaning(frame, number)

@@ -47,7 +47,6 @@ class Posture:
 
     @property
     def tool_axes(self) -> Axes:
-        """The axes of the tool's tip: its x, y and z in World."""
         x, y, z, _ = self.tool_tip_to_world.T.tolist()
         return Axes(tuple(x[:3]), tuple(y[:3]), tuple(z[:3]))
 
@@ -145,18 +144,13 @@ class JointMotion:
 
 
 def _share(start: Joints, part: Joints, whole: Joints) -> float:
-    """Return which share of the motion from `start` to `whole` has been made at `part`."""
     angles = [(abs(b - a), abs(c - a)) for a, b, c in zip(start, part, whole, strict=True)]
     made, needed = max(angles, key=lambda pair: pair[1])
     return made / needed
 
 
 def start_joints(robot: RobotModel, scenario: Scenario, height: float) -> tuple[float, ...]:
-    """Return the joint angles with the tip `height` m above the head's target, nominally placed.
-
-    Raises:
-        InputError: the robot cannot get there.
-    """
+    """Return the joint angles with the tip `height` m above the head's target, nominally placed."""
     solution = Fabrik(robot).solve(start_tip(scenario, height), DOWN, q_start=robot.home)
     if not solution.converged:
         raise InputError(

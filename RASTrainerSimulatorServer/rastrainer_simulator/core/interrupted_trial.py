@@ -71,7 +71,6 @@ class RecordedFeed:
         self._stage = Phase.RUNNING
 
     def before(self, effect: Mapping[str, Any]) -> Feed:
-        """Return the feed at which a command had an effect."""
         ahead = _ahead(effect) or self._ahead
         drilled = meters(effect.get("drilledMm", 0.0))
         return Feed(meters(effect.get("feedMm", 0.0)), drilled, ahead)
@@ -160,11 +159,7 @@ class InterruptedTrial:
 
     @classmethod
     def of(cls, entries: Sequence[Mapping[str, Any]]) -> InterruptedTrial | None:
-        """Read the entries of a journal; None if no trial is open.
-
-        Raises:
-            InputError: the entries are not those of a trial.
-        """
+        """Read the entries of a journal; None if no trial is open."""
         with refusing_malformed(MALFORMED):
             return cls._of(entries)
 
@@ -200,9 +195,6 @@ def find_interrupted(folder: Path) -> tuple[JournalReading, InterruptedTrial] | 
 
     None if that trial was registered or aborted: anyone who has started another trial has left an
     older one behind.
-
-    Raises:
-        InputError: that journal was altered, or cannot be read.
     """
     path = newest_journal(folder)
     if path is None or path.stat().st_size == 0:
@@ -218,9 +210,6 @@ def recorded_command(entry: Mapping[str, Any], seed: int) -> OperatorCommand:
     """Return a recorded command; its arguments are checked, as the file may be forged.
 
     `seed` is that of the trial.
-
-    Raises:
-        InputError: they are not those of the protocol.
     """
     name = entry["name"]
     arguments = {key: value for key, value in entry["arguments"].items() if value is not None}

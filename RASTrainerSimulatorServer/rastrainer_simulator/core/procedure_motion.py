@@ -51,11 +51,7 @@ class TrueHead:
     """
 
     def __init__(self, scenario: Scenario, skin: HeadMesh) -> None:
-        """Read the skull of the scenario whose skin is given.
-
-        Raises:
-            InputError: its mesh cannot be used.
-        """
+        """Read the skull of the scenario whose skin is given."""
         assert scenario.skull_mesh is not None, "a scenario with procedures has a skull"
         self._skin, self._skull = skin, read_head_mesh(scenario.skull_mesh)
         # Computed now, not in the tick in which the first guide is locked.
@@ -128,7 +124,6 @@ class ProcedureMotion:
         self._drive.stop()
 
     def looking_ahead(self, guide: GuideAxis, head_to_world: np.ndarray) -> Feed:
-        """Return the feed of a guide that is to be locked: with what truly lies ahead of it."""
         assert self._true_head is not None, "the phase has a procedure"
         return Feed(ahead=self._true_head.ahead(guide, head_to_world))
 

@@ -56,11 +56,7 @@ def settings_to_json(settings: Any) -> dict[str, Any]:
 
 
 def settings_from_json(kind: type[T], value: Mapping[str, Any]) -> T:
-    """Return the settings that a JSON object holds; what it lacks keeps its default.
-
-    Raises:
-        InputError: a name or a value is unknown.
-    """
+    """Return the settings that a JSON object holds; what it lacks keeps its default."""
     hints = get_type_hints(kind)
     unknown = set(value) - set(hints)
     if unknown:

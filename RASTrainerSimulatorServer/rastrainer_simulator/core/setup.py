@@ -207,11 +207,7 @@ def load_setup(
     urdf_path: Path | None = None,
     robot_meshes: Path | None = None,
 ) -> SimulationSetup:
-    """Load a scenario and a robot; by default those that come with RASTrainer.
-
-    Raises:
-        InputError: a file of theirs cannot be used.
-    """
+    """Load a scenario and a robot; by default those that come with RASTrainer."""
     folder = scenario_folder or asset_path(*DEFAULT_SCENARIO)
     scenario = load_scenario(folder)
     robot, shape = _robot_and_shape(urdf_path, robot_meshes)

@@ -308,7 +308,6 @@ class FrameCount:
         self._shown += 1
 
     def report(self, now: float) -> None:
-        """Report if a second is over."""
         if now - self._since >= REPORT_EVERY_S:
             self._on_second(self._shown, max(0, self._due - self._shown))
             self._since, self._shown, self._due = now, 0, 0
@@ -348,7 +347,6 @@ class Sounds:
 
     @property
     def names(self) -> Iterable[str]:
-        """The available sounds."""
         return self._sounds.keys()
 
     def play(self, name: str, volume: float) -> bool:

@@ -70,7 +70,6 @@ class ServerConnection:
             self.send(PICTURE, task=task, share=1.0)
 
     def send(self, message: str, /, **members: Any) -> None:
-        """Send a message of that type; without a connection it is dropped."""
         if self._stream is not None:
             self._outgoing.put_nowait({"type": message, **members})
 
@@ -197,7 +196,6 @@ class ServerConnection:
         )
 
     async def _content(self, session: aiohttp.ClientSession, path: str, most: int) -> bytes:
-        """Return what the simulator has at a path, at most `most` bytes of it."""
         async with session.get(self._url + path) as answer:
             answer.raise_for_status()
             content = await answer.content.read(most)
@@ -220,11 +218,7 @@ _TAKE: Mapping[str, Callable[[ServerConnection, Mapping[str, Any]], None]] = {
 
 
 async def pair(url: str, code: str) -> str:
-    """Return a key in exchange for the code that the simulator shows.
-
-    Raises:
-        InputError: the code is wrong, or there is no simulator.
-    """
+    """Return a key in exchange for the code that the simulator shows."""
     address = f"{url.rstrip('/')}/pair"
     try:
         async with (

@@ -88,7 +88,6 @@ class GlWindow:
 
     @property
     def size(self) -> tuple[int, int]:
-        """Width and height in pixels."""
         width, height = self._window.size
         return max(1, width), max(1, height)
 

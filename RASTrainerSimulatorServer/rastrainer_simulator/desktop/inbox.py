@@ -61,11 +61,7 @@ class Part:
 
 
 def read_parts(content: bytes, bodies: Collection[str]) -> list[Part]:
-    """Return the parts of a GLB in which the nodes named `bodies` can be moved.
-
-    Raises:
-        InputError: it is no GLB, or none of the bodies is in it.
-    """
+    """Return the parts of a GLB in which the nodes named `bodies` can be moved."""
     try:
         scene = trimesh.load_scene(io.BytesIO(content), file_type="glb", process=False)
         parents = dict(scene.graph.transforms.parents)

@@ -130,7 +130,6 @@ class KeptView:
         self.moving.DrawOn()
 
     def hide(self) -> None:
-        """Draw nothing."""
         self.still.DrawOff()
         self.moving.DrawOff()
 

@@ -109,7 +109,6 @@ class OperatorKeys:
             self._connection.send(VISIBILITY, isVisible=is_visible)
 
     def is_held(self, scancode: int) -> bool:
-        """Return whether a key, by its SDL scancode, is held."""
         return CODES.get(scancode, "") in self._held
 
     def keep_alive(self) -> None:
@@ -120,7 +119,6 @@ class OperatorKeys:
             self._sent_at = now
 
     def tap(self, code: str) -> None:
-        """Press and release a key."""
         self._press(code, "")
         self._release(code)
 
@@ -224,7 +222,6 @@ class MouseSticks:
         return False
 
     def release(self) -> None:
-        """Release both sticks."""
         self._dragged = None
         self._tell(((0.0, 0.0), (0.0, 0.0)))
 

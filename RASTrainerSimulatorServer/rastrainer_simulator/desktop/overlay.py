@@ -150,7 +150,6 @@ class Overlay:
         return self._brush.scale
 
     def _place(self, name: str, left: int, top: int) -> None:
-        """Place a painted slot by its upper left corner."""
         sprite = self._slots[name].sprite
         sprite.show(left, self._size[1] - top - sprite.size[1])
 

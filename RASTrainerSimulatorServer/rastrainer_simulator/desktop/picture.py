@@ -121,7 +121,6 @@ class Picture:
 
     @property
     def has_sticks(self) -> bool:
-        """Whether there are sticks to be dragged."""
         screen = self._inbox.screen
         is_free = screen is not None and screen.menu is None and screen.has_sticks
         return is_free and self._inbox.has_control and not self._inbox.problem
@@ -144,7 +143,6 @@ class Picture:
 
     @property
     def _menu(self) -> str:
-        """The name of the menu that the simulator has open; "" without one."""
         screen = self._inbox.screen
         return "" if screen is None or screen.menu is None else screen.menu.name
 
@@ -198,7 +196,6 @@ class Picture:
             self._must_draw = True
 
     def _show_instrument(self, procedure: Mapping[str, Any] | None) -> None:
-        """Show what the tool is in a procedure, and its no-go structures."""
         assert self._scene is not None
         assert self._loaded is not None
         if procedure is None:

@@ -74,21 +74,13 @@ def picture_path(folder: Path) -> Path:
 
 
 def write_picture(pixels: np.ndarray, path: Path) -> None:
-    """Write (height, width, 3) uint8 pixels as a PNG, in a folder that need not exist.
-
-    Raises:
-        InputError: it cannot be written.
-    """
+    """Write (height, width, 3) uint8 pixels as a PNG, in a folder that need not exist."""
     make_folder(path.parent, is_private=True)
     write_png(pixels, path)
 
 
 async def save_screenshot(screenshot: Screenshot) -> None:
-    """Draw and write the picture.
-
-    Raises:
-        InputError: it cannot be drawn or written.
-    """
+    """Draw and write the picture."""
     pipe = asyncio.subprocess.PIPE
     process = await asyncio.create_subprocess_exec(*python_command(MODULE), stdin=pipe, stderr=pipe)
     _, errors = await process.communicate(pickle.dumps(screenshot))

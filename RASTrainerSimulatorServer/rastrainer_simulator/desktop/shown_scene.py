@@ -135,7 +135,6 @@ class ShownScene:
 
     @property
     def actors(self) -> list[vtkProp3D]:
-        """All of them."""
         return [*self.still, *self.moving]
 
     def finish(self, is_physical: bool) -> None:
@@ -219,7 +218,6 @@ class ShownScene:
                 self._set_visible(name, bool(shown) and name in no_go)
 
     def paint_skin(self, trace: ShownTrace) -> None:
-        """Paint the skin around what was traced."""
         for _actor, part in self._lit["head"]:
             if SKIN_NODE in part.nodes and self._coverage.cover(part.vertices, trace):
                 self._light_still("head")

@@ -38,7 +38,6 @@ class Quality(str, Enum):
 
     @property
     def next_lower(self) -> Quality:
-        """The next quality that costs less."""
         return Quality.MEDIUM if self is Quality.HIGH else Quality.LOW
 
 
@@ -58,7 +57,6 @@ class CameraTransition:
         self._since = -TRANSITION_S
 
     def start(self, to: Viewpoint, now: float) -> None:
-        """Move to a viewpoint from wherever the camera is at `now` (s)."""
         self._from, self._to, self._since = self.at(now), to, now
 
     def follow(self, to: Viewpoint) -> None:
@@ -66,7 +64,6 @@ class CameraTransition:
         self._to = to
 
     def is_moving(self, now: float) -> bool:
-        """Return whether the camera is still moving."""
         return now - self._since < TRANSITION_S
 
     def at(self, now: float) -> Viewpoint:
@@ -107,7 +104,6 @@ class Viewports:
         self._light()
 
     def show(self, scene: ShownScene, cameras: Mapping[str, Viewpoint]) -> None:
-        """Show another scene."""
         scene.finish(self.quality.is_physical)
         self._scene, self._cameras, self._transition = scene, dict(cameras), None
         self.arrange()

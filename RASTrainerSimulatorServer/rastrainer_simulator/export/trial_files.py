@@ -48,9 +48,6 @@ def write_motion_bids(data: StudyData, folder: Path, find_trajectory: FindTrajec
         data: The study.
         folder: Target; must be empty or missing.
         find_trajectory: Returns the trajectory of a trial's UUID, or None.
-
-    Raises:
-        InputError: the folder is not empty or cannot be written, or no trial has a trajectory.
     """
     make_empty_folder(folder)
     labels = participant_labels(data.trainees)
@@ -206,9 +203,6 @@ def write_slicer_files(trial: StoredTrial, folder: Path) -> list[Path]:
     where the truth is known, `trajectory-1-shown.mrk.json`, where the plan as it was shown truly
     lay in the head, and `trajectory-1-placed.mrk.json` from the guide's tip to the instrument's,
     all in RAS.
-
-    Raises:
-        InputError: the folder cannot be written.
     """
     make_folder(folder)
     record, rigid = trial.record, trial.registrations.get(RIGID)

@@ -116,7 +116,6 @@ class ArmScreen:
         return tuple(warnings)
 
     def _forget_arm(self) -> None:
-        """Forget the warnings: the arm is moved to its start."""
         self._obstacle, self._is_within_reach = "", True
 
     def _change_camera(self) -> None:
@@ -138,7 +137,6 @@ class ArmScreen:
         )
 
     def _control_hints(self, names: Mapping[ControlName, str]) -> tuple[Hint, ...]:
-        """Return a hint for each control with the key of what it does."""
         session = self._session
         return tuple(
             slow_hint(session)

@@ -232,7 +232,6 @@ class Flow:
 
     @property
     def _is_work_open(self) -> bool:
-        """Whether a trial or the tutorial waits under the menu."""
         return self._session.has_open_trial or self._session.tutorial is not None
 
     def _advance_tutorial(self, dt: float, tutorial: Tutorial) -> None:

@@ -126,7 +126,6 @@ class FlowPresenter:
             self._refresh()
 
     def pictures(self, now: SimulationState) -> Pictures:
-        """Return the viewpoint of the pictures of a state."""
         return self._view.pictures(now)
 
     def ghost(self, now: SimulationState) -> tuple[np.ndarray, ...] | None:
@@ -198,7 +197,6 @@ class FlowPresenter:
         self._is_changed = True
 
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
-        """Process the input of a gamepad that a browser reads."""
         source = self._views.source(SourceKind.BROWSER_GAMEPAD, view)
         self.controls.set_inputs(source, w3c_gamepad_inputs(axes, buttons))
         self._settle()
@@ -286,13 +284,11 @@ class FlowPresenter:
         self._settle()
 
     def pressed(self, control: ControlName) -> None:
-        """Process a control that the operator has pressed."""
         self._flow.pressed(control)
         self._is_changed = True
         self._settle()
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """Offer a pressed input to the open page; return whether the page consumes it."""
         page = self._session.pages.top
         self._is_changed = True
         return page is not None and page.input_pressed(device, name)

@@ -37,11 +37,9 @@ class AwaitedPictures:
         self._loaded: dict[int, _LoadedScene] = {}
 
     def take(self, view: int, task: str, share: float) -> None:
-        """Note how much of a task's scene a view has loaded."""
         self._loaded[view] = _LoadedScene(task, share)
 
     def forget(self, view: int) -> None:
-        """Forget a view that has left."""
         self._loaded.pop(view, None)
 
     def advance(self, dt: float, view: int | None, task: str) -> float | None:
@@ -65,7 +63,6 @@ class ViewSources:
         self._yaw_deg: dict[int, float] = {}
 
     def join(self, view: int, hello: Hello) -> None:
-        """Register a view."""
         self._views[view] = hello
 
     def leave(self, view: int) -> Hello | None:
@@ -86,7 +83,6 @@ class ViewSources:
 
     @property
     def has_headset(self) -> bool:
-        """Whether one of them is a headset."""
         return any(hello.kind == "headset" for hello in self._views.values())
 
     def hear(self, view: int, is_heard: bool) -> None:
@@ -116,7 +112,6 @@ class ViewSources:
         return next((view for view in choices if view is not None), None)
 
     def source(self, kind: SourceKind, view: int) -> Source:
-        """Return a view's source; the simulator's own windows share a station with its gamepad."""
         hello = self._views.get(view)
         is_own = hello is not None and hello.kind == "desktop"
         return Source(kind, SIMULATOR_STATION if is_own else f"view {view}", view)
@@ -161,7 +156,6 @@ class OperatedView:
         self._since_noted = 0.0
 
     def pictures(self, now: SimulationState) -> Pictures:
-        """Return the viewpoint of the pictures of a state."""
         return self._session.view.pictures(now, self._shown.setup.scenario.cameras)
 
     def turn(self, source: Source, around_deg: float, higher_deg: float, zoom: float) -> None:

@@ -40,7 +40,6 @@ class ProcedureScreen(ArmScreen):
     """The instructions, the figures and the controls of the phases after the touches."""
 
     def __init__(self, session: TrainingSession, trial_screen: TrialScreen) -> None:
-        """`trial_screen` is that of the touches; the trial's menu is its own."""
         super().__init__(session)
         self._trial_screen = trial_screen
         self._layer = ""
@@ -76,7 +75,6 @@ class ProcedureScreen(ArmScreen):
             self._trial_screen.pressed(control)
 
     def open_menu(self) -> None:
-        """Open the trial's menu, which pauses it."""
         self._trial_screen.open_menu()
 
     def instruction(self) -> ScreenMessage:

@@ -95,11 +95,9 @@ class RunningPresenter:
         self.presenter.warn("gamepad")
 
     def gamepad_moved(self, number: int, inputs: Mapping[str, float]) -> None:
-        """Process the input of a gamepad."""
         self.presenter.controls.set_inputs(self._sources[number], inputs)
 
     def gamepad_removed(self, number: int, name: str) -> None:
-        """Release what an unplugged gamepad held."""
         self.presenter.unplugged(self._sources.pop(number))
         self.presenter.warn("gamepad", "warning.unplugged", name=name)
 

@@ -71,14 +71,12 @@ class TrialScreen(ArmScreen):
         return self.guidance is not Guidance.NONE
 
     def take(self, event: Event) -> None:
-        """Process an event."""
         super().take(event)
         if event.kind is EventKind.REJECTED:
             self._refused_at = self._session.tip
 
     @property
     def is_practice_over(self) -> bool:
-        """Whether the trial run's minutes have passed."""
         state = self._session.state
         return state.training.task == TRIAL_RUN and state.elapsed >= self._practice_s
 

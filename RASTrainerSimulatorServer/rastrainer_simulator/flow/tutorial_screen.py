@@ -103,7 +103,6 @@ class TutorialScreen(ArmScreen):
 
     @property
     def has_arrow(self) -> bool:
-        """Whether a view points to the next point."""
         return self._tutorial.practice.has_points
 
     def advance(self, dt: float) -> None:
@@ -137,7 +136,6 @@ class TutorialScreen(ArmScreen):
             self.open_menu()
 
     def open_menu(self) -> None:
-        """Open the tutorial's menu."""
         self._has_paused = self._tutorial.step is TutorialStep.PAUSE
         self._session.pages.show(TutorialPage(self._session))
 

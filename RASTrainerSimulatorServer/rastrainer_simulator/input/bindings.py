@@ -47,7 +47,6 @@ class Bindings:
             _check(device, self.table(device))
 
     def table(self, device: InputDevice) -> Table:
-        """Return the inputs of each control of a device."""
         return self.gamepad if device is InputDevice.GAMEPAD else self.keyboard
 
     def control(
@@ -73,9 +72,6 @@ class Bindings:
         """Return the bindings with `name` as the only input of a control.
 
         A control that it is taken from gets the former input in exchange.
-
-        Raises:
-            InputError: the exchange would give an input two meanings.
         """
         table = dict(self.table(device))
         former = table[control][0]
@@ -183,11 +179,7 @@ DEFAULT_BINDINGS = Bindings(_table(_GAMEPAD), _table(_KEYBOARD))
 
 
 def read_bindings(path: Path) -> Bindings:
-    """Return the bindings of a settings file; missing ones have their defaults.
-
-    Raises:
-        InputError: the file cannot be read, or holds something else; the sentence names the field.
-    """
+    """Return the bindings of a settings file; missing ones have their defaults."""
     values = read_json(path, MAX_BYTES)
     if not isinstance(values, dict) or values.get("formatVersion") != FORMAT_VERSION:
         raise InputError(f"{path} must be a JSON object with the formatVersion {FORMAT_VERSION}.")
@@ -201,11 +193,7 @@ def read_bindings(path: Path) -> Bindings:
 
 
 def write_bindings(path: Path, bindings: Bindings) -> None:
-    """Save the bindings.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
+    """Save the bindings."""
     values: dict[str, Any] = {"formatVersion": FORMAT_VERSION}
     for device in InputDevice:
         table = bindings.table(device)

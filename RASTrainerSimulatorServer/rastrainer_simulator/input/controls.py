@@ -104,7 +104,6 @@ class Controls:
         return state.view(self.bindings)
 
     def is_operator(self, source: Source) -> bool:
-        """Return whether a source is at the station of the holder of control, or no one has it."""
         return self.holder is None or self.holder.station == source.station
 
     @property
@@ -281,7 +280,6 @@ class InputState:
         return tuple(self._inputs.values())
 
     def is_down(self, name: str) -> bool:
-        """Whether an input is pressed."""
         return name in self._down
 
     def is_still_held(self, name: str) -> bool:
@@ -344,7 +342,6 @@ class InputState:
         )
 
     def view(self, bindings: Bindings) -> tuple[float, float, float]:
-        """Return what is held to move the view: around to the right, higher, nearer; −1…1 each."""
         around, higher, nearer = self._pushed(bindings.table(self.device), VIEW)
         return around, higher, nearer
 

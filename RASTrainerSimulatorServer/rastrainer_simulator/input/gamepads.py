@@ -60,7 +60,6 @@ _W3C_BUTTONS = (
 
 
 def gamepad_inputs(axes: Sequence[float], buttons: Sequence[float]) -> dict[str, float]:
-    """Return the inputs (0…1) of a gamepad whose axes and buttons are in SDL's order."""
     return {**dict(zip(BUTTONS, buttons, strict=False)), **_halves(AXES, axes)}
 
 
@@ -140,7 +139,6 @@ class Gamepads:
             pad.rumble(strength, strength, milliseconds)
 
     def close(self) -> None:
-        """Close all gamepads and SDL."""
         self._open.clear()
         self._controller.quit()
         self._pygame.display.quit()

@@ -149,7 +149,6 @@ class ControlLoop:
         self.stop()
 
     def start(self) -> None:
-        """Start ticking."""
         self._thread.start()
 
     def stop(self) -> None:
@@ -160,7 +159,6 @@ class ControlLoop:
 
     @property
     def is_running(self) -> bool:
-        """Whether the loop is ticking."""
         return self._thread.is_alive()
 
     @property

@@ -120,7 +120,6 @@ class Subscribers(Generic[T]):
         return remove
 
     def publish(self, item: T) -> None:
-        """Call every callback."""
         for callback in self._callbacks:
             callback(item)
 
@@ -210,7 +209,6 @@ class PendingAnswers:
         return ticket, future
 
     def give(self, answer: Answer) -> None:
-        """Resolve the future of an answer's ticket; a second answer is ignored."""
         future = self._futures.pop(answer.ticket, None)
         if future is not None and future.set_running_or_notify_cancel():
             future.set_result(answer)

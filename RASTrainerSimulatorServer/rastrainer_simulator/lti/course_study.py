@@ -67,26 +67,17 @@ class CourseStudy:
     """A study and its links to platforms; for one thread."""
 
     def __init__(self, place: StudyPlace) -> None:
-        """Open an existing study.
-
-        Raises:
-            InputError: there is none, or it cannot be used.
-        """
+        """Open an existing study."""
         if isinstance(place, Path) and not place.is_file():
             raise InputError(f"There is no study {place}; make it in 3D Slicer first.")
         self._study = Study.open(place, must_exist=True)
         self._links = PlatformLinks(path_beside_study(place))
 
     def close(self) -> None:
-        """Close it."""
         self._study.close()
 
     def member(self, launch: PlatformLaunch) -> CourseMember:
-        """Return a learner's trainee, who is new in the study at the first launch.
-
-        Raises:
-            InputError: the study or its links cannot be written.
-        """
+        """Return a learner's trainee, who is new in the study at the first launch."""
         self.forget_deleted()
         issuer, subject = launch.platform.issuer, launch.subject
         pseudonym = self._links.pseudonym(issuer, subject)
@@ -114,11 +105,7 @@ class CourseStudy:
         return CourseMember(pseudonym, counting, terms.grade(self._study.past_trials(pseudonym)))
 
     def due(self) -> list[DueGrade]:
-        """Return the grades that platforms have not confirmed.
-
-        Raises:
-            InputError: the study or its links cannot be read.
-        """
+        """Return the grades that platforms have not confirmed."""
         self.forget_deleted()
         earliest = moment(utc_now()) - timedelta(days=FOLLOWED_DAYS)
         past_trials = functools.cache(self._study.past_trials)
@@ -132,11 +119,7 @@ class CourseStudy:
         return found
 
     def note_sent(self, grade: DueGrade, utc: str) -> None:
-        """Remember that a platform has confirmed a grade.
-
-        Raises:
-            InputError: the links cannot be written.
-        """
+        """Remember that a platform has confirmed a grade."""
         self._links.note_sent(grade.assignment, grade.score, utc)
 
     def forget_deleted(self) -> None:
@@ -217,11 +200,7 @@ class GradeReturn:
             await asyncio.sleep(ROUND_S)
 
     async def send_due(self) -> int:
-        """Send once what is due and return how many grades were confirmed.
-
-        Raises:
-            InputError: the study or its links cannot be used.
-        """
+        """Send once what is due and return how many grades were confirmed."""
         confirmed = 0
         due = await self._study.do(CourseStudy.due)
         # A grade at which a platform always fails comes last, and so delays no other.

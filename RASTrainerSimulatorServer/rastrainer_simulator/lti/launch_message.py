@@ -49,7 +49,6 @@ class GradeTerms:
 
     @classmethod
     def of(cls, stored: LinkedAssignment) -> GradeTerms:
-        """Return the terms of a stored assignment."""
         method, rule = RegistrationMethod(stored.method), GradeRule(stored.rule)
         return cls(stored.task, stored.mode, method, rule)
 

@@ -89,11 +89,7 @@ class LtiServer:
         self._returning: asyncio.Task[None] | None = None
 
     async def listen(self, host: str, port: int, tls: ssl.SSLContext | None = None) -> int:
-        """Open the study, listen and return the port; 0 is any free one.
-
-        Raises:
-            InputError: the study cannot be opened, or the port cannot be used.
-        """
+        """Open the study, listen and return the port; 0 is any free one."""
         await self._study.do(CourseStudy.forget_deleted)
         return await self._http.listen(host, port, tls)
 

@@ -49,7 +49,6 @@ class PlatformClient:
         return self
 
     async def __aexit__(self, *_exception: object) -> None:
-        """Close it."""
         await self._session.close()
 
     async def json(self, url: str, form: Mapping[str, str] | None = None) -> Any:

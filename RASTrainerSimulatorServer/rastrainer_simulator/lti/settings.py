@@ -137,11 +137,7 @@ class LtiSettings:
 
 
 def read_lti_settings(config: Path) -> LtiSettings:
-    """Return the settings in a folder.
-
-    Raises:
-        InputError: there are none, or they cannot be used.
-    """
+    """Return the settings in a folder."""
     path = config / SETTINGS_FILE
     what = printable_name(path)
     if not path.exists():
@@ -190,11 +186,7 @@ class ToolKey:
     """The key, in a file that only its owner can read."""
 
     def __init__(self, config: Path) -> None:
-        """Read the key in a folder of settings, or make one.
-
-        Raises:
-            InputError: the file cannot be read or written, holds no key, or others can read it.
-        """
+        """Read the key in a folder of settings, or make one."""
         path = config / KEY_FILE
         if not path.exists():
             _make(path)
@@ -210,7 +202,6 @@ class ToolKey:
         """Public key for platforms that are given it instead of an address."""
 
     def key_set(self) -> dict[str, Any]:
-        """Return the public key as a JSON Web Key Set."""
         key = RSAAlgorithm.to_jwk(self._private.public_key(), as_dict=True)
         return {"keys": [{**key, "kid": self._key_id, "alg": ALGORITHM, "use": "sig"}]}
 

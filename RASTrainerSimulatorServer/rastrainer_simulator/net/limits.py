@@ -35,7 +35,6 @@ class LinkLimits:
         slowest_bytes_per_s: bytes a second.
         silent_peer_s: time after which a peer is dropped whose machine does not answer any more.
         buffer_bytes: passed to the operating system ahead of a client that reads slowly.
-        waiting_messages: messages, and
         waiting_bytes: bytes that may wait for a client; one more drops it.
         commands_at_once: commands of one client that are submitted to the control loop at a time.
         waiting_commands: further commands, and
@@ -124,11 +123,7 @@ class ServerLimits:
 
 
 def read_limits(folder: Path) -> ServerLimits:
-    """Return the limits that the file in a folder sets; missing ones have their defaults.
-
-    Raises:
-        InputError: the file cannot be read, or sets an unknown or invalid limit.
-    """
+    """Return the limits that the file in a folder sets; missing ones have their defaults."""
     path = folder / LIMITS_FILE
     if not path.exists():
         return ServerLimits()

@@ -59,9 +59,6 @@ class RecordStore:
             url: of the xAPI endpoint, such as "https://lrs.example.org/xAPI"; only this computer
                 may be addressed without TLS.
             credentials: name and password as "name:password".
-
-        Raises:
-            InputError: the address or the credentials cannot be used.
         """
         try:
             parts = urlsplit(url)
@@ -200,11 +197,7 @@ _KEYS = {
 
 
 def read_record_store_settings(config: Path | None) -> RecordStoreSettings:
-    """Return the settings in a folder, by default the usual one; without a file there are none.
-
-    Raises:
-        InputError: the file cannot be used.
-    """
+    """Return the settings in a folder, by default the usual one; without a file there are none."""
     folder = config or config_folder()
     path = folder / RECORD_STORE_FILE
     if not path.exists():

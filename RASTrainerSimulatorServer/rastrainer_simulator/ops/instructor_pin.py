@@ -69,15 +69,10 @@ class InstructorPin:
 
     @property
     def is_set(self) -> bool:
-        """Whether there is a PIN."""
         return self._path.exists()
 
     def accepts(self, pin: str) -> bool:
-        """Return whether a PIN is the right one; takes about 50 ms.
-
-        Raises:
-            InputError: the file cannot be read or is no PIN's.
-        """
+        """Return whether a PIN is the right one; takes about 50 ms."""
         values = read_json(self._path, _MAX_BYTES)
         try:
             salt, known = (base64.b64decode(values[name]) for name in ("salt", "hash"))
@@ -89,11 +84,7 @@ class InstructorPin:
         return hmac.compare_digest(_hash(pin, salt), known)
 
     def set(self, pin: str) -> None:
-        """Set a new PIN, or none with "".
-
-        Raises:
-            InputError: it is no PIN, or the file cannot be written.
-        """
+        """Set a new PIN, or none with ""."""
         if not pin:
             self._path.unlink(missing_ok=True)
             return
@@ -131,15 +122,10 @@ class PinGuesses:
 
     @property
     def is_set(self) -> bool:
-        """Whether there is a PIN."""
         return self._pin.is_set
 
     def guess(self, pin: str) -> PinAnswer:
-        """Check a guess, unless guessing is paused; takes about 50 ms, in any thread.
-
-        Raises:
-            InputError: the PIN's file cannot be read or is no PIN's.
-        """
+        """Check a guess, unless guessing is paused; takes about 50 ms, in any thread."""
         with self._one:
             wait_s = self._limit.seconds_to_wait()
             if wait_s > 0.0:

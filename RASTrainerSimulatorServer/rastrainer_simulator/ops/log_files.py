@@ -43,7 +43,6 @@ class _LogFile(logging.handlers.RotatingFileHandler):
     """A file that ignores errors: a full disk is reported where the trial is recorded."""
 
     def _open(self) -> TextIOWrapper:
-        """Open the file for its user alone; older files are renamed."""
         descriptor = open_private(self.baseFilename, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
         return os.fdopen(descriptor, "a", encoding=self.encoding, errors=self.errors)
 

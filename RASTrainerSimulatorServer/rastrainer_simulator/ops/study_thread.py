@@ -29,11 +29,7 @@ class StudyThread(Generic[Opened]):
         self._executor = ThreadPoolExecutor(1, "study")
 
     async def do(self, work: Callable[[Opened], T]) -> T:
-        """Return what a function returns for the study.
-
-        Raises:
-            InputError: the study cannot be opened, or as the function does.
-        """
+        """Return what a function returns for the study."""
         return await asyncio.get_running_loop().run_in_executor(self._executor, self._run, work)
 
     def _run(self, work: Callable[[Opened], T]) -> T:
@@ -42,7 +38,6 @@ class StudyThread(Generic[Opened]):
         return work(self._study)
 
     async def close(self) -> None:
-        """Close the study."""
         if self._study is not None:
             await self.do(lambda study: study.close())
         self._executor.shutdown()

@@ -71,7 +71,6 @@ FEEDBACK_EFFECTS: Mapping[FeedbackEvent, FeedbackEffect] = {
 
 
 def feedback_of(what: FeedbackEvent, number: int, volume: float = 1.0) -> Feedback:
-    """Return the sound and vibration of an event, as the `number`-th one; `volume` is 0 to 1."""
     effect = FEEDBACK_EFFECTS[what]
     data = {"rumbleMs": round(1000.0 * effect.seconds)}
     return Feedback(number, what.value, effect.sound, volume, effect.rumble, data)

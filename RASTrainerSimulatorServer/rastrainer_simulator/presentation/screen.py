@@ -224,7 +224,6 @@ def focused_picture(menu: Menu | None) -> str:
 
 
 def screen_to_json(screen: Screen) -> dict[str, Any]:
-    """Return a screen as a JSON object with the names of the attributes."""
     return dataclasses.asdict(screen)
 
 

@@ -60,21 +60,13 @@ class RatingWork:
         return sum(self._open_of(marks) is None for marks in self._marks.values())
 
     def give(self, mark: int) -> None:
-        """Give the open domain a mark from 1 to 5.
-
-        Raises:
-            InputError: it cannot be stored.
-        """
+        """Give the open domain a mark from 1 to 5."""
         if self.open_domain is not None:
             form, domain = self.open_domain
             self._tell(form, domain.name, mark)
 
     def undo(self) -> bool:
-        """Withdraw the last mark of this replay; return whether there was one.
-
-        Raises:
-            InputError: that cannot be stored.
-        """
+        """Withdraw the last mark of this replay; return whether there was one."""
         names = {domain.name: form for form in self.forms for domain in form.domains}
         given = [domain for domain in self.marks if domain in names]
         if given:
@@ -147,7 +139,6 @@ class RatingPage(Page):
         return self.actions.texts.say(key, **place, **values)
 
     def button(self, name: str, **others: Any) -> MenuItem:
-        """Return a button; its label is the same on all pages."""
         return MenuItem(name, self.say(f"rating.{name}"), **others)
 
     def back(self) -> None:

@@ -102,7 +102,6 @@ class RatingPresenter:
         self._refresh()
 
     def load(self) -> None:
-        """Load the present replay, and show it."""
         self._loading = self._load(self.work.trial_id)
         self.pages.show(LoadingPage(self, self._loading))
         self._refresh()
@@ -115,7 +114,6 @@ class RatingPresenter:
         self._refresh()
 
     def leave(self) -> None:
-        """End the program."""
         self._end()
 
     def subscribe(self, listener: Callable[[ViewUpdate], None]) -> Callable[[], None]:
@@ -123,14 +121,12 @@ class RatingPresenter:
         return self._subscribers.add(listener)
 
     def pictures(self, now: SimulationState) -> Pictures:
-        """Return the viewpoint of the picture of a state."""
         return self._replay.pictures(now)
 
     def ghost(self, now: SimulationState) -> None:
         """Return None: a recorded trial has no ghost."""
 
     def trace_guidance(self, now: SimulationState) -> TraceGuidance:
-        """Return what is drawn of a trace."""
         return self._replay.trace_guidance(now)
 
     def seat(self) -> Seat:
@@ -145,7 +141,6 @@ class RatingPresenter:
         """Register a view."""
 
     def view_left(self, view: int) -> None:
-        """Forget a view."""
         self._held.pop(view, None)
         self._keys.pop(view, None)
         self._replay.view_left(view)
@@ -199,7 +194,6 @@ class RatingPresenter:
         """Ignore it: no one drives."""
 
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
-        """Turn the view."""
         self._replay.on_orbit(view, around_deg, higher_deg, zoom)
 
     def on_item(self, view: int, name: str) -> None:  # noqa: ARG002

@@ -58,7 +58,6 @@ class AbortedArchive:
         return tuple(attempt.record for attempt, _journal in list(self._waiting.values()))
 
     def add(self, record: AbortedTrial, journal: Journal) -> None:
-        """Add a trial that has just been aborted."""
         self._waiting[record.trial_id] = ArchivedAttempt(record), journal
 
     def add_interrupted(self, path: Path) -> None:
@@ -80,11 +79,7 @@ class AbortedArchive:
         self.add(record, journal)
 
     def load(self, reading: JournalReading) -> bool:
-        """Load a journal; return whether it is that of an aborted trial.
-
-        Raises:
-            InputError: its record is invalid.
-        """
+        """Load a journal; return whether it is that of an aborted trial."""
         attempt = _archived_attempt(reading)
         if attempt is None:
             return False
@@ -130,12 +125,10 @@ class AbortedArchive:
 
 
 def attempt_entry(record: AbortedTrial, times: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the journal entry with the record of an aborted trial."""
     return {"kind": ATTEMPT, **times, "record": record.to_json()}
 
 
 def _archived_attempt(reading: JournalReading) -> ArchivedAttempt | None:
-    """Return the aborted trial of a journal; None if it has none."""
     found = reading.of_kind(ATTEMPT)
     if not found or reading.of_kind("registered"):
         return None
@@ -151,11 +144,7 @@ def _append(journal: Journal, entry: Mapping[str, Any]) -> None:
 
 
 def interrupted_attempt(reading: JournalReading) -> AbortedTrial | None:
-    """Return the record of the trial of an open journal; None if the trial is over.
-
-    Raises:
-        InputError: the entries are not those of a trial.
-    """
+    """Return the record of the trial of an open journal; None if the trial is over."""
     if not reading.entries or InterruptedTrial.of(reading.entries) is None:
         return None
     with refusing_malformed(MALFORMED):

@@ -64,7 +64,6 @@ class Journal:
 
     @property
     def last_hash(self) -> str:
-        """The hash of the last line that was written."""
         return self._previous
 
     @classmethod
@@ -201,11 +200,7 @@ class RecordsFolder:
     """Locks the folder until it is closed or the process ends."""
 
     def __init__(self, folder: Path) -> None:
-        """Create the folder if it is missing, and lock it.
-
-        Raises:
-            InputError: it cannot be made or written to, or another simulator has it.
-        """
+        """Create the folder if it is missing, and lock it."""
         self._folder = folder
         self._holder = FolderHolder(
             os.getpid(),

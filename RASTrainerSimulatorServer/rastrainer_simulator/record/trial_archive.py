@@ -109,7 +109,6 @@ class TrialArchive:
         return (*self._aborted.unacknowledged(), *finished)
 
     def was_played(self, seed: int) -> bool:
-        """Return whether a trial of the folder that is over had a seed."""
         revealed = f'"seed":{seed},'.encode()
         return any(revealed in _end(path) for path in self._folder.glob(f"*{SUFFIX}"))
 
@@ -120,7 +119,6 @@ class TrialArchive:
         self.arrivals += 1
 
     def add_aborted(self, record: AbortedTrial, journal: Journal) -> None:
-        """Add a trial that has just been aborted."""
         self._aborted.add(record, journal)
         self.arrivals += 1
 
@@ -244,11 +242,7 @@ class TrialArchive:
 
 
 def archived_trial(reading: JournalReading) -> ArchivedTrial | None:
-    """Return the trial of a journal, None if it was never registered.
-
-    Raises:
-        InputError: the journal was altered, or its registered trial is invalid.
-    """
+    """Return the trial of a journal, None if it was never registered."""
     if reading.integrity is Integrity.ALTERED:
         raise InputError(f"{reading.path} is {reading.sentence}; the trial is not delivered.")
     try:

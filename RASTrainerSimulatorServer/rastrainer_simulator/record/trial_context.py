@@ -48,11 +48,7 @@ _OF_PACKAGES = _of_packages()
 def setup_of(
     header: Mapping[str, Any], scenario_folder: Path | None = None, robot_meshes: Path | None = None
 ) -> SimulationSetup:
-    """Return the setup that a journal's header describes.
-
-    Raises:
-        InputError: scenario or robot differ here, or the header is not usable.
-    """
+    """Return the setup that a journal's header describes."""
     try:
         settings = settings_from_json(SimulationSettings, _with_touch_rule(header["settings"]))
         name, sha256 = header["scenario"]["name"], header["scenario"]["sha256"]
@@ -87,7 +83,6 @@ def setup_of(
 
 
 def _with_touch_rule(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return recorded settings, with the former touch rule for those that have none."""
     rule = {"touch_rule": TouchRule.WITHIN_RADIUS.value}
     return {**settings, "training": {**rule, **settings.get("training", {})}}
 
@@ -122,11 +117,7 @@ class TutorialOutcome:
 
     @classmethod
     def of(cls, fields: Fields) -> TutorialOutcome:
-        """Return the tutorial that a file holds.
-
-        Raises:
-            InputError: a field is wrong.
-        """
+        """Return the tutorial that a file holds."""
         if fields.number("formatVersion", 0, 1e9) != FORMAT_VERSION:
             raise InputError(f"The tutorial's formatVersion must be {FORMAT_VERSION}.")
         steps = fields.fields("stepSeconds")
@@ -183,7 +174,6 @@ class DisplayReport:
 
     @classmethod
     def of(cls, entry: Mapping[str, Any]) -> DisplayReport:
-        """Return the report of an entry, as made by `entry`."""
         named = (entry[name] for name in ("view", "device", "refreshHz", "shown", "dropped"))
         return cls(*named)
 
@@ -209,7 +199,6 @@ class DisplayUse:
         self._dropped = 0
 
     def add(self, report: DisplayReport) -> None:
-        """Add a report."""
         self._last = report
         self._shown += report.shown
         self._dropped += report.dropped

@@ -238,11 +238,9 @@ class TrialEntries:
         self.records.play.add(entry)
 
     def motion(self) -> dict[str, float]:
-        """Return the motion metrics of the trial so far."""
         return trial_motion(self._recording.trajectory())
 
     def taken(self) -> list[dict[str, Any]]:
-        """Return the pending entries and clear them."""
         taken, self.pending = self.pending, []
         return taken
 

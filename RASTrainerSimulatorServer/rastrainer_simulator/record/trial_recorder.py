@@ -248,6 +248,5 @@ class TrialRecorder:
         return written
 
     def _end(self, leave: Callable[[], None]) -> None:
-        """End the open trial; `leave` closes or discards its journal."""
         self._writer.submit(leave)
         self._open = self._registering = None

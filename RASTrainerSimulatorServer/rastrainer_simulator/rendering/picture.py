@@ -89,11 +89,7 @@ class OffscreenWindow:
 
 
 def write_png(pixels: np.ndarray, path: Path) -> None:
-    """Write (height, width, 3) uint8 pixels, whole or not at all, in place of an older picture.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
+    """Write (height, width, 3) uint8 pixels, whole or not at all, in place of an older picture."""
     height, width, _ = pixels.shape
     image = vtkImageData()
     image.SetDimensions(width, height, 1)
@@ -225,9 +221,6 @@ def render_picture(
     cameras are a scenario's; `inset` is a second view in the upper right corner; `size` is the
     picture's width and height in pixels. Software rendering takes some seconds, half as many with
     small shadows.
-
-    Raises:
-        InputError: the picture cannot be written.
     """
     renderer = vtkRenderer()
     for actor in node_actors(nodes, moment.poses(robot), moment.looks()):
@@ -257,11 +250,7 @@ SIZE = (640, 480)
 
 
 def draw_preview(path: Path, scenario: Scenario, head: HeadMesh) -> None:
-    """Draw the head as a trainee first sees it, with the first task if there is one.
-
-    Raises:
-        InputError: the picture cannot be written.
-    """
+    """Draw the head as a trainee first sees it, with the first task if there is one."""
     robot = load_robot()
     q = start_joints(robot, scenario, SimulationSettings().start_height)
     moment = SceneMoment(

@@ -62,7 +62,6 @@ def bar_mm(height_mm: float) -> float:
 
 
 def _write_scale(renderer: vtkRenderer, height_mm: float, width: int) -> None:
-    """Write the bar's length into the lower right corner of a picture of that width, in pixels."""
     text = _write(renderer, f"{bar_mm(height_mm):g} mm", width - MARGIN, MARGIN + THICK + 4)
     text.GetTextProperty().SetJustificationToRight()
 
@@ -147,9 +146,6 @@ def draw_procedure(
     The plan is green, the registered line yellow, the placed instrument blue, as the legend says.
     The corner shows the ends of the first three, magnified. Each picture has a bar of some mm: it
     is true at the depth of the lines.
-
-    Raises:
-        InputError: the picture cannot be written, or a mesh cannot be used.
     """
     nodes = [Node("skin", (shaded(head.vertices / MM_PER_M, head.triangles, CLEAR_SKIN),))]
     nodes += [replace(node, is_hidden=False) for node in plan_node([procedure]).children]

@@ -34,11 +34,7 @@ class Ghost:
     """
 
     def __init__(self, track: ReplayTrack, setup: SimulationSetup, head_to_world: np.ndarray):
-        """Prepare; HeadToWorld is that of the present trial, (4, 4) float, mm.
-
-        Raises:
-            InputError: the trial was recorded with another scenario or robot, or has no touch.
-        """
+        """Prepare; HeadToWorld is that of the present trial, (4, 4) float, mm."""
         header, touches = track.header, track.trajectory.touches
         is_same = header["robot"] == setup.robot.name and setup.is_of(header["scenario"]["sha256"])
         if not is_same or not touches:

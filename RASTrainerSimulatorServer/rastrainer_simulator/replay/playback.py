@@ -185,7 +185,6 @@ class ShownPlayback:
 
     @property
     def latest(self) -> SimulationState:
-        """The state that is shown."""
         return self.playback.latest
 
     @property

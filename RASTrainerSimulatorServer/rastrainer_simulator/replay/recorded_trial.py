@@ -73,11 +73,7 @@ class RecordedTrial:
     """
 
     def __init__(self, track: ReplayTrack, setup: SimulationSetup) -> None:
-        """Prepare a trial; `setup` has the scenario and the robot that it was recorded with.
-
-        Raises:
-            InputError: it was recorded with others, or its entries are not those of a trial.
-        """
+        """Prepare a trial; `setup` has the scenario and the robot that it was recorded with."""
         with refusing_malformed("The trial cannot be shown again: an entry is not as it should be"):
             self._prepare(track, setup)
 

@@ -208,7 +208,6 @@ class ReplayPresenter:
         playback.subscribe(self._move_view)
 
     def pictures(self, now: SimulationState) -> Pictures:
-        """Return the viewpoint of the picture of a state."""
         self._view.use(now.camera)
         return Pictures(self._view.pose(self._playback.setup.scenario.cameras[now.camera]))
 
@@ -228,7 +227,6 @@ class ReplayPresenter:
         return self._texts.say("instructor.nothing runs")
 
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:  # noqa: ARG002
-        """Turn the view."""
         self._wants_worst = False
         camera = self._playback.setup.scenario.cameras[self._playback.latest.camera]
         self._view.turn(camera, around_deg, higher_deg, zoom)
@@ -241,16 +239,13 @@ class ReplayPresenter:
         """Register a view."""
 
     def view_left(self, view: int) -> None:
-        """Forget a view."""
         self._held.pop(view, None)
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:  # noqa: ARG002
-        """Process a key."""
         if is_down:
             self._do(_KEYS.get(code))
 
     def on_layout(self, view: int, keys: Mapping[str, str]) -> None:  # noqa: ARG002
-        """Name the keys as on the latest keyboard."""
         self._key_names = keys
         self._refresh()
 

@@ -57,7 +57,6 @@ class ReplayReport:
     """The result of a replay.
 
     Attributes:
-        trial_id: of the trial.
         ticks: simulated again.
         compared: how many entries of each kind were compared.
         difference: the first difference in words; None where all is equal to the last bit.
@@ -87,20 +86,13 @@ def replay(
 
     The computed entries are compared with the recorded ones: events, touches, 50 postures a second,
     and the hash over the posture of every tick. `watch` is called with each simulated step.
-
-    Raises:
-        InputError: the journal's entries are not those of a trial.
     """
     with refusing_malformed(f"{reading.path} cannot be replayed: an entry is not as it should be"):
         return _replay(reading, setup, watch)
 
 
 def tick_span(reading: JournalReading) -> tuple[int, int]:
-    """Return the tick before a trial and its last one.
-
-    Raises:
-        InputError: the journal's entries are not those of a trial.
-    """
+    """Return the tick before a trial and its last one."""
     with refusing_malformed(f"{reading.path} cannot be replayed: its ticks are missing"):
         first = StartingPoint(**reading.header["before"]).tick
         simulated = (entry for entry in reading.entries if entry["kind"] not in _NOT_SIMULATED)
@@ -245,7 +237,6 @@ def _first_difference(
 def _without_what_was_cut(
     again: Sequence[Mapping[str, Any]], recorded: Sequence[Mapping[str, Any]]
 ) -> Sequence[Mapping[str, Any]]:
-    """Leave out entries of the last tick beyond the cut, which may be between its lines."""
     beyond = again[len(recorded) :]
     is_last_tick = all(entry["tick"] == recorded[-1]["tick"] for entry in beyond)
     return again[: len(recorded)] if is_last_tick else again

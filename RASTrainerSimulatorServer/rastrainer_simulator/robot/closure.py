@@ -135,7 +135,6 @@ def elbows_at_limits(
 def elbows_that_keep_a_pan(
     arm: CanonicalArm, circle: ElbowCircle, wrist: Vector, tool: Vector, roll: Roll, last: Angles
 ) -> Iterator[Vector]:
-    """Yield the elbows where one of the pans is as in `last`, those nearest to φ = 0 first."""
     waves = _pans_at(_pan_waves(arm, circle, wrist, tool, roll), [(angle,) for angle in last])
     for angle in _nearest_first(waves):
         yield circle.at(angle)

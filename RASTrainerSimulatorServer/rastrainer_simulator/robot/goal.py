@@ -44,7 +44,6 @@ class FabrikSettings:
             raise InputError("FABRIK needs tolerances above zero and at least one iteration.")
 
     def met(self, position_error_m: float, direction_error_rad: float) -> bool:
-        """Return whether errors are within tolerance."""
         return position_error_m <= self.tolerance_m and direction_error_rad <= self.tolerance_rad
 
 
@@ -78,7 +77,6 @@ class Goal(NamedTuple):
 
     @property
     def held_tool(self) -> Vector:
-        """The tool's direction, of a goal that has one."""
         assert self.tool is not None
         return self.tool
 

@@ -46,11 +46,7 @@ def make_kinematics(model: RobotModel, backend: str | None = None) -> Kinematics
 
 
 def kinematics_name() -> str:
-    """Return what `make_kinematics` computes with, and its version, such as "Pinocchio 3.9.0".
-
-    Raises:
-        InputError: there is no such backend.
-    """
+    """Return what `make_kinematics` computes with, and its version, such as "Pinocchio 3.9.0"."""
     if _chosen(None) == "numpy":
         return f"numpy {np.__version__}"
     import pinocchio

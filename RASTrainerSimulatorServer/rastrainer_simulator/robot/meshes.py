@@ -33,9 +33,6 @@ def load_meshes(model: RobotModel, kind: str = "visual") -> dict[str, list[Color
     `kind` is "visual" or "collision". Vertices are in meters in the link's frame. Meshes that
     replace the URDF's own may also lie where they are on the robot at q = 0, in the base frame, as
     some published sets do: they are recognized by where they lie, and moved.
-
-    Raises:
-        InputError: a file is missing, too large, not a mesh, empty, or has unusable vertices.
     """
     parts = [part for part in model.meshes if part.kind == kind]
     loaded = [(part, _load(part)) for part in parts]
@@ -136,10 +133,6 @@ def checked_content(data: bytes, kind: str, what: str) -> bytes:
     """Return a mesh file's bytes as they may be given to a parser.
 
     `kind` is the suffix of its name, `what` begins the sentence of an error.
-
-    Raises:
-        InputError: a Collada file that is no plain XML or shows its parts too often, or a GLB file
-            that claims more numbers than a mesh may have.
     """
     if kind == "dae":
         text = plain_xml(data, what)

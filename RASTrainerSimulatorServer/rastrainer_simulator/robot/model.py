@@ -324,11 +324,7 @@ def _own_parts(
 
 
 def mesh_inside(folder: Path, path: Path, link: str) -> Path:
-    """Return `path`, which a file names for a link.
-
-    Raises:
-        InputError: it leads out of `folder`.
-    """
+    """Return `path`, which a file names for a link."""
     try:
         is_inside = path.resolve().is_relative_to(folder.resolve())
     except (OSError, ValueError, RuntimeError):  # such as a ring of symbolic links

@@ -197,7 +197,6 @@ def _conventions(
 
 
 def _angle(a: np.ndarray, b: np.ndarray, axis: np.ndarray) -> float:
-    """Return the angle from `a` to `b`, positive about `axis`."""
     return math.atan2(float(axis @ np.cross(a, b)), float(a @ b))
 
 
@@ -272,7 +271,6 @@ def inside(theta: Angles, limits: Limits) -> bool:
 
 
 def clamped(theta: Angles, limits: Limits) -> tuple[float, ...]:
-    """Return the angles, each clamped to its limits."""
     return tuple([min(max(a, low), high) for a, (low, high) in zip(theta, limits, strict=True)])
 
 
@@ -310,7 +308,6 @@ def chain(theta: Angles) -> Chain:
 
 
 def tip(arm: CanonicalArm, links: Chain) -> Vector:
-    """Return the tool tip, m."""
     (ux, uy, uz), (fx, fy, fz), (tx, ty, tz), *_ = links
     a, b, c = arm.upper, arm.fore, arm.tool
     return (a * ux + b * fx + c * tx, a * uy + b * fy + c * ty, a * uz + b * fz + c * tz)

@@ -39,7 +39,6 @@ TOOL = "tool"
 
 
 def link_node_name(joint: int) -> str:
-    """Return the name of the node that moves behind that many joints."""
     return f"link_{joint}"
 
 

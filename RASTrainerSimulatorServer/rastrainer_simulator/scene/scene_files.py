@@ -42,7 +42,6 @@ def setup_digest(setup: SimulationSetup) -> bytes:
 
 
 def scene_key(digest: bytes, task: str) -> str:
-    """Return the key of one task's scene; "" is that without a task."""
     return hashlib.sha256(digest + task.encode()).hexdigest()[:32]
 
 
@@ -133,9 +132,6 @@ class SceneFiles:
         """Return the scene of a task, or the one without a task; building it takes seconds.
 
         Canceling the wait ends the building, too.
-
-        Raises:
-            InputError: there is no such task, or it cannot be built.
         """
         if task != NO_TASK:
             setup.scenario.task(task)
@@ -147,11 +143,7 @@ class SceneFiles:
         return self._ready[path]
 
     async def build_all(self, setup: SimulationSetup) -> None:
-        """Build the missing scenes of a setup, so that no task has to wait for its scene.
-
-        Raises:
-            InputError: a scene cannot be built.
-        """
+        """Build the missing scenes of a setup, so that no task has to wait for its scene."""
         for task in await self._paths_of(setup):
             await self.scene(setup, task)
 

@@ -61,9 +61,6 @@ def robot_nodes(robot: RobotModel) -> list[Node]:
     """Return the nodes of a robot, each in the frame that the stream moves.
 
     What is fixed behind the flange is the tool; its node's origin is the tool's tip.
-
-    Raises:
-        InputError: a mesh cannot be read.
     """
     first = _first_links(robot)
     tip_to_flange = robot.tip.offset
@@ -132,9 +129,6 @@ def plan_node(procedures: Sequence[Procedure]) -> Node:
     """Return the node that the stream puts where a registration has the MRI: RAS, but in m.
 
     Its children are the no-go structures of all procedures, one for each file.
-
-    Raises:
-        InputError: a mesh cannot be used.
     """
     files = sorted({each.mesh for procedure in procedures for each in procedure.no_go})
     return Node(PLAN, children=tuple(_no_go_node(path) for path in files))
@@ -247,22 +241,14 @@ def _surface(shape: Shape, material: Material) -> Surface:
 
 
 def scene_glb(scenario: Scenario, robot: RobotModel, task: Task | None) -> bytes:
-    """Return the GLB that docs/views.md describes; takes seconds, and imports VTK.
-
-    Raises:
-        InputError: a mesh cannot be read.
-    """
+    """Return the GLB that docs/views.md describes; takes seconds, and imports VTK."""
     return to_glb(scene_nodes(scenario, robot, read_head_mesh(scenario.head_mesh), task))
 
 
 def scene_nodes(
     scenario: Scenario, robot: RobotModel, head: HeadMesh, task: Task | None
 ) -> list[Node]:
-    """Return the nodes in World; moving nodes get their poses from the simulation's state.
-
-    Raises:
-        InputError: a mesh cannot be read.
-    """
+    """Return the nodes in World; moving nodes get their poses from the simulation's state."""
     base = (scenario.head_to_world @ np.append(head.base, 1.0))[:3] / MM_PER_M
     return [
         *robot_nodes(robot),

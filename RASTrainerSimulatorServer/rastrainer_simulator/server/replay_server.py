@@ -37,11 +37,7 @@ from rastrainer_simulator.replay.replay_presenter import ReplayPresenter
 def show(
     journal: Path, scenario: Path | None, port: int | None, has_window: bool, announce: Callable
 ) -> None:
-    """Show a journal's trial to views until the window is closed, Escape or Ctrl-C is pressed.
-
-    Raises:
-        InputError: it cannot be shown, or the port cannot be used.
-    """
+    """Show a journal's trial to views until the window is closed, Escape or Ctrl-C is pressed."""
     track = read_track(journal)
     setup = setup_of(track.header, scenario)
     playback = Playback(RecordedTrial(track, setup), setup)
@@ -75,9 +71,6 @@ async def _show_until(
         port: where views are served; None for the usual one.
         has_window: whether a window is opened.
         announce: reports where views are served.
-
-    Raises:
-        InputError: the port cannot be listened on.
     """
     window: DesktopProcess | None = None
     tasks: list[asyncio.Task[None]] = []
@@ -116,9 +109,6 @@ def trials_to_show(study: Study, records: Path) -> tuple[str, ...]:
     """Return the finished trials of consenting trainees whose journals are in a folder.
 
     Trial runs are practice, and are left out.
-
-    Raises:
-        InputError: there are none.
     """
     everyone = (*study.trainees(), *study.trainees(archived=True))
     found = tuple(
@@ -146,11 +136,7 @@ class ReplayLoader:
         self._setups: dict[str, SimulationSetup] = {}
 
     def load(self, trial_id: str) -> Playback:
-        """Return the playback of a trial; takes seconds. Never in two threads at once.
-
-        Raises:
-            InputError: it cannot be shown.
-        """
+        """Return the playback of a trial; takes seconds. Never in two threads at once."""
         try:
             track = find_track(self._records, trial_id)
             setup = self._setup_of(track.header)
@@ -177,11 +163,7 @@ def serve_rating(
     has_window: bool,
     announce: Callable[[str], None],
 ) -> None:
-    """Show the replays of a rater to views, and accept the marks, until the rater leaves.
-
-    Raises:
-        InputError: the first replay cannot be shown, or the port cannot be used.
-    """
+    """Show the replays of a rater to views, and accept the marks, until the rater leaves."""
     loader = ReplayLoader(records, scenario)
     with ThreadPoolExecutor(1, "replay") as worker:
 

@@ -66,11 +66,7 @@ class ScenarioLoader:
         return self._begin(lambda: self._control_loop.setup.scenario.folder)
 
     def find(self, name: str) -> Scenario:
-        """Return a scenario by its name, the present one for ""; from any thread.
-
-        Raises:
-            InputError: it cannot be found or read.
-        """
+        """Return a scenario by its name, the present one for ""; from any thread."""
         present = self._control_loop.setup.scenario
         if name in ("", present.name):
             return present

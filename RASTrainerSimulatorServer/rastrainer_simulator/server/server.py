@@ -103,12 +103,7 @@ class SimulatorServer:
     """One simulation with its clients and views."""
 
     def __init__(self, options: ServerOptions):
-        """Load the scenario and the robot, which takes about a second.
-
-        Raises:
-            InputError: one of their files or that of the limits cannot be used, or another
-                simulator writes to the folder of the journals.
-        """
+        """Load the scenario and the robot, which takes about a second."""
         self._options = options
         self._limits = read_limits(self._config)
         self._settings = self._preferred_settings()
@@ -310,7 +305,6 @@ class SimulatorServer:
     async def _open(
         self, link: SimulatorLink, tasks: list[asyncio.Task[None]], on_ready: Callable[[str], None]
     ) -> int:
-        """Listen and return the port; or connect to a listening Slicer and return 0."""
         if self._options.connect_to is None:
             port = await link.server.listen(self._options.host, self._options.port)
             on_ready(f"ready on {self._options.host}:{port}")

@@ -197,7 +197,6 @@ def _direction(given: Vector | None) -> Vector | None:
 
 
 def started(command: CommandedMotion) -> Running:
-    """Return the motion that carries out a command."""
     if isinstance(command, PathCommand):
         return FollowingPath(command)
     return Jogging(command) if isinstance(command, JogCommand) else Moving(command)

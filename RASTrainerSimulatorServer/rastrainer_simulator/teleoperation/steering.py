@@ -192,7 +192,6 @@ class ToolSteering:
         return self._frame[1]
 
     def turn_to(self, direction: Vector, goal: Vector, dt: float) -> Vector:
-        """Return the direction for a move that is to end with the tool along `goal`."""
         self._held = turned_toward(direction, goal, self._settings.coarse_turn * dt)
         return self._held
 

@@ -135,7 +135,6 @@ class Teleoperation:
             self._steering = steering
 
     def start(self, command: CommandedMotion) -> None:
-        """Carry out a commanded motion in place of the one that is running."""
         self._running = started(command)
 
     def stop(self) -> bool:

@@ -28,7 +28,6 @@ def _french(text: str) -> str:
 
 
 def _chinese(text: str) -> str:
-    """Return a Chinese text with no-break spaces beside numbers and what is filled in."""
     return re.sub(r" (?=[\d{/])|(?<=[\d}/]) ", NO_BREAK_SPACE, text)
 
 
@@ -132,10 +131,6 @@ def pair_label(first: str, second: str) -> str:
 def input_label(
     texts: Texts, device: str, name: str, key_names: Mapping[str, str] = NO_NAMES
 ) -> str:
-    """Return the name of an input of a device ("gamepad" or "keyboard").
-
-    `key_names` says what is written on the keys, by their W3C codes.
-    """
     key = f"{device}.{name}"
     return texts.say(key) if key in texts else key_name(name, key_names)
 

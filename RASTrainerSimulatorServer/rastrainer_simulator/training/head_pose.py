@@ -137,11 +137,7 @@ class PlacedHead:
 
     @classmethod
     def of_trial(cls, scenario: Scenario, task: Task, seed: int, skin: SkinShift) -> PlacedHead:
-        """Return the head of a trial, moved and with its skin shifted by the trial's seed.
-
-        Raises:
-            InputError: the skin is shifted, but the scenario's head cannot be read.
-        """
+        """Return the head of a trial, moved and with its skin shifted by the trial's seed."""
         mesh = None if skin.is_none else read_head_mesh(scenario.head_mesh)
         pose = scenario.perturbed_head_to_world(seed)
         truth = Truth.of(scenario, pose, task, skin if skin.is_none else replace(skin, seed=seed))
@@ -200,7 +196,6 @@ class RegisteredPlan:
         )
 
     def line(self, trajectory: ProcedureTrajectory) -> PlannedLine:
-        """Return a planned trajectory in World."""
         entry, target = trajectory.entry.tolist(), trajectory.target.tolist()
         return PlannedLine(trajectory.name, self.in_world(entry), self.in_world(target))
 

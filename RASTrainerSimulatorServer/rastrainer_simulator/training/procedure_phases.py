@@ -68,12 +68,10 @@ class ProcedureMoment:
 
     @property
     def procedure(self) -> ProcedureState:
-        """The progress of the procedure."""
         assert self.state.procedure is not None, "the phase has a procedure"
         return self.state.procedure
 
     def entering(self, phase: Phase, **changes: Any) -> TrainingState:
-        """Return the state in another phase, with changes to the procedure's progress."""
         entered = replace(self.procedure.entering(phase, self.elapsed), **changes)
         return replace(self.state, phase=phase, procedure=entered)
 
@@ -110,7 +108,6 @@ class ProcedurePhases:
     def step(
         self, command: OperatorCommand, state: TrainingState, now: TouchMoment, elapsed: float
     ) -> TrialStep | RefusedStep:
-        """Return the outcome of a command that is allowed in the phase of a state."""
         moment = ProcedureMoment(state, now, elapsed, command.arguments)
         return self._handlers[command.name](moment)
 

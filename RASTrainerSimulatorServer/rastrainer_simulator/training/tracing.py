@@ -68,7 +68,6 @@ def stroke_data(trace: TraceState) -> dict[str, Any]:
 
 
 def stroke(state: TrainingState, **others: bool) -> TrialStep:
-    """Return the step to a state in which a stroke has begun, is ended or undone."""
     assert state.trace is not None
     data = {**stroke_data(state.trace), **others}
     return TrialStep(state, instruction(state), counts(state.trace), data, kind=EventKind.STROKE)

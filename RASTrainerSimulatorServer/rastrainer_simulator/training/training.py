@@ -358,7 +358,6 @@ class Training:
         return TrainingReply(True, events=(self._enter(step.state, step.key, now, **step.values),))
 
     def _enter(self, state: TrainingState, key: str, now: TouchMoment, **values: object) -> Event:
-        """Enter another phase and return its event."""
         self._keep(state, key, **values)
         data = {
             **summary(self.state),

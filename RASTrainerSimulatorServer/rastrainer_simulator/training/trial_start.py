@@ -90,11 +90,7 @@ class TrialStarter:
         self._number = 0
 
     def start(self, arguments: Mapping[str, Any], revision: int) -> StartedTrial:
-        """Return a trial by the arguments of StartTask; `revision` is the last one before it.
-
-        Raises:
-            InputError: the scenario has no such task or procedure, or its head cannot be read.
-        """
+        """Return a trial by the arguments of StartTask; `revision` is the last one before it."""
         number, procedure = self._number, arguments.get("procedure") or ""
         skin = SkinShift.from_json(arguments.get("skin") or self._scenario.skin.amounts)
         method = method_of(arguments.get("method"))
@@ -207,7 +203,6 @@ class KeptStates:
         self._states[state.revision] = state
 
     def leave(self, revision: int, feed: Feed) -> None:
-        """Store the feed at which the state of a revision is left."""
         self._feeds[revision] = feed
 
     def find(self, revision: int) -> tuple[TrainingState, Feed | None] | None:

@@ -167,7 +167,6 @@ def best_view(views: PointViews, postures: Sequence[HeldTool]) -> BestView | Non
 
 
 def _is_near(point: ViewedPoint, held: HeldTool) -> bool:
-    """Return whether the tip is to be seen with a point."""
     return distance(held.tip, point.fiducial) <= IN_PICTURE_M
 
 
@@ -263,11 +262,7 @@ class TouchViews:
     """Looks for the views of a task's fiducials; with its own collision shapes, for one thread."""
 
     def __init__(self, setup: SimulationSetup, head: HeadMesh | None = None) -> None:
-        """Use what a simulation is made from; the head is read if it is not given.
-
-        Raises:
-            InputError: the head cannot be read.
-        """
+        """Use what a simulation is made from; the head is read if it is not given."""
         self._scenario: Scenario = setup.scenario
         self._head = head or read_head_mesh(setup.scenario.head_mesh)
         self._collision = head_collision(setup.shape, self._head, setup.scenario.furniture)

@@ -165,9 +165,6 @@ class RangeCamera:
         """Return the points of the skin at which the rays end, (n, 3) float, RAS mm, exact.
 
         Where ears, nose or brows hide the skin behind them, the rays end on these.
-
-        Raises:
-            InputError: fewer points than a surface match needs.
         """
         ahead = mesh.middle - self.eye
         spacing = self.spacing_mm / float(np.linalg.norm(ahead))

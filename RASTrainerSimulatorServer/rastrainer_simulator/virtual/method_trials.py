@@ -81,11 +81,7 @@ class MethodResult:
 
     @property
     def holds(self) -> np.ndarray:
-        """(m,) bool: whether the interval at each target holds the true error.
-
-        Raises:
-            InputError: the truth is unknown.
-        """
+        """(m,) bool: whether the interval at each target holds the true error."""
         if self.true_mm is None:
             raise InputError("The true error of this registration is not known.")
         ends = np.array([error.interval_mm for error in self.errors])
@@ -112,9 +108,6 @@ def register_by(
         targets: (m, 3) float, RAS mm.
         head_to_world: (4, 4) float, mm, the truth, where it is known.
         starts: of a surface match.
-
-    Raises:
-        InputError: the points cannot be registered.
     """
     fit = register(points.moving_mm, points.fixed_mm)
     if len(points.cloud_mm):
@@ -143,9 +136,6 @@ def points_of_trial(given: GivenPoints, scenario: Scenario) -> tuple[MethodPoint
 
     A trial by landmarks and surface is one by each of both, too; the surface alone starts from its
     first three landmarks.
-
-    Raises:
-        InputError: the points are not those of the scenario.
     """
     task = task_by_method(scenario, given.task, given.method)
     labels, moving, fixed = pair(given.touches, PointList(task.labels, task.fiducials))
@@ -215,7 +205,6 @@ class MethodStudy:
 
     @cached_property
     def mesh(self) -> HeadMesh:
-        """The head of the images."""
         return read_head_mesh(self.scenario.head_mesh)
 
     @cached_property
@@ -279,9 +268,6 @@ class MethodStudy:
         """Play and register one virtual trial.
 
         Trials of one seed have the same head, the same shift of the skin and the same tip.
-
-        Raises:
-            InputError: the scenario lacks the method's points, or they cannot be registered.
         """
         if method not in self.possible():
             raise InputError(

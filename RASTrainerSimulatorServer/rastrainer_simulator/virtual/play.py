@@ -198,7 +198,6 @@ class PlayedTrial:
 
     @property
     def record(self) -> TrialRecord:
-        """The record of a trial that was finished."""
         assert self.analysis is not None, "The trainee got stuck."
         return self.analysis.record
 

@@ -47,7 +47,6 @@ class TrialJob:
 
     @property
     def trial_id(self) -> str:
-        """UUID of the trial, which follows from the job."""
         return str(uuid.uuid5(NAMESPACE, f"{self.trainee} {self.step} {self.seed}"))
 
 

@@ -71,7 +71,6 @@ class Observation:
     """What the trainee sees.
 
     Attributes:
-        sim_time_s: simulated time, s.
         tip_mm: (3,) float, of the tool, World, mm.
         is_in_contact: whether the tool is shown to touch the head.
         phase: of the trial.
@@ -127,11 +126,7 @@ class ScriptedTrainee:
     def of(
         cls, scenario: Scenario, task_name: str, head_to_world: np.ndarray, skill: Skill, seed: int
     ) -> ScriptedTrainee:
-        """Return a trainee for a task; HeadToWorld is (4, 4) float, mm.
-
-        Raises:
-            InputError: there is no such task, or the head's mesh cannot be used.
-        """
+        """Return a trainee for a task; HeadToWorld is (4, 4) float, mm."""
         return cls(
             transforms.apply(head_to_world, scenario.task(task_name).fiducials),
             fiducial_normals(scenario, task_name) @ head_to_world[:3, :3].T,

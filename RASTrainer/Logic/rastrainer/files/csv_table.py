@@ -54,9 +54,6 @@ class CsvTable:
             required: Columns that the header must have, in any order. Decimal commas in them become
                 points.
             optional: Columns that it may have; others do not matter.
-
-        Raises:
-            InputError: the header is wrong, or a row does not match it.
         """
         wanted = [*optional, *required]
         twice = next((name for name in wanted if self.header.count(name) > 1), None)
@@ -105,9 +102,6 @@ def read_table(path: str | os.PathLike[str]) -> CsvTable:
 
     It may be in UTF-8 or, with its byte order mark, in UTF-16, and separated by commas, semicolons
     or tabs. A remark "# columns = …", as in Slicer's `.fcsv`, replaces the header.
-
-    Raises:
-        InputError: the file is unreadable, empty or no CSV file.
     """
     lines = _text(path).replace("\r\n", "\n").replace("\r", "\n").rstrip("\n").split("\n")
     remarks, start = _remarks(lines)
@@ -158,23 +152,14 @@ def _text(path: str | os.PathLike[str]) -> str:
 def read_rows(
     path: str | os.PathLike[str], required: Sequence[str], optional: Sequence[str] = ()
 ) -> list[tuple[int, dict[str, str]]]:
-    """Return the line number and the named cells of each row of a CSV file; see `CsvTable.rows`.
-
-    Raises:
-        InputError: the file is unreadable or empty, its header is wrong, or a row does not match
-            it.
-    """
+    """Return the line number and the named cells of each row of a CSV file; see `CsvTable.rows`."""
     return read_table(path).rows(required, optional)
 
 
 def number_in(
     path: object, line: int, cells: dict[str, str], column: str, minimum: float, maximum: float
 ) -> float:
-    """Return the number in a cell.
-
-    Raises:
-        InputError: it is not a finite number from `minimum` to `maximum`.
-    """
+    """Return the number in a cell."""
     try:
         value = float(cells[column])
     except ValueError:

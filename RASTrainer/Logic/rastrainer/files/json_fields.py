@@ -30,7 +30,6 @@ class Fields:
         self._path = path
 
     def names(self) -> tuple[str, ...]:
-        """Return the names of all fields, in order."""
         return tuple(self._values)
 
     def check_names(self, known: Collection[str], what: str) -> None:
@@ -53,7 +52,6 @@ class Fields:
             raise self.error("formatVersion", f"{version}, which this version reads")
 
     def text(self, name: str, max_length: int = 200) -> str:
-        """Return printable text of 1 to `max_length` characters."""
         return self._accepted(name, json_checks.text(max_length))
 
     def yes_or_no(self, name: str, default: bool) -> bool:
@@ -61,7 +59,6 @@ class Fields:
         return self._accepted(name, json_checks.yes_or_no) if name in self._values else default
 
     def number(self, name: str, minimum: float, maximum: float) -> float:
-        """Return a finite number from `minimum` to `maximum`."""
         return self._accepted(name, json_checks.number(minimum, maximum))
 
     def whole_number(self, name: str, minimum: int, maximum: int) -> int:
@@ -75,7 +72,6 @@ class Fields:
         return self._accepted(name, check_whole)
 
     def one_of(self, name: str, choices: tuple[str, ...]) -> str:
-        """Return one of the given choices."""
         return self._accepted(name, json_checks.one_of(*choices))
 
     def texts(
@@ -85,7 +81,6 @@ class Fields:
         return self._accepted(name, json_checks.texts(min_count, max_count, choices))
 
     def numbers(self, name: str, count: int, limit: float) -> list[float]:
-        """Return a list of `count` finite numbers, each within ±`limit`."""
         return list(self._accepted(name, json_checks.numbers(count, limit)))
 
     def point(self, name: str, limit: float) -> np.ndarray:
@@ -133,7 +128,6 @@ class Fields:
         return path
 
     def error(self, name: str, wanted: str) -> InputError:
-        """Return the error that states what a field must be."""
         return InputError(f"{self._field(name)} must be {wanted}.")
 
     def _accepted(self, name: str, check: Callable[[Any], T]) -> T:
@@ -144,11 +138,7 @@ class Fields:
 
 
 def read_fields(path: Path) -> Fields:
-    """Read a file with one JSON object.
-
-    Raises:
-        InputError: missing, larger than 1 MiB, or not one JSON object with finite numbers.
-    """
+    """Read a file with one JSON object."""
     values = read_json(path, MAX_BYTES)
     if not isinstance(values, dict):
         raise InputError(f"{path} must hold one JSON object.")
@@ -156,11 +146,7 @@ def read_fields(path: Path) -> Fields:
 
 
 def fields_of(value: Any, what: str) -> Fields:
-    """Return the fields of decoded JSON; `what` names it in errors, such as "study protocol".
-
-    Raises:
-        InputError: it is not an object.
-    """
+    """Return the fields of decoded JSON; `what` names it in errors, such as "study protocol"."""
     if not isinstance(value, dict):
         raise InputError(f"A {what} must be one JSON object.")
     return Fields(value, Path(what))
@@ -181,7 +167,6 @@ def known_keys(value: Any, keys: Mapping[str, json_checks.Argument], what: str) 
 
 
 def json_object(record: Any) -> dict[str, Any]:
-    """Return a dataclass as a JSON object: its fields in their order, named in camel case."""
     return {_camel_case(each.name): _plain(getattr(record, each.name)) for each in fields(record)}
 
 
@@ -195,9 +180,6 @@ def from_json_object(
         value: the object, as of `json_object`.
         checks: how each key is checked.
         what: begins the sentence of an error.
-
-    Raises:
-        InputError: a key is missing or holds something else than it should.
     """
     names = {_camel_case(each.name): each.name for each in fields(cast("Any", kind))}
     checked = json_checks.checked_keys(value, {key: checks[key] for key in names}, what)

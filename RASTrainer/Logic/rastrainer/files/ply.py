@@ -83,11 +83,7 @@ class _Element:
 
 
 def read_ply(path: str | os.PathLike[str]) -> PlyFile:
-    """Return the content of a PLY file.
-
-    Raises:
-        InputError: it cannot be read, is no such file, or does not hold what its header says.
-    """
+    """Return the content of a PLY file."""
     content = read_bytes(path, LIMIT_BYTES)
     header = _HEADER.match(content, 0, _HEADER_BYTES)
     try:
@@ -251,11 +247,7 @@ def _columns(element: _Element, table: list[list]) -> dict[str, Column]:
 
 
 def write_point_cloud(path: str | os.PathLike[str], points: np.ndarray, frame: str) -> None:
-    """Write points (n, 3) in mm as PLY, whole or not at all; a comment names their frame.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
+    """Write points (n, 3) in mm as PLY, whole or not at all; a comment names their frame."""
     header = (
         f"ply\nformat binary_little_endian 1.0\ncomment SPACE={frame}\ncomment mm\n"
         f"element vertex {len(points)}\n"
@@ -265,11 +257,7 @@ def write_point_cloud(path: str | os.PathLike[str], points: np.ndarray, frame: s
 
 
 def read_point_cloud(path: str | os.PathLike[str]) -> np.ndarray:
-    """Return the vertices of a PLY file, (n, 3) float, in its own unit; see `PlyFile.vertices`.
-
-    Raises:
-        InputError: it cannot be read, or has no vertices.
-    """
+    """Return the vertices of a PLY file, (n, 3) float, in its own unit; see `PlyFile.vertices`."""
     content = read_ply(path)
     try:
         return content.vertices

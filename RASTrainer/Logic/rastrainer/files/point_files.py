@@ -34,10 +34,6 @@ def read_markups(path: str | os.PathLike[str], *, allow_left_out: bool = False) 
     Args:
         path: of the file.
         allow_left_out: whether points may be deselected or not placed; these are left out.
-
-    Raises:
-        InputError: unreadable, not a markups file, not exactly one point list, not in mm, or a
-            point is to be left out that may not.
     """
     document = read_json(path, MARKUPS_LIMIT_BYTES)
     try:
@@ -53,11 +49,7 @@ def read_markups(path: str | os.PathLike[str], *, allow_left_out: bool = False) 
 
 
 def write_markups(path: str | os.PathLike[str], point_list: PointList) -> None:
-    """Write points in RAS mm as a markups file for Slicer, whole or not at all.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
+    """Write points in RAS mm as a markups file for Slicer, whole or not at all."""
     _write(path, {"type": "Fiducial"}, point_list)
 
 
@@ -68,9 +60,6 @@ def write_line(path: str | os.PathLike[str], name: str, ends: PointList) -> None
         path: ends in `.mrk.json`.
         name: of the line's node.
         ends: two points.
-
-    Raises:
-        InputError: the file cannot be written.
     """
     _write(path, {"type": "Line", "name": name}, ends)
 
@@ -167,9 +156,6 @@ def read_points(path: str | os.PathLike[str]) -> PointList:
     What is known to be in RAS or LPS is returned in RAS: markups, Slicer's `.fcsv` and its tables
     with columns r, a, s or l, p, s, and a point cloud that says so. Columns x, y, z are taken as
     they are; the column `label` is optional. A point cloud has no labels.
-
-    Raises:
-        InputError: the file cannot be used.
     """
     name = os.fspath(path).lower()
     if name.endswith(".json"):
@@ -207,11 +193,7 @@ def _is_left_out(cells: Mapping[str, str]) -> bool:
 
 
 def _frame(table: CsvTable) -> str:
-    """Return the frame that the first lines of Slicer's `.fcsv` name; empty without these.
-
-    Raises:
-        InputError: it is neither RAS nor LPS.
-    """
+    """Return the frame that the first lines of Slicer's `.fcsv` name; empty without these."""
     # Slicer assumes LPS, too, where the line is missing.
     assumed = "LPS" if "markups fiducial file version" in table.remarks else "RAS"
     frame = table.remarks.get("coordinatesystem", assumed)
@@ -230,9 +212,6 @@ def read_point_numbers(
 
     Rows are matched by the column `label`, or by order without one. Other columns are ignored, so
     the numbers may be in a file of points.
-
-    Raises:
-        InputError: the file cannot be used, a number is out of range, or a point has none or two.
     """
     rows = read_rows(path, (column,), optional=("label",))
     numbers = [number_in(path, line, cells, column, lowest, highest) for line, cells in rows]

@@ -62,7 +62,6 @@ class PointList:
 
     @property
     def left_out_names(self) -> tuple[str, ...]:
-        """What the points that are left out are called: their labels or numbers."""
         return tuple(label or str(place + 1) for place, label in sorted(self.left_out.items()))
 
 
@@ -71,9 +70,6 @@ def pair(moving: PointList, fixed: PointList) -> tuple[tuple[str, ...], np.ndarr
 
     Points are paired by label if both lists have labels, in the moving list's order; otherwise by
     order. A point that is left out of one list is left out of both.
-
-    Raises:
-        InputError: a point has no partner, or none is left.
     """
     if moving.labels and fixed.labels:
         _check_partners(moving, fixed)
@@ -96,11 +92,7 @@ def pair(moving: PointList, fixed: PointList) -> tuple[tuple[str, ...], np.ndarr
 
 
 def _places(moving: PointList, fixed: PointList) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """Return what pairs points by order: places in the whole lists, or among the points used.
-
-    Raises:
-        InputError: a point has no partner.
-    """
+    """Return what pairs points by order: places in the whole lists, or among the points used."""
     sizes = [len(each.points) + len(each.left_out) for each in (moving, fixed)]
     if sizes[0] == sizes[1]:
         return moving.places, fixed.places

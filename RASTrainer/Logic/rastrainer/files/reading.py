@@ -13,12 +13,7 @@ from rastrainer.json_checks import decode_finite_json
 
 
 def read_bytes(path: str | os.PathLike[str], limit_bytes: int) -> bytes:
-    """Return the content of a file.
-
-    Raises:
-        InputError: missing, not a regular file, unreadable, empty, or larger than the limit, which
-            is checked before reading.
-    """
+    """Return the content of a file."""
     try:
         # Opening a pipe would wait for its writer.
         flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
@@ -41,20 +36,12 @@ def read_bytes(path: str | os.PathLike[str], limit_bytes: int) -> bytes:
 
 
 def read_text(path: str | os.PathLike[str], limit_bytes: int) -> str:
-    """Return the UTF-8 text of a file, without its byte order mark.
-
-    Raises:
-        InputError: as `read_bytes`, or not UTF-8 text.
-    """
+    """Return the UTF-8 text of a file, without its byte order mark."""
     return decode_text(read_bytes(path, limit_bytes), f"The file {path}")
 
 
 def decode_text(content: bytes, what: str) -> str:
-    """Return UTF-8 text without its byte order mark; `what` starts the error message.
-
-    Raises:
-        InputError: not UTF-8 text.
-    """
+    """Return UTF-8 text without its byte order mark; `what` starts the error message."""
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -65,11 +52,7 @@ def decode_text(content: bytes, what: str) -> str:
 
 
 def read_json(path: str | os.PathLike[str], limit_bytes: int) -> Any:
-    """Return the decoded JSON of a file; its numbers are finite.
-
-    Raises:
-        InputError: as `read_text`, or the text is not JSON, too deeply nested or holds NaN.
-    """
+    """Return the decoded JSON of a file; its numbers are finite."""
     text = read_text(path, limit_bytes)
     try:
         return decode_finite_json(text)
@@ -116,10 +99,6 @@ def plain_xml(content: bytes, what: str) -> str:
 
     The declaration could name an encoding in which the rest reads differently. `what` starts the
     error message, such as "The URDF robot.urdf".
-
-    Raises:
-        InputError: not UTF-8, not well-formed, too deep, too many elements, or with a document type
-            or entities, which could expand without end or name other files.
     """
     text = decode_text(content, what)
     declaration = _DECLARATION.match(text)

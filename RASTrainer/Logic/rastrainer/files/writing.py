@@ -24,11 +24,7 @@ _OTHERS = 0o077
 
 
 def write_text(path: str | os.PathLike[str], text: str, is_private: bool = False) -> None:
-    """Write a UTF-8 text file as `write_bytes` does.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
+    """Write a UTF-8 text file as `write_bytes` does."""
     try:
         content = text.encode("utf-8")
     except ValueError as error:
@@ -43,9 +39,6 @@ def write_bytes(path: str | os.PathLike[str], content: bytes, is_private: bool =
         path: of the file; its folder is there.
         content: all of it.
         is_private: it is for this user only, unless its folder is shared (see `keep_others_out`).
-
-    Raises:
-        InputError: the file cannot be written.
     """
     target = Path(path)
     partial = target.parent / f".{uuid.uuid4().hex}.partial"
@@ -65,17 +58,12 @@ def write_bytes(path: str | os.PathLike[str], content: bytes, is_private: bool =
 
 
 def write_json(path: str | os.PathLike[str], value: object, is_private: bool = False) -> None:
-    """Write indented JSON as `write_text` does."""
     text = json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
     write_text(path, text, is_private)
 
 
 def make_folder(folder: Path, is_private: bool = False) -> None:
-    """Make a folder and its missing parents, or as `make_private_folder` does.
-
-    Raises:
-        InputError: it cannot be made.
-    """
+    """Make a folder and its missing parents, or as `make_private_folder` does."""
     try:
         if is_private:
             make_private_folder(folder)
@@ -93,11 +81,7 @@ def make_empty_folder(folder: Path) -> None:
 
 
 def write_private_json(path: Path, value: object) -> None:
-    """Write JSON as `write_json` does, readable by this user only, and make its folder.
-
-    Raises:
-        InputError: the folder cannot be made, or the file not written.
-    """
+    """Write JSON as `write_json` does, readable by this user only, and make its folder."""
     make_folder(path.parent, is_private=True)
     write_json(path, value, is_private=True)
 

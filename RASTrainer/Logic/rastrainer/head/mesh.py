@@ -161,11 +161,7 @@ class HeadMesh:
 
 
 def write_head_mesh(path: Path, mesh: HeadMesh) -> None:
-    """Write a mesh as PLY whose comment lets Slicer place it in RAS; whole or not at all.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
+    """Write a mesh as PLY whose comment lets Slicer place it in RAS; whole or not at all."""
     header = _HEADER.format(vertices=len(mesh.vertices), triangles=len(mesh.triangles))
     faces = np.empty(len(mesh.triangles), _FACE)
     faces["count"] = 3
@@ -175,11 +171,7 @@ def write_head_mesh(path: Path, mesh: HeadMesh) -> None:
 
 
 def read_head_mesh(path: Path) -> HeadMesh:
-    """Read a mesh from a PLY file that says that it is in RAS or LPS; faces become triangles.
-
-    Raises:
-        InputError: missing, unreadable, too large, or not such a file.
-    """
+    """Read a mesh from a PLY file that says that it is in RAS or LPS; faces become triangles."""
     path = Path(path)
     if not path.is_file():
         raise InputError(f"The mesh {path} does not exist.")

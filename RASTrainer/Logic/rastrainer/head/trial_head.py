@@ -169,7 +169,6 @@ class SkinShift:
         return {"shiftMm": self.rms_mm, "indentationMm": self.indentation_mm}
 
     def to_json(self) -> dict[str, Any]:
-        """Return the amounts and the seed as a JSON object."""
         return {**self.amounts, "seed": self.seed}
 
     @classmethod
@@ -192,11 +191,7 @@ UNMOVED = SkinShift()
 
 
 def read_skin(fields: Fields, name: str = "skin") -> SkinShift:
-    """Return an optional field such as `{"shiftMm": 2, "indentationMm": 0.5}`.
-
-    Raises:
-        InputError: it is invalid.
-    """
+    """Return an optional field such as `{"shiftMm": 2, "indentationMm": 0.5}`."""
     if name not in fields.names():
         return UNMOVED
     entry = fields.fields(name)

@@ -276,7 +276,6 @@ class FollowedPoints:
 
     @property
     def nearest(self) -> NearestPoints:
-        """The nearest points of where the points are."""
         return self._found[0]
 
     def keep(self, rows: np.ndarray) -> None:

@@ -76,29 +76,17 @@ def read_volume_file(fields: Fields) -> VolumeFile | None:
 
 
 def read_head_volume(file: VolumeFile) -> HeadVolume:
-    """Read the volume of a scenario.
-
-    Raises:
-        InputError: it is missing or unusable.
-    """
+    """Read the volume of a scenario."""
     return HeadVolume(*read_nrrd(file.path), file.window, file.level)
 
 
 def write_head_volume(path: Path, volume: HeadVolume) -> None:
-    """Write the voxels and geometry of a volume, and nothing else.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
+    """Write the voxels and geometry of a volume, and nothing else."""
     write_nrrd(path, volume.values, volume.ijk_to_ras)
 
 
 def check_place(volume: HeadVolume, head: HeadMesh, path: Path) -> None:
-    """Check that a volume covers its head.
-
-    Raises:
-        InputError: less than half of the head is in the volume.
-    """
+    """Check that a volume covers its head."""
     indices = transforms.apply(transforms.inverse(volume.ijk_to_ras), head.vertices.astype(float))
     is_within = (indices >= -0.5) & (indices <= np.array(volume.values.shape) - 0.5)
     if is_within.all(axis=1).mean() < MIN_COVERED_SHARE:
@@ -151,11 +139,7 @@ class _Header:
 
 
 def read_nrrd(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Return the voxels (i, j, k), uint8 or int16, and the matrix (4, 4) float, index to RAS mm.
-
-    Raises:
-        InputError: the file is missing or not supported.
-    """
+    """Return the voxels (i, j, k), uint8 or int16, and the matrix (4, 4) float, index to RAS mm."""
     content = read_bytes(path, MAX_FILE_BYTES)
     header, start = _read_header(path, content)
     count = math.prod(header.shape) * header.dtype.itemsize
@@ -171,9 +155,6 @@ def write_nrrd(path: Path, values: np.ndarray, ijk_to_ras: np.ndarray) -> None:
         path: of the file.
         values: (i, j, k) uint8 or int16.
         ijk_to_ras: (4, 4) float, mm.
-
-    Raises:
-        InputError: the file cannot be written.
     """
     to_lps = np.diag([*_SPACES["lps"], 1.0]) @ ijk_to_ras
     directions = " ".join(_vector(to_lps[:3, axis]) for axis in range(3))

@@ -21,11 +21,7 @@ _FLOAT32_MAX = 3.4028234663852886e38
 
 
 def pack_name(name: str, size: int, what: str) -> bytes:
-    """Return `name` as printable ASCII of at most `size` bytes; `struct` pads it.
-
-    Raises:
-        InputError: too long, or not printable ASCII.
-    """
+    """Return `name` as printable ASCII of at most `size` bytes; `struct` pads it."""
     if len(name) > size or not (name.isascii() and name.isprintable()):
         raise InputError(f"{what} must be printable ASCII of at most {size} characters.")
     return name.encode("ascii")
@@ -42,11 +38,7 @@ def unpack_name(field: bytes, keep_bytes: bool = False) -> str:
 
 
 def encode_text(text: str) -> tuple[int, bytes]:
-    """Return the IANA number of the encoding and the bytes of `text`.
-
-    Raises:
-        InputError: the text has a NUL, at which Slicer would truncate it, or a lone surrogate.
-    """
+    """Return the IANA number of the encoding and the bytes of `text`."""
     if "\0" in text:
         raise InputError("A text must not contain NUL characters.")
     if text.isascii():
@@ -62,9 +54,6 @@ def decode_text(data: bytes, keep_bytes: bool = False) -> str:
 
     The declared encoding is ignored: Slicer declares ASCII for UTF-8. With `keep_bytes`, invalid
     bytes become lone surrogates, from which they can be recovered.
-
-    Raises:
-        InputError: not UTF-8, unless `keep_bytes`.
     """
     try:
         return data.decode("utf-8", "surrogateescape" if keep_bytes else "strict").rstrip("\0")
@@ -73,11 +62,7 @@ def decode_text(data: bytes, keep_bytes: bool = False) -> str:
 
 
 def check_float32(values: Sequence[float], what: str) -> None:
-    """Check that every value is a finite 32-bit number.
-
-    Raises:
-        InputError: NaN, infinite or beyond what 32 bits hold.
-    """
+    """Check that every value is a finite 32-bit number."""
     for value in values:
         # NaN compares as false, too.
         if not -_FLOAT32_MAX <= value <= _FLOAT32_MAX:
@@ -119,7 +104,6 @@ class Transform:
 
     @classmethod
     def unpack(cls, data: bytes, keep_bytes: bool = False) -> Transform:  # noqa: ARG003
-        """Return the content of `data`."""
         if len(data) != _TRANSFORM.size:
             raise InputError(f"A TRANSFORM must have {_TRANSFORM.size} bytes, not {len(data)}.")
         return cls(_TRANSFORM.unpack(data))

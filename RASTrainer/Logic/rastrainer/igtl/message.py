@@ -115,13 +115,7 @@ class Header:
 
 
 def pack(message: Message) -> bytes:
-    """Return the bytes of a message.
-
-    Raises:
-        InputError: the message is invalid or would do harm in Slicer: an unknown content, a name
-            that is too long, an empty body, an empty list without metadata (Slicer would not clear
-            its points), an answer without status (Slicer would assume a failure).
-    """
+    """Return the bytes of a message."""
     if type(message.content) not in CONTENTS.values():
         known = ", ".join(CONTENTS)
         raise InputError(f"The content of a message must be one of {known}.")
@@ -186,9 +180,6 @@ def unpack(header: Header, body: bytes, keep_bytes: bool = False) -> Message:
     """Return the message of a header and its body, whose checksum is not checked.
 
     `keep_bytes` keeps invalid UTF-8, see `decode_text`.
-
-    Raises:
-        InputError: the type is unknown, or the body is invalid.
     """
     kind = CONTENTS.get(header.type)
     if kind is None:

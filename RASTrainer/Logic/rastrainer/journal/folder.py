@@ -130,11 +130,7 @@ _ZEROS = bytes(1 << 20)
 
 
 def journals(folder: Path) -> list[Path]:
-    """Return the files of a folder that are journals by name and first bytes.
-
-    Raises:
-        InputError: there is no such folder.
-    """
+    """Return the files of a folder that are journals by name and first bytes."""
     if not folder.is_dir():
         raise InputError(f"There is no folder {folder} with journals.")
     return [path for path in sorted(folder.glob(f"*{SUFFIX}")) if _begins_as_journal(path)]
@@ -157,9 +153,6 @@ def erase_journals(
 
     Returns:
         The deleted paths, and those of files that name no trainee.
-
-    Raises:
-        InputError: there is no such folder, a journal cannot be deleted, or one is being written.
     """
     if not folder.is_dir():
         raise InputError(f"There is no folder {folder} with journals.")
@@ -238,7 +231,6 @@ class JournalNumber:
     series: str = ""
 
     def following(self) -> JournalNumber:
-        """Return the next number."""
         return JournalNumber(self.number + 1, self.series or str(uuid.uuid4()))
 
 
@@ -246,7 +238,6 @@ UNNUMBERED = JournalNumber()
 
 
 def header_number(header: Mapping[str, Any]) -> JournalNumber:
-    """Return the number of the journal with a header; 0 in one from before there were series."""
     return JournalNumber(header.get("number", 0), header.get("series", ""))
 
 

@@ -51,7 +51,6 @@ def stamp(tick: int, sim_time: float) -> dict[str, Any]:
 
 
 def iso(moment: datetime) -> str:
-    """Return a moment in UTC as ISO 8601, such as `2024-05-17T09:30:00.250Z`."""
     return moment.isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
 
@@ -143,11 +142,7 @@ class JournalReading:
 
     @property
     def header(self) -> dict[str, Any]:
-        """The first entry.
-
-        Raises:
-            InputError: the first line is incomplete.
-        """
+        """The first entry."""
         if not self.entries:
             raise InputError(f"{self.path} has no complete line.")
         return self.entries[0]
@@ -158,7 +153,6 @@ class JournalReading:
         return self.entries[-1]["sha256"] if self.entries else NO_LINE
 
     def of_kind(self, *kinds: str) -> list[dict[str, Any]]:
-        """Return the entries of the given kinds, in order."""
         return [entry for entry in self.entries if entry["kind"] in kinds]
 
 
@@ -168,9 +162,6 @@ def read_journal(path: Path, pause: Callable[[], None] = lambda: None) -> Journa
     Args:
         path: of the file.
         pause: called regularly while reading; may block, to let other threads run.
-
-    Raises:
-        InputError: the file cannot be read, is no journal, or has another format version.
     """
     try:
         with path.open("rb") as file:

@@ -54,11 +54,7 @@ class Recording:
 
     @classmethod
     def of(cls: type[_T], entries: Iterable[Mapping[str, Any]]) -> _T:
-        """Return the recording of entries.
-
-        Raises:
-            InputError: an entry is malformed.
-        """
+        """Return the recording of entries."""
         recording = cls()
         try:
             for entry in entries:
@@ -195,7 +191,6 @@ class Recording:
         self._state = state
 
     def _press(self, entry: Mapping[str, Any]) -> None:
-        """Update the depth of the contact."""
         if self._state is Proximity.CONTACT and self._paused_since is None:
             self._contact_depth = max(self._contact_depth, entry["depthMm"])
 
@@ -310,11 +305,7 @@ class ReplayTrack:
 
 
 def find_track(records: Path, trial_id: str) -> ReplayTrack:
-    """Return the track of a trial from a folder of journals.
-
-    Raises:
-        InputError: there is no journal, or it has no movement.
-    """
+    """Return the track of a trial from a folder of journals."""
     paths = journals_of(records, trial_id)
     if not paths:
         raise InputError(
@@ -325,11 +316,7 @@ def find_track(records: Path, trial_id: str) -> ReplayTrack:
 
 
 def read_track(path: Path, pause: Callable[[], None] = lambda: None) -> ReplayTrack:
-    """Return the track of a journal, as far as it is intact; `pause` as in `read_journal`.
-
-    Raises:
-        InputError: the file is no journal, or has no movement.
-    """
+    """Return the track of a journal, as far as it is intact; `pause` as in `read_journal`."""
     reading = read_journal(path, pause)
     recording = _ReplayRecording.of(reading.entries)
     trajectory, postures = recording.trajectory(), recording.postures

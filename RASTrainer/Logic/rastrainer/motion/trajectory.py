@@ -97,7 +97,6 @@ class Trajectory:
 
     @property
     def intended(self) -> tuple[Touch, ...]:
-        """Where contact is intended: the kept touches and the points of the trace, by time."""
         if not self.traced:
             return self.touches
         return tuple(sorted((*self.touches, *self.traced), key=lambda touch: touch.time_s))
@@ -192,9 +191,6 @@ def resample(times_s: np.ndarray, values: np.ndarray, rate_hz: float) -> np.ndar
 
     Returns:
         (m, k) float.
-
-    Raises:
-        InputError: fewer than two samples, or times that do not rise.
     """
     times_s, values = np.asarray(times_s, dtype=float), np.asarray(values, dtype=float)
     if len(times_s) < 2 or not (np.diff(times_s) > 0).all():
@@ -258,11 +254,7 @@ def path_length(positions_mm: np.ndarray) -> float:
 
 
 def path_efficiency(actual_mm: float, shortest_mm: float) -> float:
-    """Return the shortest collision-free length over the actual length; 1 is direct.
-
-    Raises:
-        InputError: a length is not above 0.
-    """
+    """Return the shortest collision-free length over the actual length; 1 is direct."""
     if not (actual_mm > 0 and shortest_mm > 0):
         raise InputError("Path efficiency needs two lengths above 0 mm.")
     return shortest_mm / actual_mm
@@ -296,9 +288,6 @@ def sparc(speed: np.ndarray, rate_hz: float) -> float:
     Args:
         speed: (n,) float of one movement, evenly sampled.
         rate_hz: Samples a second.
-
-    Raises:
-        InputError: fewer than four samples, or nothing moves.
     """
     speed = _checked(speed)
     length = 2 ** (int(np.ceil(np.log2(len(speed)))) + SPARC_PAD_LEVEL)
@@ -319,9 +308,6 @@ def log_dimensionless_jerk(speed: np.ndarray, rate_hz: float) -> float:
     Args:
         speed: (n,) float of one movement, evenly sampled and low-pass filtered.
         rate_hz: Samples a second.
-
-    Raises:
-        InputError: fewer than four samples, or the speed does not change.
     """
     speed = _checked(speed)
     jerk = np.diff(speed, 2) * rate_hz**2

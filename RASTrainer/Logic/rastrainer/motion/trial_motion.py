@@ -70,10 +70,6 @@ def effective_throughput(
         targets_mm: (n, 3) float, the fiducials.
         touches_mm: (n, 3) float, the touches, in the targets' frame.
         touch_times_s: (n,) float, strictly rising.
-
-    Raises:
-        InputError: fewer than four touches, counts that differ, times that do not rise, equal
-            neighboring targets, or end points that are all exactly on their targets.
     """
     targets, touches = np.asarray(targets_mm, dtype=float), np.asarray(touches_mm, dtype=float)
     durations = np.diff(np.asarray(touch_times_s, dtype=float))

@@ -155,9 +155,6 @@ def downloadSample(scene: Any, logic: Any, name: str, progress: Progress) -> Any
         logic: of the module Sample Data.
         name: of the sample.
         progress: called while the network is checked; may raise to cancel.
-
-    Raises:
-        InputError: the network does not answer, or the sample cannot be loaded.
     """
     source = logic.sourceForSampleName(name)
     if source is None:

@@ -54,7 +54,6 @@ class LandmarksPanel:
         self.showState()
 
     def close(self) -> None:
-        """Cancel the running work, and stop listening to the session."""
         self._work.cancel()
         self._session.sceneChanged.disconnect(self.showState)
 
@@ -82,7 +81,6 @@ class LandmarksPanel:
             self._logic.points.startPlacing(chosenData(self._ui.landmarkNameComboBox))
 
     def remove(self) -> None:
-        """Remove the landmark that is chosen in the table; it can be restored."""
         self._logic.points.remove(self._ui.landmarksTable.currentRow())
         self.showState()
 

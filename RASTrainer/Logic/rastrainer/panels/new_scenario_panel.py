@@ -107,7 +107,6 @@ class NewScenarioPanel:
         self._showUsable()
 
     def close(self) -> None:
-        """Cancel the running work."""
         self._work.cancel()
 
     def loadSampleData(self) -> None:
@@ -159,7 +158,6 @@ class NewScenarioPanel:
                 self._useScenario(*made)
 
     def _useScenario(self, scenario: Scenario, warnings: list[str]) -> None:
-        """Choose the new scenario, show it, and have the simulator take it."""
         self._session.scenarioMade.emit(scenario.name)
         text = _("{title} was made and is chosen above.").format(title=scenario.title)
         self._showMessage(" ".join([text, *warnings]))

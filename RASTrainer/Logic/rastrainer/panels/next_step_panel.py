@@ -46,7 +46,6 @@ class SectionFolding:
             button.collapsed = each is not section
 
     def open(self, section: Section) -> None:
-        """Open a section, which the user may have folded."""
         self._sections[section].collapsed = False
 
 
@@ -124,7 +123,6 @@ class NextStepPanel:
         self.showState()
 
     def showState(self, *_arguments: Any) -> None:
-        """Show the state of the session."""
         now = self._situation()
         self._step = nextStep(now)
         self._show(now, self._step)

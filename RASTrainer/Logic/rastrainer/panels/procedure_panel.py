@@ -165,7 +165,6 @@ class ProcedurePanel:
         setText(ui.procedureScoreText, "" if outcome is None else scoreText(outcome))
 
     def _jumpToTarget(self) -> None:
-        """Show the planned target of the chosen line in the slice views."""
         row = self._ui.procedureErrorsTable.currentRow()
         if self._shown is not None and 0 <= row < len(self._shown.analysis.trajectories):
             self._session.slices.show(self._shown.analysis.trajectories[row].trajectory.target)

@@ -83,7 +83,6 @@ class ProcedurePlanPanel:
         self._showProcedures()
 
     def close(self) -> None:
-        """Cancel the running work, and stop listening to the session."""
         self._work.cancel()
         self._listening.close()
 
@@ -118,7 +117,6 @@ class ProcedurePlanPanel:
             self.showState()
 
     def restoreLine(self) -> None:
-        """Restore the line that was removed last."""
         if self._removed:
             restoreLine(slicer.mrmlScene, self._removed.pop())
             self.showState()

@@ -290,7 +290,6 @@ class MethodsPanel:
         self._showMessage("")
 
     def close(self) -> None:
-        """Cancel the running work."""
         self._work.cancel()
 
     def compare(self) -> None:

@@ -69,7 +69,6 @@ class ScorePanel:
         self._show()
 
     def close(self) -> None:
-        """Cancel the running work, and stop listening to the session."""
         self._work.cancel()
         self._listening.close()
 
@@ -135,7 +134,6 @@ class ScorePanel:
             self._work.run(lambda report: self._session.replay.showWorstTouch(trial, report))
 
     def _showReplay(self) -> None:
-        """Show the time of the replay, and whether tables are shown."""
         setChecked(self._ui.showTablesButton, self._session.layout.purpose == TABLES)
         if not self._work.isUnderWay:
             setText(self._ui.replayText, self._session.replay.sentence)
@@ -145,7 +143,6 @@ class ScorePanel:
             self._session.layout.giveBack(TABLES)
 
     def _noteNewTrial(self, analysis: TrialAnalysis) -> None:
-        """Note a trial of the chosen trainee that has just been scored: it is shown next."""
         record = analysis.record
         if record.trainee == self._trainees.chosen:
             self._newTrial = record.trial_id
@@ -286,7 +283,6 @@ class ScorePanel:
 
 
 def _reportOn(study: StudyPlace, folder: Path) -> Path:
-    """Write the report on a study into a folder and return its page."""
     from rastrainer.report.report import write_report
     from rastrainer.study.study_data import read_study_data
 

@@ -91,7 +91,6 @@ class SimulatorPanel:
                 self._link.connectTo(self._ui.hostLineEdit.text, self._ui.portSpinBox.value)
 
     def disconnect(self) -> None:
-        """Disconnect from the simulator."""
         with showErrors(_("The connection could not be closed.")):
             self._link.disconnect()
 
@@ -202,12 +201,10 @@ class RunningSimulatorPanel:
         self._running.changed.disconnect(self._show)
 
     def connectToIt(self) -> None:
-        """Connect to the simulator that is already running."""
         with showErrors(_("The connection could not be started.")):
             self._running.connect()
 
     def endIt(self) -> None:
-        """End the simulator that is already running."""
         with showErrors(_("The simulator could not be ended.")):
             self._running.end()
 

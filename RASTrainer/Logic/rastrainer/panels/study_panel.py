@@ -77,7 +77,6 @@ class StudyPanel:
                 self._logic.begin(Path(self._ui.protocolPathLineEdit.currentPath))
 
     def enroll(self) -> None:
-        """Enroll the chosen trainee in the study."""
         with showErrors(_("The trainee was not enrolled.")):
             self._logic.enroll()
 
@@ -276,11 +275,7 @@ class QuestionnaireForm:
             self._boxes.append(box)
 
     def answers(self) -> tuple[int, ...]:
-        """Return the answers in the order of the items.
-
-        Raises:
-            InputError: an item is not answered.
-        """
+        """Return the answers in the order of the items."""
         chosen = [chosenData(box) for box in self._boxes]
         open_ = [str(number) for number, mark in enumerate(chosen, start=1) if not mark]
         if open_ and self._questionnaire is not None:

@@ -168,7 +168,6 @@ class PlanPanel:
         self.showState()
 
     def _offerTargets(self, node: Any | None, row: int = -1) -> None:
-        """Offer the points of a list as targets, and choose that of a row."""
         entries, box = _entries(node), self._ui.planTargetComboBox
         fillComboBox(box, entries, entries[row][1] if entries else "")
         box.enabled = len(entries) > 1

@@ -136,7 +136,6 @@ class TraineesPanel:
         ui.studyPathLineEdit.currentPath = str(self._session.studyFile)
 
     def chooseTrainee(self, _index: int = 0) -> None:
-        """Choose the trainee of the list."""
         self._logic.choose(chosenData(self._ui.traineeComboBox))
 
     def createTrainee(self) -> None:
@@ -163,7 +162,6 @@ class TraineesPanel:
             self._logic.setArchived(True)
 
     def unarchive(self) -> None:
-        """Show the chosen trainee in the list again, who was archived."""
         with showErrors(_("The trainee was not restored.")):
             self._logic.setArchived(False)
 
@@ -255,7 +253,6 @@ class TraineesPanel:
             self._showMessage("{text}", text=" ".join(found.sentences()))
 
     def _showPlots(self) -> None:
-        """Show whether a plot is shown."""
         purpose = self._session.layout.purpose
         setChecked(self._ui.learningCurveButton, purpose == CURVE)
         setChecked(self._ui.calibrationButton, purpose == CALIBRATION)

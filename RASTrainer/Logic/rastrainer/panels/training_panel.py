@@ -112,18 +112,15 @@ class TrainingPanel:
         self._start(TRIAL_RUN)
 
     def startTask(self) -> None:
-        """Start the chosen task, by the chosen method and with the chosen procedure."""
         ui = self._ui
         procedure, method = (chosenData(box) for box in (ui.procedureComboBox, ui.methodComboBox))
         self._start(self._session.task, procedure, method)
 
     def pause(self) -> None:
-        """Pause the trial."""
         with showErrors(_("The trial was not paused.")):
             self._logic.pause()
 
     def resume(self) -> None:
-        """Resume the trial."""
         with showErrors(_("The trial was not resumed.")):
             self._logic.resume()
 

@@ -85,7 +85,6 @@ def connectAsPressed(button: Any, action: Callable[[], Callable[[], None]]) -> N
 
 
 def setUsable(button: Any, usable: bool, tip: str, reason: str = "") -> None:
-    """Enable a button with its tool tip, or disable it with the reason in its place."""
     # In a closed group, each button says that it is disabled.
     button.enabled = usable
     setProperty(button, "toolTip", toolTip(tip if usable or not reason else reason))
@@ -128,7 +127,6 @@ def fillComboBox(combo: Any, entries: Iterable[tuple[str, str]], chosen: str) ->
 
 
 def isFilled(combo: Any, entries: Iterable[tuple[str, str]]) -> bool:
-    """Return whether a `QComboBox` has these entries (text, data)."""
     shown = [(combo.itemText(i), combo.itemData(i)) for i in range(combo.count)]
     return shown == [(shortName(text), data) for text, data in entries]
 
@@ -139,11 +137,7 @@ def chosenData(combo: Any) -> str:
 
 
 def chosenScenario(ui: Any, session: ModuleSession) -> Scenario:
-    """Return the scenario that is chosen in the section Scenario.
-
-    Raises:
-        InputError: it cannot be used, or there is none.
-    """
+    """Return the scenario that is chosen in the section Scenario."""
     name = chosenData(ui.scenarioComboBox)
     if not name:
         raise InputError(_("Choose a scenario that can be used."))
@@ -163,25 +157,21 @@ def millimeters(value: float | None, digits: int = 2) -> str:
 
 
 def keepChecked(box: Any, settings: Settings, setting: Setting[bool]) -> None:
-    """Save whether a check box is checked."""
     box.checked = settings.get(setting)
     box.connect("toggled(bool)", lambda checked: settings.set(setting, checked))
 
 
 def keepText(edit: Any, settings: Settings, setting: Setting[str]) -> None:
-    """Let a line edit keep its text."""
     edit.text = settings.get(setting)
     edit.connect("textChanged(QString)", lambda text: settings.set(setting, text))
 
 
 def keepNumber(box: Any, settings: Settings, setting: Setting[int]) -> None:
-    """Let a spin box keep its number."""
     box.value = settings.get(setting)
     box.connect("valueChanged(int)", lambda value: settings.set(setting, value))
 
 
 def keepPath(edit: Any, settings: Settings, setting: Setting[str]) -> None:
-    """Let a path edit keep its path."""
     edit.currentPath = settings.get(setting)
     edit.connect("currentPathChanged(QString)", lambda path: settings.set(setting, path))
 
@@ -245,7 +235,6 @@ class CancelableWork:
             self._showUsable()
 
     def connectButton(self, button: Any, start: Callable[[], None]) -> None:
-        """Have a button start the work, or cancel the running work."""
         connectAsPressed(button, lambda: self.cancel if self.isUnderWay else start)
 
     def cancel(self) -> None:

@@ -56,12 +56,10 @@ class LineMeasures:
         return min(self.no_go_mm, key=self.no_go_mm.__getitem__, default="")
 
     def to_json(self) -> dict[str, Any]:
-        """Return the measures, ready for JSON."""
         return json_object(self)
 
 
 def measure_lines(procedure: Procedure, meshes: ProcedureMeshes) -> list[LineMeasures]:
-    """Return the measures of each trajectory, in the order of the plan."""
     return [_measured(trajectory, procedure, meshes) for trajectory in procedure.trajectories]
 
 

@@ -62,7 +62,6 @@ class SplitError:
 
     @property
     def length_mm(self) -> float:
-        """Of the whole error."""
         return float(np.linalg.norm(self.whole))
 
     @property
@@ -151,7 +150,6 @@ class TrajectoryErrors:
 
     @property
     def radial(self) -> SplitError:
-        """The target point error across the planned line."""
         return self.target.across(self.trajectory.direction)
 
     @property
@@ -256,7 +254,6 @@ class ProcedureAnalysis:
 
     @property
     def hits(self) -> tuple[tuple[str, str], ...]:
-        """Names of trajectories and of the no-go structures that they hit."""
         return tuple(
             (each.trajectory.name, name) for each in self.trajectories for name in each.hits
         )
@@ -297,9 +294,6 @@ def analyze_procedure(
         procedure: what was planned.
         meshes: of the procedure, RAS mm.
         head_to_world: (4, 4) float, rigid, mm: where the head really was.
-
-    Raises:
-        InputError: the record is not of this plan.
     """
     _check_same(record, procedure)
     world_to_ras = transforms.inverse(head_to_world)

@@ -61,7 +61,6 @@ class ProcedureTrajectory:
 
     @property
     def length_mm(self) -> float:
-        """From entry to target."""
         return float(np.linalg.norm(self.target - self.entry))
 
     @property
@@ -122,11 +121,7 @@ class Procedure:
     checkpoints: tuple[Checkpoint, ...] = ()
 
     def trajectory(self, name: str) -> ProcedureTrajectory:
-        """Return the trajectory of this name.
-
-        Raises:
-            InputError: there is none; the message lists them.
-        """
+        """Return the trajectory of this name."""
         for trajectory in self.trajectories:
             if trajectory.name == name:
                 return trajectory
@@ -154,11 +149,7 @@ class Procedure:
 
 
 def read_procedures(fields: Fields) -> tuple[Procedure, ...]:
-    """Return the optional field `procedures` of a scenario. Meshes are only named, not read.
-
-    Raises:
-        InputError: it is invalid, or the scenario has no skull.
-    """
+    """Return the optional field `procedures` of a scenario. Meshes are only named, not read."""
     if "procedures" not in fields.names():
         return ()
     entries = fields.list_of_fields("procedures", 0, MAX_PROCEDURES)
@@ -178,9 +169,6 @@ def read_procedure(path: Path) -> Procedure:
     """Return the procedure as a separate file, written as in a scenario's list.
 
     Meshes are only named, not read; they are in the folder `no-go` beside the file.
-
-    Raises:
-        InputError: it is missing or invalid.
     """
     return _read_procedure(read_fields(path))
 
@@ -295,9 +283,6 @@ def read_procedure_meshes(procedure: Procedure, skull: Path) -> ProcedureMeshes:
     Args:
         procedure: names the meshes of its no-go structures.
         skull: path of the scenario's skull.
-
-    Raises:
-        InputError: a mesh is missing, unusable, open or too large.
     """
     mesh = read_head_mesh(skull)
     if not mesh.is_closed:
@@ -307,11 +292,7 @@ def read_procedure_meshes(procedure: Procedure, skull: Path) -> ProcedureMeshes:
 
 
 def read_no_go_mesh(path: Path) -> HeadMesh:
-    """Read the surface of a no-go structure.
-
-    Raises:
-        InputError: it is missing, unusable, open or too large.
-    """
+    """Read the surface of a no-go structure."""
     mesh = read_head_mesh(path)
     check_no_go_mesh(mesh, str(path))
     return mesh
@@ -323,9 +304,6 @@ def check_no_go_mesh(mesh: HeadMesh, name: str) -> None:
     Args:
         mesh: to check.
         name: by which an error names it.
-
-    Raises:
-        InputError: it is open or too large.
     """
     check_no_go_size(len(mesh.triangles), name)
     if not mesh.is_closed:
@@ -342,10 +320,6 @@ def check_no_go_size(triangles: int, name: str) -> None:
 
 
 def read_all_no_go(procedures: Iterable[Procedure]) -> dict[str, HeadMesh]:
-    """Return the surfaces of all no-go structures of some procedures, by file name.
-
-    Raises:
-        InputError: one is missing, unusable, open or too large.
-    """
+    """Return the surfaces of all no-go structures of some procedures, by file name."""
     paths = {structure.mesh for procedure in procedures for structure in procedure.no_go}
     return {path.name: read_no_go_mesh(path) for path in sorted(paths)}

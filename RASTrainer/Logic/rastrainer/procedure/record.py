@@ -36,7 +36,6 @@ class TouchedCheckpoint:
         name: of the checkpoint.
         position_mm: of the tip, World, mm.
         error_mm: distance of the tip to the checkpoint by the registration in use, mm.
-        sim_time_s: simulated time, s.
     """
 
     name: str
@@ -68,7 +67,6 @@ class UsedRegistration:
 
     Attributes:
         matrix: WorldToHead, 16 numbers, row by row, rigid, mm.
-        fre_mm: its FRE.
         expected_tre_mm: at the scenario's target.
     """
 
@@ -160,7 +158,6 @@ class ProcedureRecord:
 
     @property
     def accepted(self) -> UsedRegistration:
-        """The registration that the trainee accepted."""
         registration = self.attempts[-1].registration
         assert registration is not None, "it was checked"
         return registration
@@ -172,18 +169,13 @@ class ProcedureRecord:
 
     @classmethod
     def from_json(cls, value: object) -> ProcedureRecord:
-        """Return the record that a decoded JSON object holds; unknown keys are ignored.
-
-        Raises:
-            InputError: a key is missing or invalid.
-        """
+        """Return the record that a decoded JSON object holds; unknown keys are ignored."""
         record = from_json_object(cls, value, _RECORD_KEYS, "The procedure's record")
         if record.attempts[-1].registration is None:
             raise InputError("The procedure's record must end with an accepted registration.")
         return record
 
     def to_json(self) -> dict[str, Any]:
-        """Return the JSON object that `from_json` reads."""
         return json_object(self)
 
 

@@ -204,7 +204,6 @@ def _octant() -> tuple[np.ndarray, np.ndarray]:
 
 @lru_cache(maxsize=1)
 def _chi_square_3_table() -> tuple[np.ndarray, np.ndarray]:
-    """Return roots and the distribution of χ² with 3 degrees of freedom at their squares."""
     root = np.linspace(0.0, 8.0, 8001)
     erf = np.array([math.erf(one / math.sqrt(2)) for one in root])
     return root, erf - math.sqrt(2 / math.pi) * root * np.exp(-(root**2) / 2)

@@ -36,11 +36,7 @@ class LocalizationError:
 
 
 def degrees_of_freedom(registration: Registration) -> int:
-    """Return the residual degrees of freedom: 3N minus the parameters of the fit.
-
-    Raises:
-        InputError: there are none, so the residuals carry no information.
-    """
+    """Return the residual degrees of freedom: 3N minus the parameters of the fit."""
     count = len(registration.labels)
     dof = 3 * count - PARAMETERS[registration.kind]
     if dof < 1:
@@ -57,9 +53,6 @@ def isotropic_error(registration: Registration) -> LocalizationError:
     From E[FRE²] = (1 − p/3N) E[FLE²] with p parameters: 1 − 2/N rigid (Sibson 1979),
     1 − 7/(3N) similarity, 1 − 4/N affine. Of a weighted fit the variance of each point is taken as
     inverse to its weight, s²/wᵢ a coordinate, where E[Σ wᵢ|rᵢ|²] = (3N − p)·s².
-
-    Raises:
-        InputError: the fit leaves no residuals to estimate from.
     """
     dof = degrees_of_freedom(registration)
     count = len(registration.labels)
@@ -102,9 +95,6 @@ def misfit_probability(registration: Registration, fle_mm: np.ndarray) -> float:
     Args:
         registration: Weighted by 1/FLE².
         fle_mm: (n,) float, the stated RMS length of each point's error.
-
-    Raises:
-        InputError: the fit leaves no residuals.
     """
     dof = degrees_of_freedom(registration)
     value = float(np.sum(3.0 * registration.residuals_mm**2 / np.asarray(fle_mm) ** 2))
@@ -124,9 +114,6 @@ def error_along_surface(registration: Registration, normals: np.ndarray) -> Loca
     Args:
         registration: its residuals and fixed points are used.
         normals: (n, 3) float, unit normals of the surface at the fixed points.
-
-    Raises:
-        InputError: the fit leaves no residuals, or there is not one unit normal for each point.
     """
     count = len(registration.labels)
     degrees_of_freedom(registration)

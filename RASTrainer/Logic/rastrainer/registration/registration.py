@@ -63,11 +63,7 @@ class Registration:
         return float(np.sqrt(np.average(self.residuals_mm**2, weights=self.weights)))
 
     def without(self, *labels: str) -> Registration:
-        """Return the registration of the same points without those of the given labels.
-
-        Raises:
-            InputError: no point has such a label, or too few points are left.
-        """
+        """Return the registration of the same points without those of the given labels."""
         for label in labels:
             if label not in self.labels:
                 raise InputError(
@@ -84,12 +80,7 @@ class Registration:
         )
 
     def leave_one_out_mm(self) -> np.ndarray:
-        """Return how far each point lies from where the other points put it, (n,) float, in mm.
-
-        Raises:
-            InputError: without one of them, too few points are left or they lie on a line (for an
-                affine registration: in a plane).
-        """
+        """Return how far each point lies from where the other points put it, (n,) float, in mm."""
         rows = np.arange(len(self.labels))
         distances = np.empty(len(rows))
         for left_out in rows:
@@ -125,9 +116,6 @@ def register(
         labels: Names of the points; `1` to `n` when left out.
         weights: (n,) float, above 0, for a rigid fit: how much each point counts. Where each is
             localized with its own error, 1/FLE² give the most exact fit; only their ratios matter.
-
-    Raises:
-        InputError: the points cannot be registered (see `rastrainer.registration.registration`).
     """
     moving, fixed, labels = check_points(moving, fixed, kind, labels)
     weights = check_weights(weights, kind, labels)
@@ -163,9 +151,6 @@ def register_all_kinds(
         fixed: points in the order of the moving ones.
         labels: of the points.
         weights: of the points in the rigid fit; the other kinds have none.
-
-    Raises:
-        InputError: the points do not allow a rigid registration.
     """
     fits = {RIGID: register(moving, fixed, RIGID, labels, weights)}
     for kind in (SIMILARITY, AFFINE):
@@ -185,13 +170,7 @@ FLAT = 1e-3
 def check_points(
     moving: np.ndarray, fixed: np.ndarray, kind: str, labels: Sequence[str] | None = None
 ) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
-    """Return copies of both point sets, (n, 3) float in mm, and their labels.
-
-    Raises:
-        InputError: the kind is unknown; the counts differ or are too small or too large; a
-            coordinate is no finite number within ±1 km; labels are missing or doubled; the points
-            lie on a line or, for an affine registration, in a plane.
-    """
+    """Return copies of both point sets, (n, 3) float in mm, and their labels."""
     if kind not in KINDS:
         raise InputError(
             f"The registration type {json.dumps(str(kind)[:40])} is unknown; "
@@ -209,12 +188,7 @@ def check_points(
 def check_weights(
     weights: np.ndarray | None, kind: str, labels: Sequence[str]
 ) -> np.ndarray | None:
-    """Return a copy of the weights, (n,) float that cannot be written to, or None for none.
-
-    Raises:
-        InputError: the fit is not rigid, there is not one weight above 0 for each label, or they
-            differ too much for double precision.
-    """
+    """Return a copy of the weights, (n,) float that cannot be written to, or None for none."""
     if weights is None:
         return None
     if kind != RIGID:

@@ -54,11 +54,7 @@ class MatchMeasures:
 
 
 def check_trace(trace_mm: object) -> np.ndarray:
-    """Return a copy of a trace, (n, 3) float, that cannot be written to.
-
-    Raises:
-        InputError: it is no list of finite points, has too few or too many, or is in one place.
-    """
+    """Return a copy of a trace, (n, 3) float, that cannot be written to."""
     try:
         trace = np.array(trace_mm, dtype=float)
     except (TypeError, ValueError, OverflowError):
@@ -89,11 +85,7 @@ def check_trace(trace_mm: object) -> np.ndarray:
 
 
 def check_surface(mesh: HeadMesh) -> None:
-    """Check that a mesh is the closed surface of a head.
-
-    Raises:
-        InputError: it is open, or not as large as a head in mm.
-    """
+    """Check that a mesh is the closed surface of a head."""
     extent = float(mesh.size.max())
     least, most = HEAD_EXTENT_MM
     if not least <= extent <= most:
@@ -109,11 +101,7 @@ def check_surface(mesh: HeadMesh) -> None:
 
 
 def check_start(start: object, trace: np.ndarray, mesh: HeadMesh) -> np.ndarray:
-    """Return a copy of a start, (4, 4) float.
-
-    Raises:
-        InputError: it is not rigid, or it puts the trace far off the head.
-    """
+    """Return a copy of a start, (4, 4) float."""
     try:
         matrix = np.array(start, dtype=float)
     except (TypeError, ValueError, OverflowError):
@@ -250,7 +238,6 @@ class SurfaceSlide:
 
     @property
     def way(self) -> str:
-        """The direction in words."""
         return _DIRECTIONS[int(np.abs(self.direction).argmax())]
 
 

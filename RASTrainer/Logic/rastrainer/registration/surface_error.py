@@ -49,7 +49,6 @@ class PoseKnowledge:
 
     @property
     def covariance(self) -> np.ndarray:
-        """(6, 6) float: that of the pose."""
         return self.noise_mm**2 * np.linalg.inv(self.curvature)
 
     def at_targets(self, targets: np.ndarray) -> np.ndarray:
@@ -62,9 +61,6 @@ def knowledge_of(match: SurfaceMatch) -> PoseKnowledge:
     """Return what a match reveals about the pose: from its points that count, and their residuals.
 
     σ² is Σ r²/(n − 6): the fit takes six parameters from the residuals.
-
-    Raises:
-        InputError: the trace leaves the pose open.
     """
     places = (match.nearest_mm + match.residual_vectors_mm)[match.is_inlier]
     count = len(places)
@@ -145,9 +141,6 @@ def next_best_place(
         mesh: The head.
         targets: (m, 3) float, RAS mm.
         allowed: (v,) bool, the vertices that can be reached, at least one.
-
-    Raises:
-        InputError: no vertex is allowed.
     """
     rows = np.flatnonzero(allowed)
     if not len(rows):

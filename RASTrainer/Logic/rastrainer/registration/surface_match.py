@@ -94,10 +94,6 @@ def match_surface(
         starts: Number of starts, the given one included; if there is only one, lower minima next
             to its own are not looked for either.
         trimmed: Whether points far off are left out of the fit.
-
-    Raises:
-        InputError: the trace is too short, in one place, no set of finite points or far off the
-            head; the start is not rigid; the surface is open or no head in mm.
     """
     trace = check_trace(trace_mm)
     check_surface(mesh)

@@ -93,9 +93,6 @@ def expected_tre(
         targets: (m, 3) float, in mm.
         localization: The FLE; by default the isotropic one that explains the residuals.
         common_bias_sd_mm: σ.
-
-    Raises:
-        InputError: the fit leaves no residuals, or a target is not finite.
     """
     localization = localization or isotropic_error(registration)
     covariances = _propagated(registration, targets, localization.covariances)
@@ -125,9 +122,6 @@ def target_error(
         confidence: Least probability that the error lies in the interval.
         common_bias_sd_mm: Standard deviation on each axis of an offset that all points share; 0
             for none, and both sides outside of the interval are equally likely then.
-
-    Raises:
-        InputError: the fit leaves no residuals, or the target is not finite.
     """
     localization = localization or isotropic_error(registration)
     targets = np.reshape(target, (1, -1))
@@ -255,7 +249,6 @@ class CommonBias:
 
     @property
     def length_mm(self) -> float:
-        """Its length."""
         return float(np.linalg.norm(self.vector_mm))
 
     @property
@@ -273,9 +266,6 @@ def true_touch_errors(
         touches_mm: (n, 3) float, World mm.
         head_to_world: (4, 4) float, mm, the true pose.
         fiducials_mm: (n, 3) float, RAS mm, paired with the touches.
-
-    Raises:
-        InputError: the pose has no inverse.
     """
     try:
         world_to_head = transforms.inverse(head_to_world)

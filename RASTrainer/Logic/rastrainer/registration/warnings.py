@@ -47,7 +47,6 @@ class RegistrationWarning:
     message: str
 
     def to_json(self) -> dict[str, Any]:
-        """Return the warning as a JSON object."""
         return {"code": self.code, "points": list(self.points), "message": self.message}
 
 
@@ -284,7 +283,6 @@ def rigid_fre(moving: np.ndarray, fixed: np.ndarray) -> float:
 
 
 def is_poor_fit(moving: np.ndarray, fixed: np.ndarray) -> bool:
-    """Return whether the FRE of the best rigid fit exceeds a fifth of the points' extent."""
     return rigid_fre(moving, fixed) > POOR_FIT * float(np.linalg.norm(extents(fixed)))
 
 

@@ -33,11 +33,7 @@ HEADER = [
 
 
 def calibration(data: StudyData) -> str:
-    """Return the section; "" if no target errors are known.
-
-    Raises:
-        InputError: scipy is missing.
-    """
+    """Return the section; "" if no target errors are known."""
     found = _calibration(data)
     if not found.points and not found.without_truth:
         return ""

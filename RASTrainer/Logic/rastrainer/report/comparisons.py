@@ -21,7 +21,6 @@ SCORE = "score"
 
 
 def compared_method(data: StudyData) -> str:
-    """Return the method whose trials are compared: fiducials, or the one of most trials."""
     counts = Counter(trial.method for trial in data.trials)
     fiducials = RegistrationMethod.FIDUCIALS.value
     return fiducials if fiducials in counts or not counts else counts.most_common(1)[0][0]
@@ -41,12 +40,10 @@ class ModeComparison:
     """One outcome in two modes.
 
     Attributes:
-        outcome: The outcome.
         first: Mode that is subtracted.
         second: Mode that it is subtracted from.
         trainees: Those who did both.
         first_means: Means in the first mode, (n,) float.
-        second_means: Means in the second mode.
         order: By how many periods each trainee did the second mode later than the first, (n,)
             float; None if unknown.
         result: The tests, or None.
@@ -106,7 +103,6 @@ def with_adjusted_p(
 
 
 def tested(comparisons: Sequence[ModeComparison]) -> list[tuple[ModeComparison, PairedComparison]]:
-    """Return the comparisons with results."""
     return [(one, one.result) for one in comparisons if one.result is not None]
 
 

@@ -60,7 +60,6 @@ def table(
 
 
 def section(title: str, *parts: str) -> str:
-    """Return a section with its heading."""
     return f"<section><h2>{html.escape(title)}</h2>{''.join(parts)}</section>"
 
 
@@ -70,7 +69,6 @@ def heading(text: str) -> str:
 
 
 def paragraph(text: str, kind: str = "") -> str:
-    """Return a paragraph."""
     attribute = f' class="{kind}"' if kind else ""
     return f"<p{attribute}>{_flowing(text)}</p>"
 

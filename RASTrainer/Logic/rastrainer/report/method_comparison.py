@@ -73,9 +73,6 @@ def method_comparison(data: StudyData) -> str:
 
     Args:
         data: With the trials of all methods.
-
-    Raises:
-        InputError: scipy is missing.
     """
     by_method = as_conditions(data)
     methods = [name for name in TITLES if name in by_method.modes]
@@ -100,7 +97,6 @@ def method_comparison(data: StudyData) -> str:
 
 
 def as_conditions(data: StudyData) -> StudyData:
-    """Return the study with methods in place of modes, and modes in place of tasks."""
     trials = tuple(replace(each, mode=each.method, task=each.mode) for each in data.trials)
     return replace(data, trials=trials)
 

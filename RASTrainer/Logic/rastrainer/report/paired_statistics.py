@@ -215,7 +215,6 @@ def _row(comparison: ModeComparison) -> Line:
 
 
 def interval_text(value: float, interval: tuple[float, float], digits: int) -> str:
-    """Return a value with its interval, such as `0.15 [0.08, 0.21]`."""
     low, high = interval
     return f"{fixed(value, digits)} [{fixed(low, digits)}, {fixed(high, digits)}]"
 

@@ -103,7 +103,6 @@ class _Group:
 
     @property
     def scores(self) -> list[float]:
-        """Of the procedures."""
         return [trial.procedure.score.score for trial in self.trials if trial.procedure]
 
     @property
@@ -151,11 +150,7 @@ class _Group:
 
 
 def procedures(data: StudyData) -> str:
-    """Return the section; "" without procedures that were scored.
-
-    Raises:
-        InputError: scipy is missing.
-    """
+    """Return the section; "" without procedures that were scored."""
     done = [trial for trial in data.trials if trial.procedure is not None]
     if not done:
         return ""

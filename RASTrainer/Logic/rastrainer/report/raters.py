@@ -32,11 +32,7 @@ Marks = Mapping[str, Mapping[str, Rating]]
 
 
 def raters(data: StudyData) -> str:
-    """Return the section; "" if nobody has rated replays.
-
-    Raises:
-        InputError: scipy is missing.
-    """
+    """Return the section; "" if nobody has rated replays."""
     parts = [_of_form(form, marks, data) for form in FORMS.values() if (marks := _of(data, form))]
     if not parts:
         return ""
@@ -125,7 +121,6 @@ def _domain(
 
 
 def _meaning(found: IntraclassCorrelations) -> str:
-    """Return what the agreement of the totals means, in words."""
     of_mean = f"the mean of {counted(found.raters, 'rater')}"
     return (
         f"Of {counted(found.objects, 'replay')}, the total of a single rater is "
@@ -136,7 +131,6 @@ def _meaning(found: IntraclassCorrelations) -> str:
 
 
 def _in_words(agreement: Agreement) -> str:
-    """Return a word for a value, and those for the ends of its interval."""
     word = _word(agreement.value)
     if agreement.interval is None:
         return f"{word} as a measure (the raters differ by a constant: no interval)"

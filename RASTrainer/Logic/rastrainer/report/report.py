@@ -50,9 +50,6 @@ def write_report(data: StudyData, folder: Path, made_utc: str | None = None) -> 
         data: From `read_study_data`.
         folder: Created if missing; files of an earlier report are replaced.
         made_utc: Time stated in the report; now by default.
-
-    Raises:
-        InputError: the folder cannot be written, or scipy is missing.
     """
     page_text = report_html(data, made_utc)
     make_folder(folder)
@@ -63,11 +60,7 @@ def write_report(data: StudyData, folder: Path, made_utc: str | None = None) -> 
 
 
 def report_html(data: StudyData, made_utc: str | None = None) -> str:
-    """Return the page.
-
-    Raises:
-        InputError: scipy is missing.
-    """
+    """Return the page."""
     # Before anything that catches `InputError`.
     scipy_module("stats")
     by_method, compared_methods = methods_note(data), method_comparison(data)

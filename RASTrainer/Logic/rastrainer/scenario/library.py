@@ -41,7 +41,6 @@ class ListedScenario:
 
     Attributes:
         name, title: of the scenario; the folder's name if it is unusable.
-        folder: its folder.
         preview: path of its picture, a PNG; None if missing or unusable.
         problem: why it is unusable; empty otherwise.
     """
@@ -138,9 +137,6 @@ def pack(folder: Path, package: Path) -> Path:
     """Write a scenario as a zip file; the same scenario gives the same bytes.
 
     Other files in the folder are left out.
-
-    Raises:
-        InputError: the scenario is unusable, or the file exists or cannot be written.
     """
     scenario, package = checked_scenario(folder), Path(package)
     if package.exists():
@@ -174,9 +170,6 @@ def unpack(package: Path, library: Path, progress: Progress = no_progress) -> Pa
         package: the zip file.
         library: folder of folders.
         progress: receives the step's name and the share of work done; may raise to cancel.
-
-    Raises:
-        InputError: the file is not a valid package, is too large, or the scenario exists already.
     """
     package, library = Path(package), Path(library).absolute()
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as temporary:
@@ -195,11 +188,7 @@ def unpack(package: Path, library: Path, progress: Progress = no_progress) -> Pa
 
 
 def checked_scenario(folder: Path) -> Scenario:
-    """Load a scenario and check its meshes, its volume and the lines of its procedures.
-
-    Raises:
-        InputError: it is unusable.
-    """
+    """Load a scenario and check its meshes, its volume and the lines of its procedures."""
     scenario = load_scenario(folder)
     for path in filter(None, (scenario.head_mesh, scenario.skull_mesh)):
         mesh = read_head_mesh(path)
@@ -218,11 +207,7 @@ def checked_scenario(folder: Path) -> Scenario:
 
 
 def require_usable_lines(scenario: Scenario) -> None:
-    """Check that instruments can be placed along all trajectories of a scenario's procedures.
-
-    Raises:
-        InputError: a mesh is unusable, or a trajectory leads out of the head or past the skull.
-    """
+    """Check that instruments can be placed along all trajectories of a scenario's procedures."""
     if scenario.skull_mesh is None or not scenario.procedures:
         return
     head = read_head_mesh(scenario.head_mesh)

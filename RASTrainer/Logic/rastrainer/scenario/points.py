@@ -47,12 +47,7 @@ class Task:
 def read_task(
     path: Path, name: str, title: str, complexity: float, shortest_path_mm: float | None = None
 ) -> Task:
-    """Read a task's fiducials from a `.mrk.json` file.
-
-    Raises:
-        InputError: the file is unusable, or does not have fifteen different points labeled "1" to
-            "15" in this order.
-    """
+    """Read a task's fiducials from a `.mrk.json` file."""
     points = read_markups(path)
     if tuple(points.labels) != LABELS:
         raise InputError(
@@ -76,9 +71,6 @@ def touch_order(labels: Sequence[str]) -> list[int]:
 
     The order follows the numbers at the ends of the labels, such as "7" or Slicer's "F-7", or the
     list if there are none.
-
-    Raises:
-        InputError: the number of fiducials is wrong, or their numbers are ambiguous.
     """
     if len(labels) != FIDUCIAL_COUNT:
         raise InputError(f"it has {len(labels)} fiducials; a task has {FIDUCIAL_COUNT}.")
@@ -127,11 +119,7 @@ class PlannedTrajectory:
 
 
 def read_targets(fields: Fields) -> tuple[PlannedTarget, ...]:
-    """Return the optional field `targets`.
-
-    Raises:
-        InputError: it is invalid.
-    """
+    """Return the optional field `targets`."""
     if "targets" not in fields.names():
         return ()
     entries = fields.list_of_fields("targets", 0, MAX_TARGETS)
@@ -142,11 +130,7 @@ def read_targets(fields: Fields) -> tuple[PlannedTarget, ...]:
 
 
 def read_trajectory(fields: Fields) -> PlannedTrajectory | None:
-    """Return the optional field `trajectory`.
-
-    Raises:
-        InputError: it is invalid.
-    """
+    """Return the optional field `trajectory`."""
     if "trajectory" not in fields.names():
         return None
     own = fields.fields("trajectory")
@@ -173,11 +157,7 @@ class Landmark:
 
 
 def read_landmarks(fields: Fields) -> tuple[Landmark, ...]:
-    """Return the optional field `landmarks` of a scenario, in the order of touching.
-
-    Raises:
-        InputError: it is invalid.
-    """
+    """Return the optional field `landmarks` of a scenario, in the order of touching."""
     if "landmarks" not in fields.names():
         return ()
     landmarks: dict[str, Landmark] = {}

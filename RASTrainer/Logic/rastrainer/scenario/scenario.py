@@ -66,7 +66,6 @@ class Camera:
         position: (3,) float, the eye.
         focal_point: (3,) float, the center of the picture.
         view_up: (3,) float, unit vector.
-        view_angle_deg: vertical angle of view.
     """
 
     position: np.ndarray
@@ -157,11 +156,7 @@ class Scenario:
         return path if path.is_file() and not path.is_symlink() else None
 
     def task(self, name: str) -> Task:
-        """Return the task of this name.
-
-        Raises:
-            InputError: there is none; the message lists the tasks.
-        """
+        """Return the task of this name."""
         for task in self.tasks:
             if task.name == name:
                 return task
@@ -169,11 +164,7 @@ class Scenario:
         raise InputError(f"The scenario {self.name} has no such task; it has {names}.")
 
     def procedure(self, name: str) -> Procedure:
-        """Return the procedure of this name.
-
-        Raises:
-            InputError: there is none; the message lists the procedures.
-        """
+        """Return the procedure of this name."""
         for procedure in self.procedures:
             if procedure.name == name:
                 return procedure
@@ -189,11 +180,7 @@ class Scenario:
 
 
 def load_scenario(folder: Path | str) -> Scenario:
-    """Read a scenario's folder.
-
-    Raises:
-        InputError: a file is missing or unusable; the message names it and the field.
-    """
+    """Read a scenario's folder."""
     try:
         return _load(Path(folder))
     except OSError as error:
@@ -251,11 +238,7 @@ def _tasks(fields: Fields) -> tuple[Task, ...]:
 
 
 def read_perturbation(fields: Fields) -> Perturbation:
-    """Return the field `perturbation`.
-
-    Raises:
-        InputError: it is missing or invalid.
-    """
+    """Return the field `perturbation`."""
     limits = fields.fields("perturbation")
     return Perturbation(
         limits.number("translationMm", 0, MAX_PERTURBATION.translation_mm),
@@ -302,11 +285,7 @@ def _array(values: list[float] | np.ndarray) -> np.ndarray:
 
 
 def method_of(name: str | None) -> RegistrationMethod:
-    """Return the method of a trial by its name; none stands for fiducials.
-
-    Raises:
-        InputError: no trial is played by it.
-    """
+    """Return the method of a trial by its name; none stands for fiducials."""
     for method in PLAYED_METHODS:
         if method.value == (name or RegistrationMethod.FIDUCIALS.value):
             return method
@@ -321,11 +300,7 @@ def playable_methods(scenario: Scenario) -> tuple[RegistrationMethod, ...]:
 
 
 def task_by_method(scenario: Scenario, task_name: str, method: RegistrationMethod) -> Task:
-    """Return a task with the points that a method has touched in place of its fiducials.
-
-    Raises:
-        InputError: the scenario has no such task, or too few landmarks for the method.
-    """
+    """Return a task with the points that a method has touched in place of its fiducials."""
     task = scenario.task(task_name)
     if method is RegistrationMethod.FIDUCIALS:
         return task

@@ -25,7 +25,6 @@ class SetUp:
     """A set-up; lengths in mm, in the table's frame: World of a robot at the default place.
 
     Attributes:
-        head_center: center of the head.
         head_yaw_deg: rotation about the vertical, counterclockwise from above; 0 faces −y, with the
             right side toward the robot.
         perturbation: how far a trial's pose may be from it.
@@ -72,11 +71,7 @@ class SetUp:
         return Furniture(center, np.array(self.table_size), self.stand_diameter)
 
     def check_height(self, lowest_ras: float, middle_ras: np.ndarray) -> None:
-        """Check that the head's base is above the table.
-
-        Raises:
-            InputError: it is not.
-        """
+        """Check that the head's base is above the table."""
         height = self.head_center[2] - (middle_ras[2] - lowest_ras)
         if height < LOWEST_BASE_MM:
             raise InputError(
@@ -86,11 +81,7 @@ class SetUp:
 
 
 def read_setup(path: Path) -> SetUp:
-    """Read a set-up from a JSON file; missing fields have defaults.
-
-    Raises:
-        InputError: the file is unusable; the message names the field.
-    """
+    """Read a set-up from a JSON file; missing fields have defaults."""
     fields = read_fields(Path(path))
     known = ("head", "perturbation", "table", "stand", "robotBaseMm")
     unknown = [name for name in fields.names() if name not in known]
@@ -110,11 +101,7 @@ def read_setup(path: Path) -> SetUp:
 
 
 def write_setup(path: Path, setup: SetUp) -> None:
-    """Write a set-up for `read_setup`.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
+    """Write a set-up for `read_setup`."""
     write_json(path, _content(setup))
 
 

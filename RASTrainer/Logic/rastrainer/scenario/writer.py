@@ -33,22 +33,14 @@ _DECIMALS = 4
 
 
 def require_new(folder: Path) -> None:
-    """Check that a folder can be made.
-
-    Raises:
-        InputError: there is a file, a link or a folder that is not empty.
-    """
+    """Check that a folder can be made."""
     if folder.is_symlink() or folder.is_file() or (folder.is_dir() and any(folder.iterdir())):
         raise InputError(f"{folder} already exists; name a new or empty folder.")
 
 
 @contextlib.contextmanager
 def new_folder(folder: Path) -> Iterator[Path]:
-    """Yield a temporary folder that becomes `folder` at the end, or is deleted on failure.
-
-    Raises:
-        InputError: `folder` is not empty, or cannot be made.
-    """
+    """Yield a temporary folder that becomes `folder` at the end, or is deleted on failure."""
     folder = Path(folder).absolute()
     require_new(folder)
     partial = folder.parent / f".{uuid.uuid4().hex}.partial"
@@ -65,11 +57,7 @@ def new_folder(folder: Path) -> Iterator[Path]:
 
 
 def scenario_name(title: str) -> str:
-    """Return a name for commands and records, derived from a title.
-
-    Raises:
-        InputError: the title has no Latin letter or digit.
-    """
+    """Return a name for commands and records, derived from a title."""
     name = identifier_of(title)
     if not name:
         raise InputError(
@@ -97,9 +85,6 @@ def write_scenario(
         skull: the skull's mesh, or None.
         volume: the images, or None.
         no_go: the meshes of the procedures' no-go structures, by file name.
-
-    Raises:
-        InputError: a file cannot be written.
     """
     (folder / "tasks").mkdir(exist_ok=True)
     write_head_mesh(folder / HEAD_NAME, head)
@@ -163,7 +148,6 @@ def scenario_json(
 
 
 def volume_entry(volume: HeadVolume) -> dict[str, Any]:
-    """Return the JSON entry of a volume written by `write_head_volume`."""
     return {"file": VOLUME_NAME, "window": volume.window, "level": volume.level}
 
 
@@ -220,11 +204,7 @@ class HeadDraft:
 
 
 def write_draft(folder: Path, draft: HeadDraft) -> None:
-    """Write a draft into an existing folder.
-
-    Raises:
-        InputError: a file cannot be written.
-    """
+    """Write a draft into an existing folder."""
     kind = SKULL_KINDS[int(draft.is_skull_approximate)] if draft.skull else NO_SKULL
     write_head_mesh(folder / HEAD_NAME, draft.head)
     if draft.skull is not None:
@@ -237,11 +217,7 @@ def write_draft(folder: Path, draft: HeadDraft) -> None:
 
 
 def read_draft(folder: Path) -> HeadDraft:
-    """Read a draft.
-
-    Raises:
-        InputError: it is missing or unusable.
-    """
+    """Read a draft."""
     fields = read_fields(folder / DRAFT_NAME)
     kind = fields.one_of("skull", (*SKULL_KINDS, NO_SKULL))
     volume = read_volume_file(fields)

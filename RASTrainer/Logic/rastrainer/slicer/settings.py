@@ -64,7 +64,6 @@ class Settings:
             return setting.usual
 
     def set(self, setting: Setting[Value], value: Value) -> None:
-        """Store a choice."""
         self._store.setValue(setting.key, value)
 
 

@@ -18,7 +18,6 @@ class Signal:
         self._listeners: list[Callable[..., Any]] = []
 
     def connect(self, listener: Callable[..., Any]) -> None:
-        """Call `listener` from now on."""
         self._listeners.append(listener)
 
     def disconnect(self, listener: Callable[..., Any]) -> None:
@@ -32,7 +31,6 @@ class Signal:
         return tuple(self._listeners)
 
     def emit(self, *values: Any) -> None:
-        """Call every listener."""
         for listener in self.listeners:
             listener(*values)
 
@@ -41,13 +39,11 @@ class Listening:
     """Listeners that are connected to their signals until this is closed."""
 
     def __init__(self, *pairs: tuple[Signal, Callable[..., Any]]) -> None:
-        """Connect the listener of each pair to its signal."""
         self._pairs = pairs
         for signal, listener in pairs:
             signal.connect(listener)
 
     def close(self) -> None:
-        """Disconnect them."""
         for signal, listener in self._pairs:
             signal.disconnect(listener)
 

@@ -33,7 +33,6 @@ class Agreement:
     interval: tuple[float, float] | None
 
     def holds(self, truth: float) -> bool:
-        """Return whether the interval contains a true value."""
         return self.interval is not None and self.interval[0] <= truth <= self.interval[1]
 
 
@@ -61,9 +60,6 @@ def intraclass_correlations(ratings: np.ndarray) -> IntraclassCorrelations:
     confidence limits (Weerahandi 1993): those of McGraw and Wong (1996, table 7) hold the truth in
     as few as 75 % of simulated studies where raters differ as much as objects; see
     docs/error-rates.md. Raters who differ by nothing but a constant leave no limits.
-
-    Raises:
-        InputError: fewer than three objects or two raters, or all objects were rated the same.
     """
     ratings = np.asarray(ratings, dtype=float)
     n, k = ratings.shape
@@ -131,9 +127,6 @@ def quadratic_kappa(first: np.ndarray, second: np.ndarray, lowest: int, highest:
         second: Marks of the other, of the same objects in the same order.
         lowest: Lowest mark of the scale.
         highest: Highest mark.
-
-    Raises:
-        InputError: fewer than three objects, or both raters gave one and the same mark to all.
     """
     first, second = np.asarray(first, dtype=int), np.asarray(second, dtype=int)
     n, marks = len(first), highest - lowest + 1
@@ -163,9 +156,6 @@ def kappa_of_table(table: np.ndarray, weights: np.ndarray) -> float:
     Args:
         table: (m, m) float, how many objects, or which share, have each pair of marks.
         weights: (m, m) float, 1 where the marks are equal.
-
-    Raises:
-        InputError: both raters gave one and the same mark to every object.
     """
     shares = table / table.sum()
     observed = float(np.sum(weights * shares))

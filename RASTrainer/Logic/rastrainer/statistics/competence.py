@@ -48,9 +48,6 @@ def lc_cusum(failures: Sequence[bool], adequate: float, inadequate: float, limit
         adequate: Failure rate of a competent trainee.
         inadequate: Failure rate of one who is not.
         limit: h, see `lc_cusum_limit`.
-
-    Raises:
-        InputError: the rates are not 0 < adequate < inadequate < 1, or the limit is not above 0.
     """
     success, failure = _steps(adequate, inadequate)
     if not limit > 0:
@@ -73,9 +70,6 @@ def lc_cusum_limit(adequate: float, inadequate: float, trials: int) -> float:
         adequate: Failure rate of a competent trainee.
         inadequate: Failure rate of one who is not.
         trials: How many trials the training has.
-
-    Raises:
-        InputError: as `lc_cusum`, or so few trials cannot show competence at that risk.
     """
     success, _ = _steps(adequate, inadequate)
     least = signal_probability(inadequate, trials, adequate, inadequate, trials * success)
@@ -172,9 +166,6 @@ def pass_mark(novices: Sequence[float], experts: Sequence[float]) -> PassMark:
     Args:
         novices: One score a person, such as the mean of the last trials.
         experts: The same; higher is better.
-
-    Raises:
-        InputError: fewer than five in a group, no spread in one, or experts are not better.
     """
     low, high = np.asarray(novices, dtype=float), np.asarray(experts, dtype=float)
     if min(len(low), len(high)) < MIN_GROUP_SIZE:

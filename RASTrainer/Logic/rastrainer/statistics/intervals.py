@@ -19,9 +19,6 @@ def scipy_module(name: str) -> ModuleType:
     3D Slicer includes scipy; the simulator's installation needs it only for reports, power
     calculations and groups of trainees. Trials and registration use numpy alone
     (`rastrainer.registration.distributions`).
-
-    Raises:
-        InputError: scipy is not installed.
     """
     try:
         return importlib.import_module(f"scipy.{name}")
@@ -104,11 +101,7 @@ def paired_power(effect_dz: float, n: int, with_period: bool = False) -> float:
 
 
 def subjects_needed(effect_dz: float, with_period: bool = False) -> int:
-    """Return the least number of subjects with `TARGET_POWER`; arguments as of `paired_power`.
-
-    Raises:
-        InputError: the effect is so small that more than 10 000 were needed.
-    """
+    """Return the least number of subjects with `TARGET_POWER`; arguments as of `paired_power`."""
     low = 1 + with_period
     high = low + 1
     while paired_power(effect_dz, high, with_period) < TARGET_POWER:
@@ -150,11 +143,7 @@ class Correlation:
 
 
 def correlation(x: np.ndarray, y: np.ndarray) -> Correlation:
-    """Return the correlation of (n,) float pairs; of three pairs the interval is None.
-
-    Raises:
-        InputError: fewer than three pairs, or one of both does not vary.
-    """
+    """Return the correlation of (n,) float pairs; of three pairs the interval is None."""
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if len(x) < 3 or np.ptp(x) == 0 or np.ptp(y) == 0:
         raise InputError("A correlation needs three pairs of values that vary.")
@@ -182,7 +171,6 @@ class Proportion:
 
     @property
     def share(self) -> float:
-        """From 0 to 1."""
         return self.count / self.total
 
 
@@ -191,9 +179,6 @@ def proportion(count: int, total: int) -> Proportion:
 
     It stays within 0 and 1 and keeps its 95 % for shares near them, as `count ± 2 SE` does not. It
     takes the trials as independent.
-
-    Raises:
-        InputError: scipy is missing.
     """
     interval = scipy_module("stats").binomtest(count, total).proportion_ci(0.95, "wilson")
     return Proportion(count, total, (float(interval.low), float(interval.high)))
@@ -211,7 +196,6 @@ class Estimate:
         return Estimate(-self.value, (-high, -low))
 
     def holds(self, truth: float) -> bool:
-        """Return whether the interval contains a true value."""
         return self.interval[0] <= truth <= self.interval[1]
 
 
@@ -236,7 +220,6 @@ def mean(values: np.ndarray) -> Estimate:
 
 
 def variance(square: MeanSquare) -> Estimate:
-    """Return the variance that a mean square estimates."""
     low, high = (chi2_ratio(tail, square.dof) for tail in (TAIL, 1 - TAIL))
     return Estimate(square.value, (square.value / high, square.value / low))
 
@@ -287,5 +270,4 @@ def t_quantile(dof: float) -> float:
 
 @functools.lru_cache(maxsize=256)
 def chi2_ratio(probability: float, dof: float) -> float:
-    """Return the quantile of χ²/dof."""
     return float(scipy_module("stats").chi2.ppf(probability, dof)) / dof

@@ -192,9 +192,6 @@ def compare_paired(
     effect size is Cohen's d_z with Hedges' exact correction (1981).
 
     `order` is that of `is_separable`.
-
-    Raises:
-        InputError: fewer than two subjects, or all differences are equal.
     """
     first, second = np.asarray(first, dtype=float), np.asarray(second, dtype=float)
     differences, n = second - first, len(first)
@@ -290,9 +287,6 @@ def signed_rank_test(differences: np.ndarray) -> RankTest:
 
     Zeros are left out (Wilcoxon 1945); tied sizes share their mean rank. The distribution is that
     of all 2ⁿ signs of the ranks that were observed.
-
-    Raises:
-        InputError: no difference but zeros, or more than 400.
     """
     values = np.asarray(differences, dtype=float)
     values = values[values != 0]
@@ -340,7 +334,6 @@ def _doubled(ranks: np.ndarray) -> np.ndarray:
 
 
 def _exact_test(chances: np.ndarray, observed: int) -> RankTest:
-    """Return the test of an observed sum of ranks by the probability of each, (sum + 1,) float."""
     lower, upper = chances[: observed + 1].sum(), chances[observed:].sum()
     possible = np.flatnonzero(chances)
     smallest = min(chances[possible[0]], chances[possible[-1]])

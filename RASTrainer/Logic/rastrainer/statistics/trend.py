@@ -61,11 +61,7 @@ class Trend:
 
 
 def falling_trend(values: Sequence[float] | np.ndarray) -> Trend:
-    """Test whether (n,) times or errors of consecutive trials fall.
-
-    Raises:
-        InputError: fewer than four trials, or values that are not finite.
-    """
+    """Test whether (n,) times or errors of consecutive trials fall."""
     y = np.asarray(values, dtype=float)
     if len(y) < MIN_TRIALS or not np.isfinite(y).all():
         raise InputError(
@@ -96,9 +92,6 @@ def cohort_trend_p(rows: np.ndarray) -> float:
 
     It is Page's test (1963), each trainee a block: only the ranks within trainees count, so that
     slow and quick ones count alike.
-
-    Raises:
-        InputError: fewer than two trainees or three trials.
     """
     values = np.asarray(rows, dtype=float)
     if values.ndim != 2 or values.shape[0] < 2 or values.shape[1] < 3:
@@ -227,7 +220,6 @@ class LearningCurve:
     r_squared: float
 
     def at(self, trial: float) -> float:
-        """Return the value of the curve at a trial, the first is 1."""
         return self.gain * trial**-self.rate + self.plateau
 
 
@@ -236,9 +228,6 @@ def fit_learning_curve(values: Sequence[float]) -> LearningCurve:
 
     Gain and plateau are not below 0: what is measured falls with practice and stays above 0, as
     times and errors do.
-
-    Raises:
-        InputError: fewer than five trials, or they hold no finite numbers of at least 0.
     """
     y = np.asarray(values, dtype=float)
     if len(y) < MIN_FIT_TRIALS:

@@ -183,7 +183,6 @@ class _Levels:
         return coefficient(float(flat @ self._flat), float(np.sqrt(own + shared)), dof)
 
     def _square(self, form: np.ndarray, dof: int) -> tuple[MeanSquare, float]:
-        """Return a mean square of the levels, and the share of chance in it."""
         square = max(float(self._flat @ form @ self._flat), 0.0) / dof
         return MeanSquare(square, dof), float(np.sum(form * self._inverse)) / dof
 

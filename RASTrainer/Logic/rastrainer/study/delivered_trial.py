@@ -80,21 +80,13 @@ def store_delivered(
 
 
 def score_references(study: Study) -> Mapping[str, ScoreReference] | None:
-    """Return the score's references by task, as a study's protocol sets them; None without one.
-
-    Raises:
-        InputError: the study cannot be read.
-    """
+    """Return the score's references by task, as a study's protocol sets them; None without one."""
     protocol = StudyProgress(study).protocol()
     return None if protocol is None else protocol.references
 
 
 def checks_journals(study: Study) -> bool:
-    """Return whether the protocol of a study asks for trials with their journals.
-
-    Raises:
-        InputError: the study cannot be read.
-    """
+    """Return whether the protocol of a study asks for trials with their journals."""
     protocol = StudyProgress(study).protocol()
     return protocol is not None and protocol.checks_journals
 
@@ -116,9 +108,6 @@ def scored_with_journal(
         references: those of the trial's study, as `score_references` returns them.
         records: folder of journals; None, or one that is not there, explains less of the touches.
         pause: called again and again while the journal is read; a thread may wait in it.
-
-    Raises:
-        InputError: the trial cannot be scored.
     """
     trajectory = trajectory_of(analysis.record, records, pause)
     return analysis.scored(scenario, truth, references, trajectory)
@@ -134,11 +123,7 @@ def trajectory_of(
 
 
 def with_progress(analysis: TrialAnalysis, study: Study) -> TrialAnalysis:
-    """Return the analysis of a stored trial with the trainee's progress; trial runs have none.
-
-    Raises:
-        InputError: an unknown trial.
-    """
+    """Return the analysis of a stored trial with the trainee's progress; trial runs have none."""
     record = analysis.record
     score = study.trial(record.trial_id).score
     if record.task == TRIAL_RUN or score is None:
@@ -153,9 +138,6 @@ def with_progress_among(
     """Return the analysis of a scored trial, with its place among these attempts, itself included.
 
     `pass_mark` is that for trials of its method; None without one.
-
-    Raises:
-        InputError: it is none of them.
     """
     progress = progress_of(attempts, analysis.record.trial_id, pass_mark)
     return replace(analysis, feedback=replace(analysis.feedback, progress=progress))
@@ -174,17 +156,12 @@ _READING = "Reading the journal"
 def register(
     record: TrialRecord, scenario: Scenario, cohort: Sequence[ctps.Trial], progress: Progress
 ) -> TrialAnalysis:
-    """Return the registration of a trial; its journal, which takes long to read, is not needed.
-
-    Raises:
-        InputError: it cannot be registered.
-    """
+    """Return the registration of a trial; its journal, which takes long to read, is not needed."""
     progress("Registering", 0.0)
     return analyze_trial(record, scenario, cohort)
 
 
 def register_open(given: GivenPoints, scenario: Scenario, progress: Progress) -> TouchRegistration:
-    """Return the registration of an open trial; errors of `register_trial`."""
     progress("Registering", 0.0)
     return register_trial(given, scenario)
 
@@ -211,11 +188,7 @@ def score(
 def explain(
     record: TrialRecord, scenario: Scenario, records: Path, progress: Progress
 ) -> TrialAnalysis:
-    """Return the registration of a trial, with the touches explained by its journal.
-
-    Raises:
-        InputError: it cannot be registered.
-    """
+    """Return the registration of a trial, with the touches explained by its journal."""
     progress(_READING, 0.0)
     return analyze_trial(record, scenario, trajectory=trajectory_of(record, records))
 
@@ -234,6 +207,5 @@ def explain_procedure(
 
 
 def read_track(records: Path, trial_id: str, progress: Progress) -> ReplayTrack:
-    """Return what is shown of a trial again; errors of `find_track`."""
     progress(_READING, 0.0)
     return find_track(records, trial_id)

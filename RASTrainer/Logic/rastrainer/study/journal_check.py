@@ -36,11 +36,7 @@ Entry = Mapping[str, Any]
 def check_journal(
     record: TrialRecord, truth: RevealedTruth, journal: bytes, scenario: Scenario
 ) -> None:
-    """Check a trial, and the truth that was revealed, by its journal.
-
-    Raises:
-        InputError: the chain is broken, or something in the record does not follow from it.
-    """
+    """Check a trial, and the truth that was revealed, by its journal."""
     try:
         entries = _entries(journal, record.journal_sha256)
         registered = next(e for e in entries if e["sha256"] == record.journal_sha256)

@@ -295,7 +295,6 @@ CLUSTER_METRICS = (
 
 
 def mode_title(mode: str) -> str:
-    """Return the title of a mode."""
     return MODE_TITLES.get(mode, mode)
 
 
@@ -305,10 +304,8 @@ def short_mode_title(mode: str) -> str:
 
 
 def mode_name(mode: str) -> str:
-    """Return the name of a mode for a sentence."""
     return MODE_NAMES.get(mode, mode)
 
 
 def task_title(task: str) -> str:
-    """Return the title of a task: `task-1` and `1` are Task 1."""
     return f"Task {task}" if task.isdigit() else task.replace("-", " ").capitalize()

@@ -93,7 +93,6 @@ class PlatformLinks:
         return row[0] if row else None
 
     def pseudonyms(self) -> set[str]:
-        """Return all trainees who are users of platforms."""
         with self._opened() as database:
             return {name for (name,) in database.execute("SELECT pseudonym FROM users")}
 
@@ -107,7 +106,6 @@ class PlatformLinks:
         return [{"issuer": issuer, "subject": subject} for issuer, subject in rows]
 
     def link(self, issuer: str, subject: str, pseudonym: str) -> None:
-        """Remember who a user is."""
         with self._opened() as database:
             database.execute("INSERT INTO users VALUES (?, ?, ?)", (issuer, subject, pseudonym))
 

@@ -126,7 +126,6 @@ class Rating:
 
     @property
     def total(self) -> int:
-        """The sum of the marks."""
         return sum(self.marks.values())
 
 
@@ -150,9 +149,6 @@ class RatingStore:
             trial_ids: Of the trials that can be shown.
             count: How many there shall be at least; fewer if there are no more.
             chance: Draws and shuffles.
-
-        Raises:
-            InputError: the rater's name cannot be a pseudonym, or a trial is unknown.
         """
         try:
             rater = json_checks.pseudonym()(rater)
@@ -196,10 +192,6 @@ class RatingStore:
             form: Which form.
             domain: Name of one of its domains.
             mark: 1 to 5.
-
-        Raises:
-            InputError: no such domain or mark, the rater was not given the trial, or another mark
-                has the UUID.
         """
         if domain not in {each.name for each in form.domains}:
             raise InputError(f"{form.title} has no domain {domain[:40]!r}.")

@@ -107,7 +107,6 @@ class StudyData:
 
     @property
     def modes(self) -> tuple[str, ...]:
-        """Modes in the order of their first trial."""
         return tuple(dict.fromkeys(trial.mode for trial in self.trials))
 
     @property
@@ -121,11 +120,9 @@ class StudyData:
         return tuple(sorted({trial.task for trial in self.trials}, key=_by_number))
 
     def with_mean_times(self, mean_ct_s: Mapping[str, float]) -> StudyData:
-        """Return the study with given mean completion times for CTPS, by mode."""
         return replace(self, mean_ct_s={**self.mean_ct_s, **mean_ct_s})
 
     def of_mode(self, mode: str) -> list[TrialRow]:
-        """Return the trials of a mode."""
         return [trial for trial in self.trials if trial.mode == mode]
 
     def ctps_trials(self, mode: str) -> list[Trial]:

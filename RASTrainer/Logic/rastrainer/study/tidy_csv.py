@@ -54,9 +54,6 @@ def write_history(study: Study, pseudonyms: Iterable[str], path: Path | str) -> 
     """Write all trials of trainees, including trial runs, as CSV; return their number.
 
     Aborted trials go into a second file, `NAME-aborted.csv`.
-
-    Raises:
-        InputError: an unknown trainee, or the file cannot be written.
     """
     pseudonyms = tuple(pseudonyms)
     rows = [row for pseudonym in pseudonyms for row in trial_rows(study.history(pseudonym))]
@@ -73,9 +70,6 @@ def write_histories(study: Study, path: Path | str) -> tuple[int, int]:
 
     Returns:
         The number of trials, and the number of trainees without consent, who are left out.
-
-    Raises:
-        InputError: no trainee consented, or the file cannot be written.
     """
     everyone = (*study.trainees(), *study.trainees(archived=True))
     consenting = sorted(trainee.pseudonym for trainee in everyone if trainee.consent)
@@ -264,7 +258,6 @@ def ratings_csv(data: StudyData) -> str:
 
 
 def _who(trial: TrialRow | AbortedTrial) -> list[str]:
-    """Return the cells of trainee, mode and task."""
     return [plain_cell(text) for text in (trial.trainee, trial.mode, trial.task)]
 
 

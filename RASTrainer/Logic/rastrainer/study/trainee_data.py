@@ -21,11 +21,7 @@ FORMAT = "RASTrainer trainee 4"
 
 
 def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
-    """Write all data of a trainee as one JSON file and return the number of finished trials.
-
-    Raises:
-        InputError: an unknown trainee, or the file cannot be written.
-    """
+    """Write all data of a trainee as one JSON file and return the number of finished trials."""
     trainee, trials = study.trainee(pseudonym), study.history(pseudonym)
     links = PlatformLinks(path_beside_study(study.database.place))
     document = {
@@ -121,9 +117,6 @@ def erase_trainee(study: Study, pseudonym: str, records: Path | None) -> Erasure
         study: The trainee's study.
         pseudonym: The trainee.
         records: The simulator's folder of journals; None if they are elsewhere.
-
-    Raises:
-        InputError: an unknown trainee, or a journal cannot be deleted.
     """
     ids = [trial.record.trial_id for trial in study.history(pseudonym)]
     ids += [aborted.record.trial_id for aborted in AbortedTrials(study).of(pseudonym)]

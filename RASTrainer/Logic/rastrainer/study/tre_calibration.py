@@ -71,17 +71,12 @@ class TreCalibration:
         without_truth: int = 0,
         without_expectation: int = 0,
     ) -> TreCalibration:
-        """Return a calibration with sorted points."""
         ordered = tuple(sorted(points, key=lambda point: (point.expected_mm, point.true_mm)))
         return cls(ordered, without_truth, without_expectation)
 
     @property
     def inside(self) -> Proportion | None:
-        """The share inside the interval; None without trials.
-
-        Raises:
-            InputError: scipy is missing.
-        """
+        """The share inside the interval; None without trials."""
         if not self.points:
             return None
         return proportion(sum(point.is_inside for point in self.points), len(self.points))
@@ -102,15 +97,10 @@ class TreCalibration:
         return float(np.sqrt(np.mean([point.true_mm**2 for point in self.points])))
 
     def of_mode(self, mode: str) -> TreCalibration:
-        """Return the points of one mode alone."""
         return TreCalibration(tuple(point for point in self.points if point.mode == mode))
 
     def sentences(self) -> list[str]:
-        """Return the findings as sentences.
-
-        Raises:
-            InputError: scipy is missing.
-        """
+        """Return the findings as sentences."""
         count, inside = len(self.points), self.inside
         found = []
         if inside is None:
@@ -159,6 +149,5 @@ def calibration_of(trials: Iterable[StoredTrial]) -> TreCalibration:
 
 
 def share_text(inside: Proportion) -> str:
-    """Return a share with its own interval, in percent."""
     low, high = inside.interval
     return f"{percent(inside.share)} [{100 * low:.0f}, {100 * high:.0f}]"

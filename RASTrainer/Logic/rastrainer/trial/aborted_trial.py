@@ -114,11 +114,7 @@ class AbortedTrial:
 
     @classmethod
     def from_json(cls, value: object) -> AbortedTrial:
-        """Return the record in a decoded JSON object; unknown keys are ignored.
-
-        Raises:
-            InputError: a key is missing or invalid.
-        """
+        """Return the record in a decoded JSON object; unknown keys are ignored."""
         record = from_json_object(cls, value, _CHECKS, "The record of an aborted trial")
         check_points(record.points)
         return record

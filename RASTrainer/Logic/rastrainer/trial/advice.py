@@ -165,7 +165,6 @@ def _last_moments(trajectory: Trajectory, touch: Touch) -> tuple[float, float]:
 
 
 def _since(times: np.ndarray, is_far: np.ndarray) -> float:
-    """Return the time from which on nothing is far."""
     far = np.flatnonzero(is_far)
     return float(times[min(far[-1] + 1, len(times) - 1)] if len(far) else times[0])
 

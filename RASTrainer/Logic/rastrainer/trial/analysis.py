@@ -65,11 +65,7 @@ class RevealedTruth:
 
     @classmethod
     def from_json(cls, answer: Mapping[str, Any]) -> RevealedTruth:
-        """Return the truth in an answer to SubmitRegistration or GetTrial.
-
-        Raises:
-            InputError: it is missing or invalid.
-        """
+        """Return the truth in an answer to SubmitRegistration or GetTrial."""
         try:
             return cls(
                 json_checks.numbers(16, 1e6)(answer.get("headToWorld")),
@@ -126,12 +122,10 @@ class TrialAnalysis:
 
     @property
     def rigid(self) -> Registration:
-        """The registration that is scored."""
         return self.fits[RIGID]
 
     @property
     def expected_tre(self) -> TargetError:
-        """The expected target error of the scored registration."""
         return self.target_errors[RIGID]
 
     def scored(
@@ -152,10 +146,6 @@ class TrialAnalysis:
             references: of the score, by task, from a study's protocol; the scenario's for other
                 tasks.
             trajectory: from the journal; it explains inaccurate touches.
-
-        Raises:
-            InputError: the trial's contacts were not measured, its procedure is not of this
-                scenario, or the true pose has no inverse.
         """
         record = self.record
         tre_mm = region_of(scenario).tre_mm(self.rigid.matrix, truth.matrix)
@@ -181,11 +171,7 @@ class TrialAnalysis:
     def scored_as(
         self, score: TrialScore | None, scenario: Scenario, truth: RevealedTruth | None
     ) -> TrialAnalysis:
-        """Return the analysis with a stored score and the stored truth.
-
-        Raises:
-            InputError: the true pose has no inverse.
-        """
+        """Return the analysis with a stored score and the stored truth."""
         bias = None if truth is None else self._common_bias(scenario, truth)
         advice = advise(score, self.feedback.touches, self.record.motion, bias)
         skin = None
@@ -229,10 +215,6 @@ def analyze_trial(
         trajectory: of the trial, from its journal; it explains why a touch was off.
         truth: what the simulator has revealed; without it there is no score.
         pause: called between the steps, every 10 ms or so; a worker may wait in it.
-
-    Raises:
-        InputError: the scenario has no such task or labels, or the points cannot be registered, or
-            the trial's contacts were not measured.
     """
     registered = register_trial(GivenPoints.of_record(record), scenario, pause)
     rigid = registered.rigid

@@ -39,7 +39,6 @@ class Trial:
         mode: How the scene was seen, such as `desktop` or `hmd`.
         subject: Pseudonym of the trainee.
         task: Name of the task.
-        completion_time_s: Completion time, in s.
         rmse_mm: Fiducial registration error of the rigid fit, in mm.
     """
 
@@ -65,11 +64,7 @@ class CohortReference:
 
     @classmethod
     def of(cls, trials: Sequence[Trial], mean_ct_s: float | None = None) -> CohortReference:
-        """Return the reference of a cohort, with a printed mean CT instead of its own if given.
-
-        Raises:
-            InputError: there are no trials, or their times or errors give no reference.
-        """
+        """Return the reference of a cohort, with a printed mean CT instead of its own if given."""
         if not trials:
             raise InputError("CTPS needs at least one trial.")
         if mean_ct_s is None:
@@ -91,7 +86,6 @@ class CohortScores:
         sd_population: Standard deviation of `trials`, divided by n.
         sd_sample: Standard deviation of `trials`, divided by n − 1.
         pearson_r: Correlation of task number and mean CT of the task, which the paper calls R².
-        r_squared: Its square.
     """
 
     reference: CohortReference
@@ -124,9 +118,6 @@ def score_cohort(trials: Sequence[Trial], mean_ct_s: float | None = None) -> Coh
     Args:
         trials: At least one.
         mean_ct_s: Mean CT to use instead of the trials' own; the paper used a rounded one.
-
-    Raises:
-        InputError: the trials give no reference (see `CohortReference`).
     """
     reference = CohortReference.of(trials, mean_ct_s)
     scores = [published_ctps(t.completion_time_s, t.rmse_mm, reference) for t in trials]
@@ -189,11 +180,7 @@ NUMBER_LIMIT = 1e6
 
 
 def read_trials(path: str | os.PathLike[str]) -> list[Trial]:
-    """Return the trials of a file, one a row: `ct` in s above 0, `rmse` in mm, 0 or above.
-
-    Raises:
-        InputError: the file cannot be used; the sentence says what would be right.
-    """
+    """Return the trials of a file, one a row: `ct` in s above 0, `rmse` in mm, 0 or above."""
     rows = read_rows(path, ("mode", "subject", "task", "ct", "rmse"))
     return [_trial(path, line, cells) for line, cells in rows]
 
@@ -265,11 +252,7 @@ class StudyNotes:
 
 
 def read_notes(path: Path) -> StudyNotes | None:
-    """Read a file of notes; None where there is none.
-
-    Raises:
-        InputError: the file cannot be used.
-    """
+    """Read a file of notes; None where there is none."""
     if not path.exists():
         return None
     fields = read_fields(path)

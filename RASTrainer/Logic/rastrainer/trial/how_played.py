@@ -89,7 +89,6 @@ class HowPlayed:
 
     @property
     def commanded_share(self) -> float:
-        """Share of the tip's way that clients' commands moved it."""
         way = sum(self.way_mm.values())
         return self.way_mm.get(MovedBy.COMMANDS.value, 0.0) / way if way else 0.0
 

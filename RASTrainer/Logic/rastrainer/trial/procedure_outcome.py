@@ -197,9 +197,6 @@ def score_procedure(measures: ProcedureMeasures, reference_s: float) -> Procedur
     Args:
         measures: what is scored of it.
         reference_s: from `reference_duration_s`, above 0.
-
-    Raises:
-        InputError: a measure is no such number.
     """
     measures.check()
     desirabilities = {
@@ -290,9 +287,6 @@ def procedure_outcome(
         scenario: in which it was carried out.
         head_to_world: (4, 4) float, mm, the true pose.
         references: of the score of touches, by task, as a study's protocol sets them.
-
-    Raises:
-        InputError: the scenario has no such procedure or another plan, or a mesh is unusable.
     """
     done = record.procedure
     if done is None:

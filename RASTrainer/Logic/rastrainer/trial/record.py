@@ -157,9 +157,6 @@ class TrialRecord:
         """Return the record that a decoded JSON object holds.
 
         Keys that this version does not know are ignored, so that a newer simulator may add some.
-
-        Raises:
-            InputError: a key is missing or holds something else than it should.
         """
         record = from_json_object(cls, value, _CHECKS, "The trial record")
         check_points(record.points)

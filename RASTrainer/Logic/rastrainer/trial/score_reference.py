@@ -37,20 +37,12 @@ Points = tuple[tuple[float, ...], ...]
 
 
 def fiducial_normals(scenario: Scenario, task_name: str) -> np.ndarray:
-    """Return the skin's outward unit normals at a task's fiducials, (n, 3) float, RAS; read-only.
-
-    Raises:
-        InputError: there is no such task, or the head's mesh is unusable.
-    """
+    """Return the outward unit normals of the skin at a task's fiducials, (n, 3) float, RAS."""
     return point_normals(scenario, scenario.task(task_name))
 
 
 def point_normals(scenario: Scenario, task: Task) -> np.ndarray:
-    """Return the skin's outward unit normals at a task's points, (n, 3) float, RAS; read-only.
-
-    Raises:
-        InputError: the head's mesh is unusable.
-    """
+    """Return the skin's outward unit normals at a task's points, (n, 3) float, RAS; read-only."""
     points = np.asarray(task.fiducials, dtype=float)
     return computed_once(scenario, _normals, tuple(map(tuple, points.tolist())))
 
@@ -61,9 +53,6 @@ def computed_once(
     """Return the cached, read-only `compute(mesh, *arguments)` for the scenario's head.
 
     The cache is valid while the mesh's file is unchanged.
-
-    Raises:
-        InputError: the head's mesh is unusable.
     """
     mesh = scenario.head_mesh
     changed = mesh.stat().st_mtime_ns if mesh.is_file() else 0
@@ -141,21 +130,13 @@ class Region:
 
 
 def region_of(scenario: Scenario) -> Region:
-    """Return the region of a scenario: the head's target, the planned ones, and the grid.
-
-    Raises:
-        InputError: the head's mesh is unusable.
-    """
+    """Return the region of a scenario: the head's target, the planned ones, and the grid."""
     targets = [scenario.target_position, *(target.position for target in scenario.targets)]
     return Region(np.array(targets, dtype=float), computed_once(scenario, brain_grid))
 
 
 def brain_grid(head: HeadMesh) -> np.ndarray:
-    """Return the points of the grid, (n, 3) float, RAS mm.
-
-    Raises:
-        InputError: the head is too small or too flat.
-    """
+    """Return the points of the grid, (n, 3) float, RAS mm."""
     top = head.vertices[:, 2].max()
     low, high = head.vertices.min(axis=0), head.vertices.max(axis=0)
     low[2] = max(low[2], top - BELOW_VERTEX_MM)
@@ -210,9 +191,6 @@ def score_reference(
         task_name: of the task.
         of_protocol: references by task from a study's protocol, which take precedence.
         method: by which the trial is registered.
-
-    Raises:
-        InputError: there is no such task, or the head's mesh is unusable.
     """
     is_by_fiducials = method is RegistrationMethod.FIDUCIALS
     if of_protocol and task_name in of_protocol and is_by_fiducials:

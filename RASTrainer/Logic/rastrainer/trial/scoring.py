@@ -102,11 +102,7 @@ class ScoreMeasures:
         common_bias_mm: float | None,
         motion: Mapping[str, float],
     ) -> ScoreMeasures:
-        """Return the measures of a trial with these motion metrics.
-
-        Raises:
-            InputError: its contacts were not measured.
-        """
+        """Return the measures of a trial with these motion metrics."""
         try:
             time_s, path_mm, depth_mm = (float(motion[name]) for name in SAFETY_METRICS)
         except KeyError as error:
@@ -118,7 +114,6 @@ class ScoreMeasures:
 
     @property
     def safety(self) -> SafetyMeasures:
-        """What safety is scored by."""
         return SafetyMeasures(self.contact_time_s, self.contact_path_mm, self.pressing_depth_mm)
 
     def check(self, has_bias: bool) -> None:
@@ -245,9 +240,6 @@ def score_trial(
         measures: what is scored of it; those of a trial without fiducials have no common bias.
         reference: of its task in its scenario.
         method: by which it was registered.
-
-    Raises:
-        InputError: a measure is no such number.
     """
     measures.check(has_bias=method is RegistrationMethod.FIDUCIALS)
     safety_measures = measures.safety
@@ -279,7 +271,6 @@ def score_trial(
 
 
 def falling(value: float, half: float, power: int = 2) -> float:
-    """Return a desirability, 1/(1 + (value/half)^power): 1 at 0, ½ at `half`; never 0."""
     return 1 / (1 + (value / half) ** power)
 
 

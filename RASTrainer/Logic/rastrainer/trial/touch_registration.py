@@ -71,7 +71,6 @@ class GivenPoints:
 
     @classmethod
     def of_record(cls, record: TrialRecord) -> GivenPoints:
-        """Return the points of a finished trial."""
         touches = PointList(record.labels, record.positions_mm)
         return cls(record.task, touches, record.method, record.trace_mm)
 
@@ -82,9 +81,6 @@ class GivenPoints:
         """Return the points in an answer to GetTrial about an open trial.
 
         Of a trace, `least_traced` points are needed: as many as register it, or fewer to show it.
-
-        Raises:
-            InputError: they are missing or invalid, or too few for their method.
         """
         method, given = method_of(answer.get("method")), answer.get("touches")
         is_all = isinstance(given, list) and (
@@ -145,11 +141,7 @@ class TraceFollower:
     """
 
     def __init__(self, scenario: Scenario) -> None:
-        """Read the head of a scenario.
-
-        Raises:
-            InputError: the head cannot be read.
-        """
+        """Read the head of a scenario."""
         self._scenario = scenario
         self._mesh = read_head_mesh(scenario.head_mesh)
         self._guide = trace_guide(scenario, self._mesh)
@@ -158,11 +150,7 @@ class TraceFollower:
         self._away = np.full(len(self._mesh.vertices), np.inf)
 
     def follow(self, given: GivenPoints, is_drawing: bool) -> FollowedTrace:
-        """Return the trace so far; `is_drawing` says whether a stroke is being drawn.
-
-        Raises:
-            InputError: the touches are not those of the landmarks, or cannot be registered.
-        """
+        """Return the trace so far; `is_drawing` says whether a stroke is being drawn."""
         task = task_by_method(self._scenario, given.task, given.method)
         labels, moving, fixed = pair(given.touches, PointList(task.labels, task.fiducials))
         matrix, known = register(moving, fixed, RIGID, labels).matrix, len(self._traced)
@@ -177,7 +165,6 @@ class TraceFollower:
 
 
 def trace_guide(scenario: Scenario, mesh: HeadMesh) -> TraceGuide:
-    """Return the guidance on a scenario's head for a viewer at the close-up camera."""
     to_head = transforms.inverse(scenario.head_to_world)
     eye = transforms.apply(to_head, scenario.cameras["close-up"].position)
     return TraceGuide(mesh, scenario.target_position, eye)
@@ -225,9 +212,6 @@ def register_trial(
         given: the touches are paired by label with the fiducials of the task, or the landmarks.
         scenario: of the trial.
         pause: called between the steps, every 10 ms or so; a worker may wait in it.
-
-    Raises:
-        InputError: the scenario has no such task or labels, or the points cannot be registered.
     """
     task = task_by_method(scenario, given.task, given.method)
     labels, moving, fixed = pair(given.touches, PointList(task.labels, task.fiducials))

@@ -105,9 +105,6 @@ def progress_of(
             not passed, in order; later ones are ignored.
         trial_id: Of one of them.
         pass_mark: Score that passes; None without one for the trial's method.
-
-    Raises:
-        InputError: the trial is not among them.
     """
     ids = ["" if other.is_aborted else other.trial_id for other in past]
     if trial_id not in ids:
@@ -138,7 +135,6 @@ def progress_of(
 
 
 def competence_of(failures: Sequence[bool]) -> LcCusum:
-    """Return the LC-CUSUM of a trainee in one mode; `failures` are in order."""
     limit = lc_cusum_limit(ADEQUATE_FAILURES, INADEQUATE_FAILURES, TRAINING_TRIALS)
     return lc_cusum(failures, ADEQUATE_FAILURES, INADEQUATE_FAILURES, limit)
 

@@ -159,7 +159,6 @@ WARNING_MB = 1000.0
 
 
 def check_folders(folders: Mapping[str, Path]) -> Iterator[CheckResult]:
-    """Check writing to each folder, by purpose; a missing one is checked by its parent."""
     for purpose, folder in folders.items():
         yield _check(purpose, folder)
 

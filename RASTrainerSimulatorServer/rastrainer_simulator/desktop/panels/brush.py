@@ -62,7 +62,6 @@ class Brush:
         return set_line(text, max(1, round(style.size * self.scale)), style.is_bold)
 
     def width(self, text: str, style: TextStyle) -> int:
-        """Return the width of a line in pixels."""
         return self.line(text, style).coverage.shape[1] if text else 0
 
     def line_height(self, style: TextStyle) -> int:

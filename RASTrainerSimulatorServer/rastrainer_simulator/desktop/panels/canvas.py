@@ -71,7 +71,6 @@ class Canvas:
         self._cover(box.left, box.top, cover, color)
 
     def text(self, letters: Letters, left: int, baseline: int, color: Color) -> None:
-        """Write a line from `left` on, its letters standing on `baseline`."""
         top = baseline + letters.descent - letters.coverage.shape[0] + 1
         self._cover(left, top, letters.coverage.astype(np.float32) / 255.0, color)
 
@@ -164,7 +163,6 @@ class Side(Enum):
 
 
 def plain_picture(color: Color) -> np.ndarray:
-    """Return one pixel, to be stretched."""
     canvas = Canvas(1, 1)
     canvas.box(Box(0, 0, 1, 1), color)
     return canvas.pixels()
@@ -195,11 +193,7 @@ class Thumbnail:
 
     @classmethod
     def from_png(cls, content: bytes) -> Thumbnail:
-        """Return the picture of a PNG file.
-
-        Raises:
-            InputError: it is none.
-        """
+        """Return the picture of a PNG file."""
         try:
             surface = pygame.image.load(io.BytesIO(content), "picture.png")
         except pygame.error as error:
@@ -278,7 +272,6 @@ class Sprite:
         self._actor.GetProperty().SetOpacity(CLEAR if self._is_clear else OPAQUE)
 
     def hide(self) -> None:
-        """Hide it."""
         self._actor.VisibilityOff()
 
 

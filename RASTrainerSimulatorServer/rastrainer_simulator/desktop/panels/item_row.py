@@ -65,7 +65,6 @@ def _ground(item: MenuItem, look: Look) -> Color:
 
 
 def _needed(item: MenuItem, brush: Brush) -> int:
-    """Return the width that shows the whole value of an item."""
     between = 7 * theme.STEP if item.kind is ItemKind.CHOICE else 0
     return brush.width(item.value, theme.STRONG) + brush.px(between)
 

@@ -118,7 +118,6 @@ class PadTestPage(SessionPage):
         )
 
     def accept(self, item: str) -> None:
-        """Go back."""
         if item == "back":
             self.back()
 

@@ -113,7 +113,6 @@ class TutorialPage(SessionPage):
 
     @property
     def _is_skipped(self) -> bool:
-        """Whether who leaves the tutorial skips it."""
         is_optional = tutorial_rule(self.session) is not TutorialRule.REQUIRED
         return not self._is_practice and (is_optional or may_skip(self.session))
 

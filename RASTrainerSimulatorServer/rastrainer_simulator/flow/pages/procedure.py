@@ -106,7 +106,6 @@ _SPLIT = (
 
 
 def procedure_details(result: TrialResult | None) -> Mapping[str, Any]:
-    """Return the details of a trial's procedure; empty without one."""
     details = None if result is None else result.details.get("procedure")
     return details if isinstance(details, dict) else {}
 
@@ -246,7 +245,6 @@ def _tone(error: float | None, limit: float) -> Tone:
 
 
 def _number(details: Mapping[str, Any], name: str) -> float | None:
-    """Return a number of the details; None for anything else."""
     value = details.get(name)
     return float(value) if is_number(value) and math.isfinite(value) else None
 

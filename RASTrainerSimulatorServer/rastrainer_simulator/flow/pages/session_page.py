@@ -18,7 +18,6 @@ class SessionPage(Page):
         self.session = session
 
     def back(self) -> None:
-        """Close the page."""
         self.session.pages.close()
 
     def say(self, key: str, **values: object) -> str:
@@ -26,16 +25,13 @@ class SessionPage(Page):
         return self.session.texts.say(key, **values)
 
     def button(self, name: str, label: str = "", **others: Any) -> MenuItem:
-        """Return a button; its label is the page's text of that name."""
         return MenuItem(name, label or self.say(f"{self.name}.{name}"), **others)
 
     def choice(self, name: str, value: str, **others: Any) -> MenuItem:
-        """Return a choice; its label is the page's text of that name."""
         return self.button(name, kind=ItemKind.CHOICE, value=value, **others)
 
 
 def clickable_hint(session: TrainingSession, control: ControlName, key: str) -> Hint:
-    """Return the hint of a control that is pressed once; `key` is of what it does."""
     return Hint(session.operator.label(control), session.texts.say(key), PRESS + control.value)
 
 

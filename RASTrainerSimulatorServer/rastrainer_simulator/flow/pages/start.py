@@ -69,7 +69,6 @@ class QuitPage(SessionPage):
         return Menu(self.name, self.say("quit.title"), (self.say("quit.text"),), items=items)
 
     def accept(self, item: str) -> None:
-        """Stay or leave."""
         if item == "leave":
             self.session.quit()
         self.session.pages.close()
@@ -202,7 +201,6 @@ class PinPage(SessionPage):
             session.complain(self.say("pin.wrong"))
 
     def closed(self) -> None:
-        """Forget the digits."""
         self._pin = ""
         self.session.lock.forget_guess()
 

@@ -126,7 +126,6 @@ class CharacterPage(SessionPage):
         )
 
     def accept(self, item: str) -> None:
-        """Add a character, and go back."""
         if item != "back":
             self._write("trainee", self.session.trainee + item)
         self.back()
@@ -141,11 +140,7 @@ class QuestionnairePage(SessionPage):
     name = "questionnaire"
 
     def __init__(self, session: TrainingSession, step: StudyStep) -> None:
-        """Show the questionnaire of a step.
-
-        Raises:
-            InputError: this version knows no such questionnaire.
-        """
+        """Show the questionnaire of a step."""
         super().__init__(session)
         self._step = step
         self._questionnaire = find_questionnaire(step.questionnaire)

@@ -59,11 +59,7 @@ def look_at_match(training: TrainingState, scenario: Scenario) -> Future[MatchRe
 
 
 def match_report(training: TrainingState, scenario: Scenario) -> MatchReport:
-    """Return what is shown of the match of a trial's trace.
-
-    Raises:
-        InputError: the trace cannot be matched.
-    """
+    """Return what is shown of the match of a trial's trace."""
     answer = {"task": training.task, "method": training.method.value, **given(training)}
     registered = register_trial(GivenPoints.of_answer(answer), scenario)
     match, error = registered.match, registered.target_errors[RIGID]
@@ -211,7 +207,6 @@ class PreparingPage(SessionPage):
         self.session.pages.replace(TrialPage(self.session))
 
     def advance(self, dt: float) -> None:  # noqa: ARG002
-        """Resume the trial as soon as the picture is there."""
         if self.session.picture_share is None and not self._is_resumed:
             self._is_resumed = True
             self.session.do(CommandName.RESUME)
@@ -261,7 +256,6 @@ class PracticePage(SessionPage):
             self.session.do(CommandName.RESUME)
 
     def back(self) -> None:
-        """Keep practicing."""
         self.accept("resume")
 
 

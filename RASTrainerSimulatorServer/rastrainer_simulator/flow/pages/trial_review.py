@@ -88,7 +88,6 @@ class ErrorsPage(SessionPage):
 
 
 def error_arrow(fiducial: Vector, touch: Vector) -> ErrorArrow:
-    """Return the arrow from a fiducial toward its touch, both in World, m."""
     error = subtract(touch, fiducial)
     tone = error_tone(MM_PER_M * length(error))
     return ErrorArrow(fiducial, add(fiducial, scale(error, LONGER)), tone)

@@ -64,11 +64,7 @@ class StudySteps:
             self._steps[trainee] = replace(step, kind=PLAYED)
 
     def answer(self, trainee: str, answers: Sequence[int]) -> None:
-        """Keep the answers to the questionnaire that comes next, until Slicer has received them.
-
-        Raises:
-            InputError: an answer is missing or none that it allows.
-        """
+        """Keep the answers to the questionnaire that comes next, until Slicer has received them."""
         step = self._steps.get(trainee)
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
             step_data = {"number": step.number, "questionnaire": step.questionnaire}
@@ -202,7 +198,6 @@ class AssignmentTexts:
         return self._say("assignments.gate", assignments=names)
 
     def summary(self, curriculum: CurriculumMessage) -> str:
-        """Return how many assignments are reached."""
         return self._say(
             "assignments.summary", reached=curriculum.reached, count=len(curriculum.assignments)
         )

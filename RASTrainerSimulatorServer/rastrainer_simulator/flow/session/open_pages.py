@@ -55,11 +55,9 @@ class Page:
         self.back()
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:  # noqa: ARG002
-        """Handle a pressed input; return whether the page has consumed it."""
         return False
 
     def pressed(self, control: ControlName) -> bool:  # noqa: ARG002
-        """Handle a pressed control; return whether the page has consumed it."""
         return False
 
     def advance(self, dt: float) -> None:
@@ -92,7 +90,6 @@ class OpenPages:
 
     @property
     def top(self) -> Page | None:
-        """The page that is shown."""
         return self._open[-1] if self._open else None
 
     def show(self, page: Page | None, has_grace: bool = False) -> None:
@@ -119,7 +116,6 @@ class OpenPages:
         self._focus.append(page.first)
 
     def close(self) -> None:
-        """Close the page that is shown."""
         if self._open:
             self._focus.pop()
             self._open.pop().closed()
@@ -168,7 +164,6 @@ class OpenPages:
             self._happened(FeedbackEvent.FOCUS)
 
     def focus(self, name: str) -> None:
-        """Give the focus to an item of the page that is shown."""
         if self._focus:
             self._focus[-1] = name
 

@@ -65,7 +65,6 @@ class OperatorDevice:
 
     @property
     def steers_by_mouse(self) -> bool:
-        """Whether the operator drags the sticks on the screen, and clicks the rest."""
         return self.has_screen_sticks and self.is_one_of((SourceKind.MOUSE,))
 
     @property
@@ -105,7 +104,6 @@ class OperatorDevice:
         return " ".join(words[0][:shared] or labels)
 
     def input_labels(self, device: InputDevice, control: ControlName) -> str:
-        """Return all inputs of a control."""
         names = self.controls.bindings.table(device)[control]
         return self.texts.listed(self.input_label(device, name) for name in names)
 

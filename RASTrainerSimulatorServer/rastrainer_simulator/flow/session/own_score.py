@@ -148,23 +148,14 @@ class OwnScore:
 
 
 def register_open_trial(ask: Ask, trial_id: str, scenario: Scenario) -> None:
-    """Register the touches of an open trial, and have its procedure continue with that.
-
-    Raises:
-        InputError: they cannot be registered, or another registration is in use.
-    """
+    """Register the touches of an open trial, and have its procedure continue with that."""
     answer = ask(CommandName.GET_TRIAL, {"trialId": trial_id})
     registered = register_trial(GivenPoints.of_answer(answer), scenario, pause=_rest)
     _asked(ask, CommandName.USE_REGISTRATION, registered.arguments(trial_id))
 
 
 def registered_alone(ask: Ask, trial_id: str, scenario: Scenario) -> TrialAnalysis:
-    """Return the registration of a trial; it is not submitted yet.
-
-    Raises:
-        InputError: there is no such trial, it was played on another head, or it cannot be
-            registered.
-    """
+    """Return the registration of a trial; it is not submitted yet."""
     record = TrialRecord.from_json(ask(CommandName.GET_TRIAL, {"trialId": trial_id})["record"])
     if record.scenario != scenario.name:
         # Another head may have been loaded since the trial was finished.
@@ -191,9 +182,6 @@ def score_alone(
         scenario: in which the trial was played.
         earlier: the trainee's earlier scored trials and failures, oldest first.
         records: folder of the trials' journals.
-
-    Raises:
-        InputError: another registration was submitted before, or the trial cannot be scored.
     """
     truth = RevealedTruth.from_json(
         _asked(ask, CommandName.SUBMIT_REGISTRATION, registration_arguments(analysis))

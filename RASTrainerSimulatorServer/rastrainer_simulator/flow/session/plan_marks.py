@@ -90,13 +90,11 @@ def placed_line(trajectory: TrajectoryState) -> PlannedLine | None:
 
 
 def drawn(line: PlannedLine, tone: Tone, before_m: float = 0.0) -> ErrorArrow:
-    """Return a line as it is drawn, from so far before its entry to its target."""
     begin = add(line.entry, scale(line.direction, -before_m))
     return ErrorArrow(begin, line.target, tone)
 
 
 def ball(place: Vector, tone: Tone) -> ErrorArrow:
-    """Return a ball in the scene."""
     return ErrorArrow(place, place, tone)
 
 
@@ -119,5 +117,4 @@ def _line_marks(
 
 
 def _on(line: PlannedLine, depth_mm: float) -> Vector:
-    """Return the point of a line at a depth below its entry."""
     return add(line.entry, scale(line.direction, depth_mm / MM_PER_M))

@@ -123,11 +123,7 @@ OF_A_TRIAL = (*OF_THE_SIMULATION, "guidance", "ghost")
 
 
 def read_preferences(path: Path) -> Preferences:
-    """Return the preferences of a file; missing ones have their defaults.
-
-    Raises:
-        InputError: the file cannot be read, or holds what is no option.
-    """
+    """Return the preferences of a file; missing ones have their defaults."""
     values = read_json(path, MAX_BYTES)
     if not isinstance(values, dict) or not values.keys() <= {*OPTIONS, EXPERT}:
         known = ", ".join((*OPTIONS, EXPERT))
@@ -142,11 +138,7 @@ def read_preferences(path: Path) -> Preferences:
 
 
 def write_preferences(path: Path, preferences: Preferences) -> None:
-    """Save the preferences.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
+    """Save the preferences."""
     write_private_json(path, dataclasses.asdict(preferences))
 
 
@@ -177,7 +169,6 @@ class InstructorLock:
 
     @property
     def has_pin(self) -> bool:
-        """Whether a PIN is set."""
         return self._pin is not None and self._pin.is_set
 
     @property
@@ -193,11 +184,7 @@ class InstructorLock:
             worker.shutdown(wait=False)
 
     def take_answer(self) -> PinAnswer | None:
-        """Return the outcome of the guess, once, and unlock if it was right; None before.
-
-        Raises:
-            InputError: the PIN's file cannot be read or is no PIN's.
-        """
+        """Return the outcome of the guess, once, and unlock if it was right; None before."""
         if self._asked is None or not self._asked.done():
             return None
         asked, self._asked = self._asked, None
@@ -210,7 +197,6 @@ class InstructorLock:
         self._asked = None
 
     def lock(self) -> None:
-        """Lock again."""
         self._is_open = False
 
     def follow(self, trainee: str, trial_id: str, has_tutorial: bool) -> None:

@@ -76,7 +76,6 @@ class TrainingSession:
         pages: which are open.
         happened: gives feedback by sound and vibration.
         list_scenarios: lists the heads to train on.
-        is_slicer_connected: says whether Slicer is connected.
         quit: ends the simulator.
         study: knows what a study asks of each trainee next.
         view: where the pictures of the trial are looked from.
@@ -147,7 +146,6 @@ class TrainingSession:
 
     @property
     def training(self) -> TrainingState:
-        """The state of the trial."""
         return self.state.training
 
     @property
@@ -157,7 +155,6 @@ class TrainingSession:
 
     @property
     def tip(self) -> Vector:
-        """Where the tool's tip is, World, m."""
         return tuple(self.state.tool_tip_to_world[:3, 3].tolist())
 
     @property
@@ -293,11 +290,7 @@ class TrainingSession:
         return self._control_loop.planned_bone.get(procedure, ())
 
     def load_trial(self, trial_id: str) -> TrialLoading:
-        """Begin to load a trial from its journal.
-
-        Raises:
-            InputError: the journal is not there any more.
-        """
+        """Begin to load a trial from its journal."""
         found = journals_of(self._services.records, trial_id)
         if not found:
             raise InputError(self.texts.say("replay.no journal"))
@@ -322,7 +315,6 @@ class TrainingSession:
         return "done" if self.progress.has_done(trainee, scenario, task) else ""
 
     def rebind(self, bindings: Bindings) -> None:
-        """Adopt other bindings and save them."""
         self._controls.bindings = bindings
         self._save(lambda: write_bindings(self._services.config / BINDINGS_FILE, bindings))
 
@@ -340,13 +332,11 @@ class TrainingSession:
         return titles.get(name, name)
 
     def procedure_title(self, name: str) -> str:
-        """Return the title of a procedure; "" stands for the touches alone."""
         titles = {each.name: each.title for each in self.scenario.procedures}
         return titles.get(name, name) if name else self.texts.say("experiment.touches alone")
 
     @property
     def practice_title(self) -> str:
-        """What is practiced: the tutorial, or a point of a task."""
         task, point = self._practiced
         key = "tutorial.practice" if point else "tutorial.title"
         return self.texts.say(key, task=self.task_title(task), point=point)
@@ -360,7 +350,6 @@ class TrainingSession:
         return self.texts.say(key, share=100.0 * share)
 
     def step_sentence(self, step: StudyStep) -> str:
-        """Return the sentence about a study's step."""
         left = self.study.break_left_s(step.trainee)
         return step_sentence(self.texts, step, self.task_title(step.task), self.duration(left))
 

@@ -59,11 +59,9 @@ class DoneTasks:
             self._take(path)
 
     def note(self, trainee: str, scenario: str, task: str) -> None:
-        """Note that a scenario's task was done."""
         self._done[trainee, scenario].add(task)
 
     def has_done(self, trainee: str, scenario: str, task: str) -> bool:
-        """Return whether a trainee has done a scenario's task."""
         return task in self._done.get((trainee, scenario), ())
 
     def skip_trial_run(self, trainee: str, scenario: str) -> None:
@@ -71,7 +69,6 @@ class DoneTasks:
         self._skipped.add((trainee, scenario))
 
     def needs_no_trial_run(self, trainee: str, scenario: str) -> bool:
-        """Return whether a trainee has skipped the trial run: by going on, at the latest."""
         head = trainee, scenario
         return head in self._skipped or bool(self._done.get(head))
 
@@ -132,7 +129,6 @@ class FinishedTutorials:
         self._skipped.add(trainee)
 
     def has_skipped(self, trainee: str) -> bool:
-        """Return whether a trainee wants no tutorial."""
         return trainee in self._skipped
 
     def has_done(self, trainee: str, device: SourceKind) -> bool:
@@ -140,15 +136,10 @@ class FinishedTutorials:
         return device.value in self._devices.get(trainee, ())
 
     def latest(self, trainee: str) -> TutorialOutcome | None:
-        """Return a trainee's latest finished tutorial."""
         return self._latest.get(trainee)
 
     def keep(self, outcome: TutorialOutcome) -> None:
-        """Count a finished tutorial, and write its file.
-
-        Raises:
-            InputError: it cannot be written; it counts until the simulator ends.
-        """
+        """Count a finished tutorial, and write its file."""
         self._note(outcome)
         utc = iso(datetime.now(timezone.utc))
         path = self._records / f"{file_stamp(utc)}_{uuid.uuid4()}{TUTORIAL_SUFFIX}"

@@ -70,7 +70,6 @@ class TrialView:
         self.control.reset()
 
     def close(self) -> None:
-        """Forget the trial."""
         self._best.forget()
         self._search = self._found = None
         self._went_for, self._is_wanted = None, False

@@ -113,7 +113,6 @@ class StepMeasure:
 
     @property
     def is_complete(self) -> bool:
-        """Whether all is done."""
         return self.done >= self.goal
 
     def take(self, before: TutorialObservation, now: TutorialObservation) -> None:

@@ -97,7 +97,6 @@ class TouchPractice:
 
     @property
     def state(self) -> TrainingState:
-        """The progress of the touches."""
         return self._training.state
 
     def end_refusal(self, sim_time: float) -> None:
@@ -110,7 +109,6 @@ class TouchPractice:
         return self._handle(CommandName.CAPTURE, state)
 
     def undo(self, state: SimulationState) -> TrainingReply:
-        """Undo the last touch."""
         return self._handle(CommandName.UNDO, state)
 
     def show_points(self) -> None:
@@ -164,7 +162,6 @@ class TouchPractice:
 def _short_scenario(
     scenario: Scenario, name: str, head_to_world: np.ndarray, points: slice
 ) -> Scenario:
-    """Return a scenario with some points of a task, and the head at a pose in m."""
     pose = head_to_world.copy()
     pose[:3, 3] *= MM_PER_M
     task = next((task for task in scenario.tasks if task.name == name), scenario.tasks[0])
@@ -240,12 +237,10 @@ class Tutorial:
 
     @property
     def step(self) -> TutorialStep | None:
-        """The step that is next; None once all are done."""
         return next((step for step in self.steps if step not in self._done), None)
 
     @property
     def is_done(self) -> bool:
-        """Whether all steps are done, and the last one is praised."""
         return self.step is None and self.praised is None
 
     @property
@@ -268,12 +263,10 @@ class Tutorial:
 
     @property
     def may_touch(self) -> bool:
-        """Whether a touch is part of the step."""
         return self.step in _MAY_TOUCH
 
     @property
     def may_undo(self) -> bool:
-        """Whether an undo is part of the step."""
         return self.step in _MAY_UNDO
 
     def use(self, device: SourceKind) -> None:

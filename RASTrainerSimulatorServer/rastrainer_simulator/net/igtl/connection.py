@@ -267,7 +267,6 @@ class ClientConnection(asyncio.BufferedProtocol):
 
     @property
     def _open_transport(self) -> asyncio.Transport | None:
-        """The transport, None where the connection is not open or is being closed."""
         is_open = self._transport is not None and not self._transport.is_closing()
         return self._transport if is_open else None
 

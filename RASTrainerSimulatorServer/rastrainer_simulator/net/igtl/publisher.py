@@ -31,7 +31,6 @@ def tool_tip(state: SimulationState, seq: int) -> Message:
 
 
 def instrument_tip(state: SimulationState, seq: int) -> Message:
-    """Return the pose of the tip of drill or electrode, on the axis of the tool."""
     pose = state.tool_tip_to_world.copy()
     pose[:3, 3] += state.feed * pose[:3, 2]
     return Message(DeviceName.INSTRUMENT_TIP_TO_WORLD, _transform(pose), {"seq": str(seq)})
@@ -110,7 +109,6 @@ def sim_state(changing: Mapping[str, Any], state: SimulationState, seq: int) -> 
 
 
 def heartbeat(details: Mapping[str, Any]) -> Message:
-    """Return the server's sign of life; its subcode is the protocol's version."""
     text = json.dumps({"protocolVersion": PROTOCOL_VERSION, **details}, allow_nan=False)
     status = Status(Status.OK, subcode=PROTOCOL_VERSION, message=text)
     return Message(DeviceName.SIM_SERVER, status)

@@ -80,11 +80,7 @@ class RegistrationCheck:
         return sentence or f"{name} is not due in this trial."
 
     def _fit(self, data: Mapping[str, Any], arguments: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the arguments that the trial's own points give.
-
-        Raises:
-            InputError: they are not those of the client, or the points cannot be registered.
-        """
+        """Return the arguments that the trial's own points give."""
         record = TrialRecord.from_json(data["record"]) if "record" in data else None
         given = GivenPoints.of_answer(data) if record is None else GivenPoints.of_record(record)
         scenario = self._find_scenario("" if record is None else record.scenario)

@@ -57,15 +57,10 @@ class IgtlServer:
 
     @property
     def reading_share(self) -> float:
-        """Share of one core that reading from one connection may take."""
         return self.limits.reading_share / max(1, len(self._connections))
 
     async def listen(self, host: str, port: int) -> int:
-        """Listen and return the port, which is any free one where `port` is 0.
-
-        Raises:
-            InputError: the address cannot be listened on.
-        """
+        """Listen and return the port, which is any free one where `port` is 0."""
         listener = Listener(lambda: ClientConnection(self), self.limits.new_clients_per_s)
         try:
             found = await listener.listen(host, port)

@@ -224,7 +224,6 @@ class SimulatorLink:
         self._commands = CommandHandler(self._submit, self.server.limits)
 
     def connected(self, connection: ClientConnection) -> None:
-        """Send a client the present state."""
         connection.send_latest(self._heartbeat())
         self.publisher.subscribe(connection, PoseSubscription())
 

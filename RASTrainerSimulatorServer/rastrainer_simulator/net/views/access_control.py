@@ -60,9 +60,6 @@ class Sessions:
         """Remember at most so many keys of each role; then the oldest of that role is forgotten.
 
         The keys of boards are also in the file `boards`; deleting it unpairs all boards.
-
-        Raises:
-            InputError: the file cannot be read.
         """
         self._hashes = {role: deque[bytes](maxlen=most[role]) for role in ViewRole}
         self._boards = boards
@@ -70,11 +67,7 @@ class Sessions:
             self._hashes[ViewRole.BOARD].extend(_read(boards))
 
     def open(self, role: ViewRole = ViewRole.VIEW) -> str:
-        """Return a new key.
-
-        Raises:
-            InputError: a board's key cannot be kept.
-        """
+        """Return a new key."""
         key = secrets.token_urlsafe(KEY_BYTES)
         self._hashes[role].append(_hash(key))
         if role is ViewRole.BOARD and self._boards is not None:

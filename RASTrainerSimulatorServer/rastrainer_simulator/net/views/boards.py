@@ -45,7 +45,6 @@ class Boards:
         self._pacer = Pacer(NEWS_HZ)
 
     def __bool__(self) -> bool:
-        """Whether there is any."""
         return bool(self._joined)
 
     async def serve(self, board: ViewSocket, now: SimulationState, seat: Seat) -> None:
@@ -95,7 +94,6 @@ class InstructorOrders:
     """Accepts orders over HTTP, each with the PIN."""
 
     def __init__(self, pin: PinGuesses | None, presenter: Presenter) -> None:
-        """Accept orders for a presenter; none without a PIN."""
         self._pin = pin
         self._presenter = presenter
         self._one_guess = asyncio.Lock()

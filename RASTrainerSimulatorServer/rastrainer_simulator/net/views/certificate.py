@@ -39,9 +39,6 @@ def own_certificate(folder: Path) -> Certificate:
     """Return this machine's certificate, renewed when old or when addresses changed.
 
     The file holds the private key: only its owner can read it, and it never leaves the machine.
-
-    Raises:
-        InputError: the file cannot be read or written.
     """
     file, names_file = folder / FILE_NAME, folder / NAMES_NAME
     names = own_names()

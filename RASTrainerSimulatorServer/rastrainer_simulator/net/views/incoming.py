@@ -100,7 +100,6 @@ def _key_names(value: Any) -> Mapping[str, str]:
 
 
 def _positions(most: int, lowest: float) -> Callable[[Any], tuple[float, ...]]:
-    """Accept a list of at most `most` positions from `lowest` to 1."""
     check_one = number(-SLACK, SLACK)
 
     def check(value: Any) -> tuple[float, ...]:
@@ -153,11 +152,7 @@ MEMBERS: Mapping[str, Mapping[str, Callable[[Any], Any]]] = {
 
 
 def check_message(content: str) -> Received:
-    """Return the message that a text holds.
-
-    Raises:
-        InputError: it is none of ours; the sentence says what would be right.
-    """
+    """Return the message that a text holds."""
     values = decode_message_object(content, "A message")
     kind = values.pop("type", None)
     if not isinstance(kind, str) or kind not in MEMBERS:

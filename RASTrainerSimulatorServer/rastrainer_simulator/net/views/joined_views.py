@@ -103,7 +103,6 @@ class JoinedViews:
         await asyncio.gather(*tasks, *closings, return_exceptions=True)
 
     def is_due(self, _state: SimulationState) -> bool:
-        """Return whether the views are due for what moves, by wall-clock time."""
         return bool(self._views or self._boards) and self._pacer.is_due(time.monotonic())
 
     def tell(self, now: SimulationState) -> None:
@@ -194,7 +193,6 @@ class JoinedViews:
             view.outbox.put_latest(outgoing.SCREEN, whole if is_whole else bare)
 
     def _is_operators(self, view: ViewSocket) -> bool:
-        """Return whether a view is in front of the holder of control."""
         if view.is_spectator:
             return False
         number = self._presenter.control.view

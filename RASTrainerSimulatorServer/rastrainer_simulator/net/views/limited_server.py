@@ -80,7 +80,6 @@ class Connections:
             timer.cancel()
 
     def note_key(self, request: web.BaseRequest, role: ViewRole) -> None:
-        """Note that a connection has shown the key of a session."""
         self._paired[request.protocol] = role
 
     def _has_room(self, there: list[web.RequestHandler]) -> bool:
@@ -155,11 +154,7 @@ class LimitedServer:
         self._listeners: list[Listener] = []
 
     async def listen(self, host: str, port: int, tls: ssl.SSLContext | None = None) -> int:
-        """Listen, by TLS where there is a certificate; return on which port, 0 is any free one.
-
-        Raises:
-            InputError: the address cannot be listened on.
-        """
+        """Listen, by TLS where there is a certificate; return on which port, 0 is any free one."""
         listener = Listener(
             self._connections,
             self._limits.new_connections_per_s,

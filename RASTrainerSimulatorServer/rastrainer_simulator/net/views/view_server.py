@@ -78,9 +78,6 @@ class ViewServer:
             scenario_picture: returns the picture of a scenario by its name.
             config: folder of the settings, with the keys of boards; None keeps none.
             pin: that boards need to give orders; None takes none.
-
-        Raises:
-            InputError: the file with the keys of boards cannot be read.
         """
         self._scenario_picture = scenario_picture
         self._source = source
@@ -109,11 +106,7 @@ class ViewServer:
         self._unsubscribe: Callable[[], None] = lambda: None
 
     async def listen(self, host: str, port: int) -> int:
-        """Listen, and return on which port; 0 is any free one.
-
-        Raises:
-            InputError: the address cannot be listened on.
-        """
+        """Listen, and return on which port; 0 is any free one."""
         self.port = await self._http.listen(host, port)
         self.announce(f"http://{host}:{self.port}")
         feed = StateFeed(self._views.is_due, self._views.tell, asyncio.get_running_loop())
@@ -121,11 +114,7 @@ class ViewServer:
         return self.port
 
     async def listen_in_network(self, port: int, tls: ssl.SSLContext) -> int:
-        """Listen to other computers, too, by TLS only; return on which port.
-
-        Raises:
-            InputError: the port cannot be listened on.
-        """
+        """Listen to other computers, too, by TLS only; return on which port."""
         return await self._http.listen("0.0.0.0", port, tls)
 
     def announce(self, *addresses: str) -> None:
@@ -281,10 +270,6 @@ async def start_view_server(
     `port` 0 is any free one, None the usual one or, where that is taken, any free one. A key in
     the environment variable `RASTRAINER_VIEW_KEY` is accepted: who starts the simulator may give
     the same one to a window. The other arguments are those of a `ViewServer`.
-
-    Raises:
-        InputError: the port cannot be listened on, the key is no key, the certificate cannot be
-            kept, or the keys of boards cannot be read.
     """
     server = ViewServer(
         source,

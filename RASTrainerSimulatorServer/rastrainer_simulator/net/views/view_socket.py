@@ -99,7 +99,6 @@ class ViewSocket:
                 await sending
 
     def release_if_silent(self, silent_s: float) -> None:
-        """Release what is held by a view that has been silent for `silent_s`."""
         if self.held.is_anything_held and self._clock() - self._last_message > silent_s:
             self.held.release()
 

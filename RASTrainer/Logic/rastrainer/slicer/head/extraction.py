@@ -49,9 +49,6 @@ def findTissue(values: np.ndarray, threshold: float | None, noise: float) -> Tis
         values: (i, j, k) float.
         threshold: None finds it: −475 HU of a CT, else by Otsu's method.
         noise: standard deviation of the smoothing, in voxels.
-
-    Raises:
-        InputError: nothing is above the threshold, or everything is.
     """
     isCt = isHounsfield(values)
     # Normalized values of an MRI begin below 0.
@@ -146,9 +143,6 @@ def findHead(volume: Volume, settings: HeadSettings, progress: Progress) -> Head
         volume: T1-weighted MRI or CT of a head.
         settings: deviations from the defaults.
         progress: called with each step's name and the share of the work done; may raise to cancel.
-
-    Raises:
-        InputError: there is no head in the volume.
     """
     progress("Reading the volume", 0.0)
     grid = onRasGrid(volume, SPACING_MM)
@@ -175,11 +169,7 @@ def findHead(volume: Volume, settings: HeadSettings, progress: Progress) -> Head
 
 
 def skinOf(head: HeadBody, settings: HeadSettings, progress: Progress) -> HeadMesh:
-    """Return the skin as one closed surface of genus 0 with a flat base.
-
-    Raises:
-        InputError: no closed surface could be made of it.
-    """
+    """Return the skin as one closed surface of genus 0 with a flat base."""
     progress("Making the surface", 0.8)
     skin = surface.surfaceOf(_agreeing(head.level, head.body), head.origin, SPACING_MM)
     skin, wanted = surface.smoothed(skin), settings.triangles
@@ -222,7 +212,6 @@ def _body(inside: np.ndarray, settings: HeadSettings, progress: Progress) -> np.
 
 
 def _ballLike(wanted: np.ndarray, settings: HeadSettings) -> np.ndarray:
-    """Return a body without tunnels around the wanted one."""
     for radius in settings.openingMm * np.array([0.5, 1.0, 2.0, 4.0]):
         body = mask.withoutCavities(mask.closedByBall(wanted, radius / SPACING_MM))
         contour = surface.meshOf(surface.surfaceOf(np.where(body, 1.0, -1.0), np.zeros(3), 1.0))

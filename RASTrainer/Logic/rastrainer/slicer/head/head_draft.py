@@ -55,9 +55,6 @@ def makeDraft(
         segment: the head; None finds it in the volume.
         headMade: given the draft without its skull and the warnings, before the skull is made.
         hasVolume: whether the images are to be part of the draft.
-
-    Raises:
-        InputError: the volume cannot be used, or there is no head in it or no bone in a CT.
     """
     volume, settings, warnings = _usable(volume, settings or HeadSettings())
     found, mesh, more = _findSkin(
@@ -146,11 +143,7 @@ FULLEST = 0.85
 
 
 def checkVolume(volume: Volume) -> list[str]:
-    """Return warnings for a volume that can be used, one sentence each.
-
-    Raises:
-        InputError: it cannot be used.
-    """
+    """Return warnings for a volume that can be used, one sentence each."""
     values, shape = volume.values, volume.values.shape
     if values.ndim != 3 or min(shape) < FEWEST_VOXELS:
         raise InputError(
@@ -193,11 +186,7 @@ def _checkSpacing(volume: Volume) -> list[str]:
 
 
 def checkHead(mesh: HeadMesh) -> None:
-    """Raise an error if a closed surface cannot be a head's.
-
-    Raises:
-        InputError: its size or shape is no head's.
-    """
+    """Raise an error if a closed surface cannot be a head's."""
     extent = np.ptp(mesh.vertices, axis=0)
     a, b, c = (mesh.vertices[mesh.triangles[:, corner]].astype(float) for corner in range(3))
     volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0
@@ -268,11 +257,7 @@ TRIANGLES = 30_000
 
 
 def skullOf(volume: Volume, head: HeadBody) -> HeadMesh:
-    """Return the skull above the head's base: bone of a CT, else a shell parallel to the skin.
-
-    Raises:
-        InputError: there is none.
-    """
+    """Return the skull above the head's base: bone of a CT, else a shell parallel to the skin."""
     level = _bone(volume, head) if head.isCt else _belowScalp(head)
     heights = head.origin[2] + SPACING_MM * np.arange(level.shape[2])
     level = np.where(heights >= head.baseMm, level, -1.0).astype(np.float32)

@@ -105,7 +105,6 @@ def _isStoredCt(values: np.ndarray) -> bool:
 
 
 def _middle(values: np.ndarray, above: float) -> np.ndarray:
-    """Return the values in the middle third of the box around what is above a value."""
     box = ndimage.find_objects((values > above).astype(np.uint8))
     if not box:
         return values

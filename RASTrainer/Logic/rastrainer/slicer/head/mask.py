@@ -28,11 +28,7 @@ def otsuThreshold(values: np.ndarray) -> float:
 
 
 def largestBody(mask: np.ndarray) -> np.ndarray:
-    """Return the largest connected part of a mask (6 neighbors).
-
-    Raises:
-        InputError: nothing is set.
-    """
+    """Return the largest connected part of a mask (6 neighbors)."""
     labels, count = ndimage.label(mask)
     if count == 0:
         raise InputError("No head was found: no voxel lies above the threshold.")

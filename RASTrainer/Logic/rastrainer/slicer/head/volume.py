@@ -42,10 +42,6 @@ def imageOfNode(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
     """Return the image of a volume node where its transforms place it, at once: it is not copied.
 
     Its values are of the node's own type; `asFloat` copies them, in any thread.
-
-    Raises:
-        InputError: it has none, or one with colors, its transform is not linear, or its file states
-            no orientation.
     """
     _checkOrientation(node)
     image = node.GetImageData()
@@ -73,16 +69,11 @@ def _checkOrientation(node: slicer.vtkMRMLScalarVolumeNode) -> None:
 
 
 def asFloat(volume: Volume) -> Volume:
-    """Return a copy of a volume with values of type float32."""
     return replace(volume, values=volume.values.astype(np.float32))
 
 
 def toWorld(node: slicer.vtkMRMLTransformableNode) -> np.ndarray:
-    """Return the (4, 4) matrix, mm, of a node's parent transforms.
-
-    Raises:
-        InputError: they are not linear.
-    """
+    """Return the (4, 4) matrix, mm, of a node's parent transforms."""
     parent, matrix = node.GetParentTransformNode(), vtk.vtkMatrix4x4()
     if parent is not None:
         if not parent.IsTransformToWorldLinear():
@@ -261,11 +252,7 @@ class SegmentImage:
 
 
 def readSegment(node: Any, segmentId: str) -> SegmentImage:
-    """Return a segment of a `vtkMRMLSegmentationNode`, copied.
-
-    Raises:
-        InputError: it is not there, or its transform is not linear.
-    """
+    """Return a segment of a `vtkMRMLSegmentationNode`, copied."""
     import slicer
 
     image = slicer.vtkOrientedImageData()
@@ -291,9 +278,6 @@ def volumeOfSegment(segment: SegmentImage) -> Volume:
     Its grid is of 1 mm along RAS, whatever grid the Segment Editor has given the segment. It
     begins so that the base is cut where it was (to half a voxel) when the segment was shown, or,
     where the segment ends higher by now, just above that end.
-
-    Raises:
-        InputError: the segment is empty.
     """
     inside = segment.labels.values > 0
     if not inside.any():
@@ -303,7 +287,6 @@ def volumeOfSegment(segment: SegmentImage) -> Volume:
 
 
 def forSegment(settings: HeadSettings) -> HeadSettings:
-    """Return the settings for a segment's volume."""
     return replace(settings, threshold=_HALF, noiseMm=EDITED_NOISE_MM)
 
 

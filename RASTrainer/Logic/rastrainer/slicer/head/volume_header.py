@@ -72,11 +72,7 @@ class _Nifti:
 
 
 def checkHeader(path: Path) -> None:
-    """Check what a file says about itself before it is read.
-
-    Raises:
-        InputError: it cannot be used; the sentence names what it is.
-    """
+    """Check what a file says about itself before it is read."""
     begin = _begin(path)
     if path.suffix.lower() in (".mgz", ".mgh") or begin.startswith(_MGH):
         raise _unusable(path, "is in FreeSurfer's format", "mri_convert makes NIfTI of it")

@@ -43,7 +43,6 @@ class ConnectorKit:
 
 
 def desktopKit() -> ConnectorKit | None:
-    """Return the kit of SlicerOpenIGTLink, or None if that extension is not installed."""
     if not hasattr(slicer, "vtkMRMLIGTLConnectorNode"):
         return None
     return ConnectorKit(slicer.vtkMRMLIGTLConnectorNode, slicer.vtkSlicerOpenIGTLinkCommand)
@@ -183,7 +182,6 @@ class SlicerConnection:
 
     @property
     def isWanted(self) -> bool:
-        """Whether a connection is requested."""
         return self._address is not None
 
     @property

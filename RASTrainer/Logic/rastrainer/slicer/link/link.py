@@ -115,7 +115,6 @@ class Link:
 
     @property
     def isOpen(self) -> bool:
-        """Whether there is a connection."""
         return self._connection.isOpen
 
     @property
@@ -134,19 +133,11 @@ class Link:
         return self._connection.connector
 
     def connectTo(self, host: str = DEFAULT_HOST, port: int = DEFAULT_PORT) -> None:
-        """Connect to a simulator, and again whenever the connection is lost.
-
-        Raises:
-            InputError: no host, or the port is not valid.
-        """
+        """Connect to a simulator, and again whenever the connection is lost."""
         self._begin(checkedAddress(host, port), isListening=False)
 
     def listenOn(self, port: int = DEFAULT_PORT) -> None:
-        """Wait for a simulator that was started with `--connect`.
-
-        Raises:
-            InputError: the port is not valid.
-        """
+        """Wait for a simulator that was started with `--connect`."""
         checkPort(port)
         self._begin(("", port), isListening=True)
 
@@ -157,9 +148,6 @@ class Link:
 
         Returns:
             The status to show meanwhile.
-
-        Raises:
-            InputError: no host, or the port is not valid.
         """
         status = self._test.begin(*checkedAddress(host, port), onFound)
         self.woken.emit()
@@ -187,11 +175,7 @@ class Link:
         onReply: OnReply = lambda _reply: None,
         timeoutS: float = 5.0,
     ) -> None:
-        """Send a command; `onReply` is called by a later `process`, exactly once.
-
-        Raises:
-            InputError: the command or its arguments are not those of the protocol.
-        """
+        """Send a command; `onReply` is called by a later `process`, exactly once."""
         check_arguments(name, arguments or {})
         status = self._connection.status
         if not self.isOpen or status.state is LinkState.WRONG_VERSION:
@@ -310,11 +294,7 @@ class ConnectionCheck:
 
 
 def checkedAddress(host: str, port: int) -> tuple[str, int]:
-    """Return a valid address.
-
-    Raises:
-        InputError: no host, or an invalid port.
-    """
+    """Return a valid address."""
     if not host.strip():
         raise InputError(_("Enter the host of the simulator, such as 127.0.0.1."))
     checkPort(port)

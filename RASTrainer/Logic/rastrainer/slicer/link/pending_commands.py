@@ -42,7 +42,6 @@ class Request:
         name: of the command.
         content: its arguments, JSON.
         timeoutS: how long to wait for its answer after sending it.
-        onReply: called with the reply.
     """
 
     name: str
@@ -194,7 +193,6 @@ class Arrivals:
             self._commands.append((name, content))
 
     def emitNodes(self) -> None:
-        """Emit points and state that differ from those of the last call."""
         self._guard.run("The touched points", self._emitPoints)
         self._guard.run("The simulator's state", self._emitState)
 

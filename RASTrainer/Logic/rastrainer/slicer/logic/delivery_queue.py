@@ -84,7 +84,6 @@ class DeliveryQueue(Generic[T]):
         self._lastProblem = ""
 
     def isStoring(self, trialId: str) -> bool:
-        """Whether a trial is being stored."""
         return any(each.get("trialId") == trialId for each in self._underWay)
 
     def report(self, sentence: str) -> None:

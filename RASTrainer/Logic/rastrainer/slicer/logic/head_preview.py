@@ -32,9 +32,6 @@ def findSkin(
         settings: deviations from the defaults.
         progress: called with each step and the share of the work done, many times a second; it may
             let the application draw, and may raise to cancel.
-
-    Raises:
-        InputError: the volume cannot be used, or there is no head in it.
     """
     from rastrainer.slicer.head.volume import imageOfNode
 
@@ -60,16 +57,11 @@ class HeadPreview:
     """A model of the head that is found, and a segment of it that the Segment Editor may change."""
 
     def __init__(self, scene: Any, run: Run) -> None:
-        """`run` runs the function that looks for heads."""
         self._scene = scene
         self._run = run
 
     def show(self, volumeNode: Any, settings: HeadSettings, progress: Progress) -> list[str]:
-        """Show the head in a `vtkMRMLScalarVolumeNode`; return warnings, one sentence each.
-
-        Raises:
-            InputError: the volume cannot be used, or there is no head in it.
-        """
+        """Show the head in a `vtkMRMLScalarVolumeNode`; return warnings, one sentence each."""
         from rastrainer.slicer.head.volume import showSegment
 
         found, skin, warnings = findSkin(self._run, volumeNode, settings, progress)
@@ -93,11 +85,7 @@ class HeadPreview:
                 display.SetVisibility(False)
 
     def segment(self, volumeNode: Any, settings: HeadSettings) -> SegmentImage | None:
-        """Return the segment of the head that is shown of a volume, None where none is.
-
-        Raises:
-            InputError: the head was found with other settings, or its segment cannot be used.
-        """
+        """Return the segment of the head that is shown of a volume, None where none is."""
         from rastrainer.slicer.head.volume import SEGMENT_NAME, readSegment
 
         node = findNode(self._scene, "vtkMRMLSegmentationNode", Role.HEAD_SEGMENT)

@@ -55,13 +55,11 @@ class LandmarkPoints:
 
     @property
     def landmarks(self) -> tuple[Landmark, ...]:
-        """The placed landmarks, in touch order."""
         placed = self._placed()
         return tuple(map(Landmark, placed.names, placed.places))
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """The usual names that are not placed."""
         placed = self._placed().names
         return tuple(name for name in FACE_LANDMARKS if name not in placed)
 
@@ -149,7 +147,6 @@ class LandmarkLogic:
     """
 
     def __init__(self, scene: Any, files: ScenarioFiles) -> None:
-        """`files` keeps landmarks in scenarios."""
         self.points = LandmarkPoints(scene)
         self._files = files
 
@@ -159,9 +156,6 @@ class LandmarkLogic:
         Args:
             scenario: whose head it is.
             progress: see `ScenarioFiles`.
-
-        Raises:
-            InputError: the head cannot be used.
         """
         with tempfile.TemporaryDirectory() as temporary:
             path = Path(temporary) / FILE
@@ -178,9 +172,6 @@ class LandmarkLogic:
         Args:
             scenario: whose head it is.
             progress: see `ScenarioFiles`.
-
-        Raises:
-            InputError: no landmark is placed.
         """
         with self._written() as path:
             words = ["landmarks", str(scenario.folder), str(path)]
@@ -193,9 +184,6 @@ class LandmarkLogic:
             scenario: which stays as it is.
             title: of the copy.
             progress: see `ScenarioFiles`.
-
-        Raises:
-            InputError: there is one of that title already, or the landmarks cannot be used.
         """
         with self._written() as path:
             plan = ["--landmarks", str(path)]

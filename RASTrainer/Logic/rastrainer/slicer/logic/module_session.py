@@ -64,7 +64,6 @@ class ModuleSession:
         trainees: who trains.
         scenario: head, tasks and robot in the scene.
         files: loads meshes and images of the displayed scenario.
-        scenarioMaker: makes scenarios of volumes.
         scenarioFiles: takes and gives scenarios as files, and keeps plans in them.
         training: running trials.
         slices: keeps the slice views at the next point, or at the tool.
@@ -216,11 +215,7 @@ class ModuleSession:
         return Study.open(self.studyPlace, make_folder=True)
 
     def chooseStudy(self, place: StudyPlace) -> None:
-        """Continue with another study, which is created if missing.
-
-        Raises:
-            InputError: the place is no study, or cannot be used; the present one stays.
-        """
+        """Continue with another study, which is created if missing."""
         Study.open(place, self._lockWait, make_folder=True).close()
         self.study.leaveStudy()
         self.studyPlace = place

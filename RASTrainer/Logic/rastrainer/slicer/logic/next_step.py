@@ -90,7 +90,6 @@ class WorkflowState:
         hasNewResult: a trial of the chosen trainee was scored and has not been viewed.
         isResultShown: the score was viewed last.
         studyStep: what the study asks the chosen trainee for; None where it asks for nothing.
-        needsRepeatReason: whether that was aborted and still needs a reason to be repeated.
         studySentence: the same for people.
     """
 

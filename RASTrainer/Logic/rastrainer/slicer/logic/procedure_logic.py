@@ -131,7 +131,6 @@ class ProcedureLogic:
         self._listening.close()
 
     def command(self, name: str, arguments: Mapping[str, Any] | None = None) -> None:
-        """Send a command that continues the procedure."""
         self._link.send(name, arguments, lambda reply: self.answered.emit(reply.error))
 
     def feed(self, forward: bool) -> None:
@@ -155,7 +154,6 @@ class ProcedureLogic:
         self.changed.emit()
 
     def showPlan(self, scenario: Scenario) -> None:
-        """Show the planned lines of the procedure of a trial that has begun, in its scenario."""
         named = [each for each in scenario.procedures if each.name == self.status.name]
         showPlannedLines(self._scene, named[0] if named else None)
 

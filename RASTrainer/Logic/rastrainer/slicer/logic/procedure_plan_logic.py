@@ -112,16 +112,11 @@ class ProcedurePlanLogic:
     """What the panel of a procedure's plan does."""
 
     def __init__(self, scene: Any, files: ScenarioFiles) -> None:
-        """`files` keeps plans in scenarios."""
         self._scene = scene
         self._files = files
 
     def edit(self, scenario: Scenario, name: str) -> Procedure | None:
-        """Show a procedure of a scenario in the scene, to be changed; an empty one without a name.
-
-        Raises:
-            InputError: there is no such procedure, or a mesh is unusable.
-        """
+        """Show a procedure in the scene, to be changed; an empty one without a name."""
         if not name:
             showPlan(self._scene, (), {}, ())
             return None
@@ -132,11 +127,7 @@ class ProcedurePlanLogic:
         return procedure
 
     def read(self, plan: PlanDescription) -> tuple[Procedure, dict[str, HeadMesh]]:
-        """Return the plan of the scene, and the meshes of its no-go structures by file name.
-
-        Raises:
-            InputError: something is missing or unusable; the sentence says what.
-        """
+        """Return the plan of the scene, and the meshes of its no-go structures by file name."""
         title = plan.title.strip()
         if not title:
             raise InputError(_("Enter a title for the procedure."))
@@ -170,9 +161,6 @@ class ProcedurePlanLogic:
             scenario: whose head it is.
             plan: the parts that are not nodes.
             progress: see `ScenarioFiles`.
-
-        Raises:
-            InputError: the plan cannot be measured; otherwise what is wrong with it is returned.
         """
         with tempfile.TemporaryDirectory() as temporary:
             folder = Path(temporary)
@@ -201,10 +189,6 @@ class ProcedurePlanLogic:
             title: of the copy.
             plan: the parts that are not nodes.
             progress: see `ScenarioFiles`.
-
-        Raises:
-            InputError: there is one of that title already, or the plan cannot be carried out.
-                Nothing is written then.
         """
         with tempfile.TemporaryDirectory() as temporary:
             words = ["--procedure", str(self._write(Path(temporary), plan))]
@@ -268,10 +252,6 @@ def noGoMeshes(nodes: list[Any]) -> dict[str, HeadMesh]:
 
     Args:
         nodes: `vtkMRMLModelNode` or `vtkMRMLSegmentationNode`, of which each segment is one.
-
-    Raises:
-        InputError: one is empty, open or too large, two have one name, or a transform is not
-            linear.
     """
     found: dict[str, HeadMesh] = {}
     for node in nodes:

@@ -21,7 +21,6 @@ class ComparisonRequest:
     """What is to be registered.
 
     Attributes:
-        pairs: the pairs.
         choices: by which they were chosen.
         kind: of the fit that is shown.
         target: (3,) float, RAS mm, where errors are reported; None where there is no target.
@@ -67,20 +66,12 @@ class Comparison:
         return self.fits.get(kind, self.fits[RIGID])
 
     def targetError(self, fit: Registration, place: np.ndarray) -> TargetError:
-        """Return the error to expect with one of the fits at a place, (3,) float, RAS mm.
-
-        Raises:
-            InputError: the fit has too few points.
-        """
+        """Return the error to expect with one of the fits at a place, (3,) float, RAS mm."""
         return target_error(fit, place, self.localizations[fit.kind])
 
 
 def compareFits(request: ComparisonRequest) -> Comparison:
-    """Register the pairs of a request in all ways.
-
-    Raises:
-        InputError: the pairs allow no rigid registration.
-    """
+    """Register the pairs of a request in all ways."""
     pairs, choices = request.pairs, request.choices
     weights = choices.weights(pairs.labels)
     fits = register_all_kinds(pairs.moving, pairs.fixed, pairs.labels, weights)

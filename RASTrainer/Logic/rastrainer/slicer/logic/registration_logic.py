@@ -80,7 +80,6 @@ class RegistrationLogic:
 
     @property
     def canUndo(self) -> bool:
-        """Whether there is a change to undo."""
         return len(self._history) > 1
 
     @property
@@ -278,9 +277,6 @@ class RegistrationLogic:
         """Return the error to expect with the shown fit at a place, (3,) float, RAS mm.
 
         None where nothing is registered.
-
-        Raises:
-            InputError: the fit has too few points.
         """
         if self.comparison is None:
             return None

@@ -96,11 +96,7 @@ class ReplayLogic:
         self.isReleasing = False
 
     def feedback(self, trial: StoredTrial) -> TrialFeedback | None:
-        """Return the feedback on a trial; None while it is being prepared.
-
-        Raises:
-            InputError: its scenario is not here, or it cannot be registered.
-        """
+        """Return the feedback on a trial; None while it is being prepared."""
         trialId = trial.record.trial_id
         if self._known is not None and self._known[0] == trialId:
             if isinstance(self._known[1], Exception):
@@ -129,7 +125,6 @@ class ReplayLogic:
             self._known = None
 
     def keepStates(self) -> None:
-        """Hold on to the states of the replay: the scene is about to be cleared."""
         self._outdated = itertools.chain(self._outdated, emptyReplay(self._scene))
 
     def forgetScene(self) -> None:
@@ -143,9 +138,6 @@ class ReplayLogic:
             trial: as it is stored.
             progress: called with each step and the share of the work done, many times a second; it
                 may let the application draw, and may raise to cancel: then nothing is shown.
-
-        Raises:
-            InputError: its journal or its scenario is not here, or it was not registered.
         """
         self._put(trial, progress)
         self._play(None)

@@ -68,11 +68,7 @@ class ScenarioCache:
         self._scenarios.clear()
 
     def find(self, name: str) -> Scenario:
-        """Return the scenario of that name, which may have been added since the last look.
-
-        Raises:
-            InputError: there is none, or it cannot be used.
-        """
+        """Return the scenario of that name, which may have been added since the last look."""
         stamp, scenario = self._scenarios.get(name, (0, None))
         if scenario is None or stamp != _stamp(scenario.folder):
             self._listed = None
@@ -82,11 +78,7 @@ class ScenarioCache:
         return scenario
 
     def newName(self, title: str) -> str:
-        """Return the name of a scenario of that title, which is not here yet.
-
-        Raises:
-            InputError: there is one of that name, or no name can be made of the title.
-        """
+        """Return the name of a scenario of that title, which is not here yet."""
         name = scenario_name(title)
         self._listed = None
         taken = {entry.name: entry.folder for entry in self.listed()}

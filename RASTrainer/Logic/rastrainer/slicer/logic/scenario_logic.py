@@ -78,11 +78,7 @@ class ScenarioLogic:
         return self._cache.find(scenarioName)
 
     def show(self, scenarioName: str, taskName: str) -> None:
-        """Show a scenario's head and the fiducials of one of its tasks.
-
-        Raises:
-            InputError: there is no such scenario or task, or its files cannot be used.
-        """
+        """Show a scenario's head and the fiducials of one of its tasks."""
         scenario = self._cache.find(scenarioName)
         showScenario(self._scene, scenario)
         showImages(self._scene)
@@ -104,9 +100,6 @@ class ScenarioLogic:
 
         Returns:
             The head's model, and warnings about its volume, one sentence each.
-
-        Raises:
-            InputError: the volume cannot be used, or there is no head in it.
         """
         isVolume = node.IsA("vtkMRMLVolumeNode")
         model, warnings = self._skinOf(node, progress) if isVolume else (node, [])
@@ -148,7 +141,6 @@ class ScenarioLogic:
 
     @property
     def isRobotShown(self) -> bool:
-        """Whether the robot is in the scene and visible, or is going to be."""
         node = robotNode(self._scene, 0)
         return self._isRobotComing or (node is not None and bool(node.GetDisplayVisibility()))
 
@@ -202,20 +194,13 @@ class ScenarioFiles:
         Args:
             package: the file.
             progress: see the class.
-
-        Raises:
-            InputError: it cannot be used; nothing has changed.
         """
         folder = inBackground(lambda report: unpack(package, self._library, report), progress)
         self._cache.refresh()
         return load_scenario(folder)
 
     def drawFaceRemoval(self, name: str, picture: Path, progress: Progress = no_progress) -> str:
-        """Draw a head before and after its face is removed, and return a sentence on the picture.
-
-        Raises:
-            InputError: the face cannot be removed.
-        """
+        """Draw a head before and after its face is removed; return a sentence on the picture."""
         folder = str(self._cache.find(name).folder)
         words = ["pack", folder, os.devnull, "--picture", str(picture)]
         return self.run(words, progress)
@@ -237,9 +222,6 @@ class ScenarioFiles:
                 `drawFaceRemoval` has drawn.
             keepsNames: whether title, name and source stay, which may be the patient's name.
             progress: see the class.
-
-        Raises:
-            InputError: it cannot be written.
         """
         words = ["pack", str(self._cache.find(name).folder), str(package)]
         words += ["--keep-face"] if keepsFace else ["--yes"]
@@ -256,9 +238,6 @@ class ScenarioFiles:
             title: of the copy.
             node: a `vtkMRMLMarkupsFiducialNode` or a `vtkMRMLMarkupsLineNode`.
             progress: see the class.
-
-        Raises:
-            InputError: there is one of that title already, or the plan cannot be carried out.
         """
         isLine = node.IsA("vtkMRMLMarkupsLineNode")
         plan = planArguments(None, node) if isLine else planArguments(node, None)
@@ -277,9 +256,6 @@ class ScenarioFiles:
             name: of the scenario, which stays as it is.
             title: of the copy.
             progress: see the class.
-
-        Raises:
-            InputError: there is one of that title already, or the plan cannot be used.
         """
         folder = self._library / self._cache.newName(title)
         source = str(self._cache.find(name).folder)
@@ -293,11 +269,7 @@ class ScenarioFiles:
 
 
 def planArguments(targets: Any | None, trajectory: Any | None) -> list[str]:
-    """Return the arguments of `rastrainer scenario` for a list of targets and a line.
-
-    Raises:
-        InputError: the line has not two points.
-    """
+    """Return the arguments of `rastrainer scenario` for a list of targets and a line."""
     words = []
     if targets is not None:
         for name, place in zip(labelsOf(targets), worldPoints(targets), strict=True):
@@ -367,9 +339,6 @@ class MethodComparisonLogic:
             trials: how many.
             skinShiftMm: between imaging and operation, RMS.
             progress: see `ScenarioFiles`.
-
-        Raises:
-            InputError: the head cannot be used.
         """
         with tempfile.TemporaryDirectory() as temporary:
             folder = Path(temporary) / "methods"

@@ -122,9 +122,6 @@ class ScenarioMaker:
 
         The Segment Editor may change its segment; `make` then takes it as it is. Arguments are
         those of `make`.
-
-        Raises:
-            InputError: there is no head in the volume.
         """
         return self._preview.show(_chosen(volumeNode), _settings(options), progress)
 
@@ -139,9 +136,6 @@ class ScenarioMaker:
             options: what else is wanted.
             progress: called with each step and the share of the work done, many times a second; it
                 may let the application draw, and may raise to cancel: then nothing is left behind.
-
-        Raises:
-            InputError: something cannot be used; the sentence says what.
         """
         with self._planned(volumeNode, options) as planned:
             folder = self._library / self._cache.newName(planned.title)
@@ -235,9 +229,6 @@ def handPlacedLists(scene: Any, targets: Any) -> tuple[list[Any], list[str]]:
     Args:
         scene: the scene.
         targets: the list of the planned targets, which are no fiducials; None where there is none.
-
-    Raises:
-        InputError: there is no list of fifteen fiducials, or its labels give no order.
     """
     taken: list[Any] = []
     leftOut = []
@@ -296,9 +287,6 @@ def planScenario(
         command: words that run `rastrainer` of the simulator's Python.
         progress: called with each step's name and the share of the work done, many times a
             second; it may let the application draw, and may raise to cancel: nothing is left then.
-
-    Raises:
-        InputError: the volume, the folder or the simulator's program cannot be used.
     """
     with tempfile.TemporaryDirectory() as temporary:
 

@@ -84,11 +84,7 @@ class RunningSimulator:
         return found is not None
 
     def connect(self) -> None:
-        """Connect to it.
-
-        Raises:
-            InputError: it has ended, or listens nowhere.
-        """
+        """Connect to it."""
         self.look()
         holder = self.holder
         if holder is None or not self.canConnect:
@@ -98,11 +94,7 @@ class RunningSimulator:
         self._connected = holder
 
     def end(self) -> None:
-        """Ask it to end, with its window; `process` notices the end, and kills it if needed.
-
-        Raises:
-            InputError: another user of this computer has started it.
-        """
+        """Ask it to end, with its window; `process` notices the end, and kills it if needed."""
         shown = self.holder
         self.look()
         # Another that has started since is not the one to be ended.
@@ -197,9 +189,6 @@ class SimulatorLogic:
             port: to listen on; 0 takes any free one.
             hasWindow: open the trainee's window on this computer, too.
             hasNetwork: let headsets and browsers of the local network in, by https.
-
-        Raises:
-            InputError: it is not set up, or cannot be started.
         """
         if not self.program.isRunning and self.running.look():
             return
@@ -209,11 +198,7 @@ class SimulatorLogic:
         self.program.start(self.command(arguments))
 
     def command(self, arguments: Sequence[str]) -> list[str]:
-        """Return what runs `rastrainer` with arguments such as `simulator --port 0`.
-
-        Raises:
-            InputError: it is not set up.
-        """
+        """Return what runs `rastrainer` with arguments such as `simulator --port 0`."""
         ownProgram = self.ownProgram
         if ownProgram:
             if not Path(ownProgram).is_file():
@@ -231,9 +216,6 @@ class SimulatorLogic:
             progress: called while it works: it may let the application draw, and may raise to
                 cancel.
             mayFail: whether the line is also returned where it has ended with an error.
-
-        Raises:
-            InputError: it is not set up, or has ended with an error and may not.
         """
         ended = runChild(self.command(arguments), progress)
         sentence = ended.lastLine.removeprefix("rastrainer: ")
@@ -254,20 +236,13 @@ class SimulatorLogic:
         Args:
             index: address of a package index; pip's own where empty.
             wheels: a folder of wheels to install from without network; empty asks the index.
-
-        Raises:
-            InputError: it cannot start.
         """
         if self.program.isRunning or self.running.look():
             raise InputError(_("End the simulator that is running before setting it up again."))
         self.setup.begin(SetupSource(index.strip(), Path(wheels) if wheels else None))
 
     def removeSetup(self) -> None:
-        """Remove what was set up; trials and settings stay.
-
-        Raises:
-            InputError: the simulator runs, or is being set up, or cannot be removed.
-        """
+        """Remove what was set up; trials and settings stay."""
         if self.program.isRunning or self.running.look():
             raise InputError(_("End the simulator that is running before removing it."))
         self.setup.remove()

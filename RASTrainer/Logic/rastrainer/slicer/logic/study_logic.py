@@ -91,22 +91,14 @@ class StudyLogic:
         return StudyProgress(self._trainees.study).protocol()
 
     def begin(self, path: Path) -> StudyProtocol:
-        """Make a file's protocol that of the study, permanently.
-
-        Raises:
-            InputError: the file is no protocol, or the study has another one.
-        """
+        """Make a file's protocol that of the study, permanently."""
         protocol = read_study_protocol(path)
         StudyProgress(self._trainees.study).set_protocol(protocol)
         self.changed.emit()
         return protocol
 
     def enroll(self) -> int:
-        """Give the chosen trainee the first free number in the study's order, from 0.
-
-        Raises:
-            InputError: no trainee is chosen, or the study has no protocol.
-        """
+        """Give the chosen trainee the first free number in the study's order, from 0."""
         if not self._trainees.chosen:
             raise InputError(_("Choose a trainee in the section Trainees first."))
         place = StudyProgress(self._trainees.study).enroll(self._trainees.chosen)
@@ -140,9 +132,6 @@ class StudyLogic:
 
         Within a study, the protocol decides whether a trial run waits for the tutorial, by what a
         trial is registered, how its skin shifts, and whether it continues with a procedure.
-
-        Raises:
-            InputError: it does, or no trainee or task is chosen.
         """
         skin: Mapping[str, float] = {}
         if self.protocol() is not None and self._trainees.chosen:
@@ -187,45 +176,28 @@ class StudyLogic:
         )
 
     def startStep(self) -> None:
-        """Start the trial that comes next.
-
-        Raises:
-            InputError: no trial comes next.
-        """
+        """Start the trial that comes next."""
         step = self._next()
         if step.kind not in TRIALS:
             raise InputError(_("No trial comes next. {step}").format(step=step.sentence))
         self.startTrial(step.task, step.mode)
 
     def answer(self, answers: Sequence[int]) -> None:
-        """Store the answers to the questionnaire that comes next.
-
-        Raises:
-            InputError: none comes next, or an answer is missing.
-        """
+        """Store the answers to the questionnaire that comes next."""
         step = self._next()
         details = {"answers": list(answers)}
         StudyProgress(self._trainees.study).finish(self._trainees.chosen, step.name, details)
         self._leadOn(self._trainees.chosen)
 
     def skipStep(self, stepName: str, reason: str) -> None:
-        """Skip the next step, for a reason that goes into the report.
-
-        Raises:
-            InputError: the step of this name is not the next one (any more), or there is no reason
-                of ten characters.
-        """
+        """Skip the next step, for a reason that goes into the report."""
         self._watch.keep()
         self._next()
         StudyProgress(self._trainees.study).skip(self._trainees.chosen, stepName, reason)
         self._leadOn(self._trainees.chosen)
 
     def explainRepeat(self, reason: str) -> None:
-        """Say why the next step is played again after it was aborted; it goes into the report.
-
-        Raises:
-            InputError: it was not aborted, or there is no reason of ten characters.
-        """
+        """Say why the next step is played again after it was aborted; it goes into the report."""
         self._progress()
         StudyProgress(self._trainees.study).explain_repeat(self._trainees.chosen, reason)
         self._leadOn(self._trainees.chosen)
@@ -301,11 +273,7 @@ class StudyLogic:
         self._followTrainees()
 
     def _lead(self, name: str) -> None:
-        """Count the trials of a trainee that have arrived, and send what comes next if it is new.
-
-        Raises:
-            InputError: the study cannot be read.
-        """
+        """Count the trials of a trainee that have arrived, and send the next step if it is new."""
         progress = StudyProgress(self._trainees.study).count_played(name)
         self._noteBreak(name, progress)
         step = progress.study_step(name, self._now())

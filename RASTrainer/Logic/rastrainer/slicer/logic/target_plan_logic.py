@@ -87,9 +87,6 @@ class PlanLogic:
         Args:
             node: a markups node.
             row: which of the placed points is the target; the last where left out.
-
-        Raises:
-            InputError: nothing is placed, or there is no registration to map it with.
         """
         if node is None:
             raise InputError(_("Place a target or a trajectory, or choose one."))
@@ -118,11 +115,7 @@ class PlanLogic:
         )
 
     def send(self, node: Any | None, row: int = -1) -> None:
-        """Show the plan in the simulator and ask whether the robot can carry it out.
-
-        Raises:
-            InputError: as `read`.
-        """
+        """Show the plan in the simulator and ask whether the robot can carry it out."""
         plan = self.read(node, row)
         arguments: dict[str, Any] = {"positionMm": plan.targetWorld.tolist(), "name": plan.name}
         if plan.entryWorld is not None:
@@ -182,12 +175,10 @@ class PlanLogic:
 
 
 def targetsOf(node: Any | None) -> tuple[str, ...]:
-    """Return the labels of the points of a list that may be the target; none of a line."""
     if node is None or node.IsA(LINE):
         return ()
     return tuple(labelOf(node, row) for row in placedRows(node))
 
 
 def _nameOf(node: Any, row: int) -> str:
-    """Return the name that the trainee reads: of one of several targets, its label."""
     return labelOf(node, row) if len(targetsOf(node)) > 1 else node.GetName()

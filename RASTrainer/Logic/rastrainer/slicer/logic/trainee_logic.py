@@ -67,11 +67,7 @@ class TraineeLogic:
 
     @property
     def study(self) -> Study:
-        """The study.
-
-        Raises:
-            InputError: it cannot be opened.
-        """
+        """The study."""
         if self._study is None:
             self._study = self._openStudy()
             self._version = self._study.database.version()
@@ -108,7 +104,6 @@ class TraineeLogic:
         return (*listed, *self.study.trainees(archived=True)) if archived else listed
 
     def choose(self, pseudonym: str) -> None:
-        """Choose a trainee, or none by an empty pseudonym."""
         if pseudonym != self.chosen:
             self.chosen = pseudonym
             self.changed.emit()
@@ -129,23 +124,17 @@ class TraineeLogic:
             return None
 
     def create(self, pseudonym: str, consent: bool) -> Trainee:
-        """Add a trainee, under the next free pseudonym where none is given, and choose them.
-
-        Raises:
-            InputError: the pseudonym is taken or cannot be one.
-        """
+        """Add a trainee, under the next free pseudonym where none is given, and choose them."""
         trainee = self.study.create_trainee(pseudonym.strip() or None, consent)
         self.chosen = trainee.pseudonym
         self.changed.emit()
         return trainee
 
     def setConsent(self, consent: bool) -> None:
-        """Note whether the chosen trainee consents to research."""
         self.study.set_consent(self.chosen, consent)
         self.changed.emit()
 
     def setArchived(self, archived: bool) -> None:
-        """Archive the chosen trainee, or restore them."""
         self.study.set_archived(self.chosen, archived)
         self.changed.emit()
 
@@ -155,9 +144,6 @@ class TraineeLogic:
         Args:
             progress: called many times a second meanwhile, with a step once something is deleted;
                 it may let the application draw, and may raise to cancel as long as nothing is.
-
-        Raises:
-            InputError: the trainee or a journal cannot be deleted.
         """
         from rastrainer.study.trainee_data import erase_trainee
 
@@ -203,9 +189,6 @@ class TraineeLogic:
 
         Returns:
             The number of trials, and of the trainees who are left out.
-
-        Raises:
-            InputError: no trainee consented, or the file cannot be written.
         """
 
         def write(_report: Progress) -> tuple[int, int]:
@@ -221,9 +204,6 @@ class TraineeLogic:
 
         Args:
             progress: called many times a second meanwhile; it may let the application draw.
-
-        Raises:
-            InputError: the study cannot be read.
         """
 
         def read(_report: Progress) -> TreCalibration:
@@ -237,11 +217,9 @@ class TraineeLogic:
         return inBackground(read, progress)
 
     def aborted(self) -> tuple[StoredAbortedTrial, ...]:
-        """Return the aborted trials of the chosen trainee in the order they were started."""
         return AbortedTrials(self.study).of(self.chosen) if self.chosenTrainee() else ()
 
     def history(self) -> tuple[StoredTrial, ...]:
-        """Return the trials of the chosen trainee in the order they were started."""
         return self.study.history(self.chosen) if self.chosenTrainee() else ()
 
 
@@ -268,11 +246,9 @@ class CurriculumLogic:
         )
 
     def close(self) -> None:
-        """Stop listening."""
         self._listening.close()
 
     def standing(self) -> CurriculumStanding | None:
-        """Return the standing of the chosen trainee; None without a curriculum or a trainee."""
         return self._standings.get(self._trainees.chosen)
 
     def standings(self) -> Mapping[str, CurriculumStanding]:
@@ -280,21 +256,13 @@ class CurriculumLogic:
         return dict(sorted(self._standings.items()))
 
     def choose(self, path: Path, isForEverybody: bool) -> Curriculum:
-        """Have the chosen trainee, or everybody, follow a file's curriculum from now on.
-
-        Raises:
-            InputError: the file is no curriculum, or no trainee is chosen.
-        """
+        """Have the chosen trainee, or everybody, follow a file's curriculum from now on."""
         curriculum = read_curriculum(path)
         self._choose(curriculum, isForEverybody)
         return curriculum
 
     def end(self, isForEverybody: bool) -> None:
-        """Have the chosen trainee, or everybody, follow no curriculum from now on.
-
-        Raises:
-            InputError: no trainee is chosen.
-        """
+        """Have the chosen trainee, or everybody, follow no curriculum from now on."""
         self._choose(None, isForEverybody)
 
     def _choose(self, curriculum: Curriculum | None, isForEverybody: bool) -> None:

@@ -156,9 +156,6 @@ class TrainingLogic:
         With `isTutorialFirst`, the simulator opens the tutorial instead of a trial run for trainees
         who have not done it yet with the device in use, unless the study or the simulator's setting
         does without it. The trial run can be started after it.
-
-        Raises:
-            InputError: no trainee or no task is chosen.
         """
         if not trainee:
             raise InputError(_("Choose a trainee in the section Trainees first."))
@@ -178,19 +175,13 @@ class TrainingLogic:
             )
 
     def pause(self) -> None:
-        """Pause the trial."""
         self._send(CommandName.PAUSE)
 
     def resume(self) -> None:
-        """Resume the trial."""
         self._send(CommandName.RESUME)
 
     def abort(self, trialId: str) -> None:
-        """End the open trial without registering it.
-
-        Raises:
-            InputError: it is not the one of this UUID, which is over.
-        """
+        """End the open trial without registering it."""
         if self.progress.trialId != trialId:
             raise InputError(_("This trial is over. The trial that is open now was not aborted."))
         self._send(CommandName.ABORT, {"trialId": trialId})

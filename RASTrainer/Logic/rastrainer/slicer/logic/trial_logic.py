@@ -140,7 +140,6 @@ class TrialLogic:
         self._scored.clear()
 
     def isBeingScored(self, trialId: str) -> bool:
-        """Whether a trial is being scored, or being stored to be scored then."""
         return self._queue.isStoring(trialId) or trialId in self._beingScored
 
     def _followTraining(self, state: Mapping[str, Any]) -> None:

@@ -96,7 +96,6 @@ class AlongInstrument:
         self._former.clear()
 
     def forgetScene(self) -> None:
-        """Forget the previous orientation of the views: the scene was cleared."""
         self._former.clear()
 
 
@@ -240,13 +239,11 @@ class SliceFollower:
             self.show(self._place)
 
     def forgetScene(self) -> None:
-        """Forget what was shown: the scene was cleared, and its views with it."""
         self._shownPoint, self._place, self._pose = (), None, None
         self._along.forgetScene()
 
     @property
     def needsPoses(self) -> bool:
-        """Whether the slices move with the tool."""
         return self.followsTool or self._device is not None
 
     def process(self) -> None:

@@ -240,9 +240,6 @@ class OwnProcess:
                 to end the process.
             arguments: of the function, besides its `progress`.
             named: further ones.
-
-        Raises:
-            InputError: the function did, or the process ended before it was done.
         """
         with tempfile.TemporaryDirectory(prefix="RASTrainer-") as temporary:
             folder = Path(temporary)

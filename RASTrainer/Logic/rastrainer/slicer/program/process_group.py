@@ -173,7 +173,6 @@ else:
             self._id = process.pid
 
         def end(self) -> None:
-            """Ask them to end."""
             self._send(signal.SIGTERM)
 
         def kill(self) -> None:

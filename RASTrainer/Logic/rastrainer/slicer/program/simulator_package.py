@@ -54,17 +54,12 @@ class SimulatorPackage:
 
     @classmethod
     def of(cls, moduleFolder: Path) -> SimulatorPackage:
-        """Return the package of a module that lies in this folder."""
         checkout = moduleFolder.parent
         isCheckout = (checkout / "pyproject.toml").is_file()
         return cls(moduleFolder / RESOURCES, checkout if isCheckout else None)
 
     def requirements(self) -> str:
-        """Return everything that pip should install, with hashes.
-
-        Raises:
-            InputError: the lock or the wheel is missing, or the wheel is damaged.
-        """
+        """Return everything that pip should install, with hashes."""
         ours = ""
         if self.checkout is None:
             digest = self.digest()
@@ -76,11 +71,7 @@ class SimulatorPackage:
         return [] if self.checkout is None else [self.checkout / part for part in SOURCES]
 
     def digest(self) -> str:
-        """Return the SHA-256 that the wheel must have.
-
-        Raises:
-            InputError: it is missing.
-        """
+        """Return the SHA-256 that the wheel must have."""
         try:
             found = DIGEST.fullmatch(read_text(self.folder / f"{WHEEL}.sha256", LIMIT_BYTES))
         except InputError:
@@ -165,11 +156,7 @@ class SetupSource:
     wheels: Path | None = None
 
     def pipArguments(self) -> list[str]:
-        """Return the options of `pip install`.
-
-        Raises:
-            InputError: the folder holds no wheels, or the address is none.
-        """
+        """Return the options of `pip install`."""
         if self.wheels is not None:
             if not any(self.wheels.glob("*.whl")):
                 raise InputError(

@@ -89,11 +89,7 @@ class SimulatorProgram:
         return f"{sentence} {warning}"
 
     def start(self, command: Sequence[str]) -> None:
-        """Start the process: soon, where the former one is ending; while it runs, do nothing.
-
-        Raises:
-            InputError: the program cannot be started.
-        """
+        """Start the process: soon, where the former one is ending; while it runs, do nothing."""
         if self.state is ProgramState.STOPPING:
             self._next = list(command)
             self._change(

@@ -99,12 +99,7 @@ class SimulatorSetup:
             return None
 
     def begin(self, source: SetupSource) -> None:
-        """Start the set-up, replacing what is there.
-
-        Raises:
-            InputError: the simulator is missing in the module, there are no wheels, or the folder
-                or pip cannot be used.
-        """
+        """Start the set-up, replacing what is there."""
         if self.isRunning:
             raise InputError(_("The simulator is already being set up."))
         words = source.pipArguments()
@@ -127,11 +122,7 @@ class SimulatorSetup:
         self.changed.emit()
 
     def remove(self) -> None:
-        """Remove the private folder with all that was set up.
-
-        Raises:
-            InputError: a set-up is running, or the folder cannot be removed.
-        """
+        """Remove the private folder with all that was set up."""
         if self.isRunning:
             raise InputError(_("Cancel the set-up first."))
         discard(self.folder)
@@ -231,11 +222,7 @@ REMOVED = ".removed-"
 
 
 def discard(folder: Path) -> None:
-    """Remove a folder: at once from its place, and soon from the disk; none is no error.
-
-    Raises:
-        InputError: something in it is in use, or it is not ours to remove.
-    """
+    """Remove a folder: at once from its place, and soon from the disk; none is no error."""
     if not folder.exists():
         return
     aside = folder.with_name(f"{folder.name}{REMOVED}{uuid.uuid4().hex}")

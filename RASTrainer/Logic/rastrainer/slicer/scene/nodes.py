@@ -70,12 +70,10 @@ def changedOnce(node: Any) -> Iterator[None]:
 
 
 def findNode(scene: Any, className: str, role: str) -> Any | None:
-    """Return the first node of the class with the role, or None."""
     return next(iter(nodesOf(scene, className, role)), None)
 
 
 def nodesOf(scene: Any, className: str, role: str) -> list[Any]:
-    """Return all nodes of the class with the role, in the scene's order."""
     nodes = nodesOfClass(scene, className)
     return [node for node in nodes if node.GetAttribute(ROLE_ATTRIBUTE) == role]
 
@@ -88,7 +86,6 @@ def nodesOfClass(scene: Any, className: str) -> list[Any]:
 
 
 def removeNode(scene: Any, className: str, role: str) -> None:
-    """Remove the node of the class with the role, where there is one."""
     node = findNode(scene, className, role)
     if node is not None:
         scene.RemoveNode(node)
@@ -112,12 +109,10 @@ CONTENT_ATTRIBUTE = "RASTrainer.content"
 
 
 def isShown(node: Any, attribute: str, name: str, content: str) -> bool:
-    """Return whether a node shows this content of this name."""
     return (node.GetAttribute(attribute), node.GetAttribute(CONTENT_ATTRIBUTE)) == (name, content)
 
 
 def noteShown(node: Any, attribute: str, name: str, content: str) -> None:
-    """Note what a node shows from now on."""
     node.SetAttribute(attribute, name)
     node.SetAttribute(CONTENT_ATTRIBUTE, content)
 
@@ -138,7 +133,6 @@ def surfaceOf(model: Any | None) -> tuple:
 
 
 def labelsOf(node: Any) -> tuple[str, ...]:
-    """Return the labels of a `vtkMRMLMarkupsNode`."""
     return tuple(labelOf(node, i) for i in range(node.GetNumberOfControlPoints()))
 
 
@@ -148,7 +142,6 @@ def labelOf(node: Any, index: int) -> str:
 
 
 def isUsed(node: Any, index: int) -> bool:
-    """Return whether Slicer would use one point: whether it is placed and selected."""
     isPlaced = node.GetNthControlPointPositionStatus(index) == node.PositionDefined
     return isPlaced and bool(node.GetNthControlPointSelected(index))
 
@@ -170,9 +163,6 @@ def usedPoints(node: Any, points: np.ndarray, labels: tuple[str, ...]) -> PointL
         node: the list.
         points: (n, 3) float, mm, in the frame to be used.
         labels: of all points.
-
-    Raises:
-        InputError: it would use none, or the labels are ambiguous.
     """
     unused = {row: label for row, label in enumerate(labels) if not isUsed(node, row)}
     rows = [row for row in range(len(labels)) if row not in unused]
@@ -322,11 +312,7 @@ def _node(scene: Any, className: str, role: str, name: str) -> Any:
 
 
 def decodedText(text: str | bytes | None) -> str:
-    """Return the text, empty where there is none.
-
-    Raises:
-        InputError: it is not UTF-8.
-    """
+    """Return the text, empty where there is none."""
     if isinstance(text, bytes):
         raise InputError("The text must be encoded in UTF-8.")
     return text or ""

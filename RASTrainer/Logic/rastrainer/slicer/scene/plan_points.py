@@ -56,7 +56,6 @@ class PlanPoints:
         self._changes: list[_Change] = []
 
     def newTarget(self) -> Any:
-        """Return the list to which the next click adds a target."""
         node = findOrAddNode(self._scene, LIST, Role.PLAN_TARGET, _("Planned target"))
         return self._readyToPlace(node)
 
@@ -72,11 +71,7 @@ class PlanPoints:
         return self._readyToPlace(node)
 
     def remove(self, node: Any | None, row: int = -1) -> None:
-        """Remove one of a node's placed points, the last where left out.
-
-        Raises:
-            InputError: there is no such point, or the points are not the user's to remove.
-        """
+        """Remove one of a node's placed points, the last where left out."""
         problem = whyNotRemoved(node)
         if node is None or problem:
             raise InputError(problem)

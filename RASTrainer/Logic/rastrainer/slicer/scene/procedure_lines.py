@@ -49,7 +49,6 @@ NO_GO_COLOR = (0.8, 0.2, 0.2)
 
 
 def planLines(scene: Any) -> list[Any]:
-    """Return the lines of the plan, in the order in which they are carried out."""
     lines = nodesOf(scene, LINE, Role.PLAN_LINE)
     return sorted(lines, key=lambda line: _number(line.GetAttribute(ORDER_ATTRIBUTE), LAST))
 
@@ -166,7 +165,6 @@ def checkpointList(scene: Any) -> Any:
 
 
 def noGoNodes(scene: Any) -> list[Any]:
-    """Return the models and segmentations that are no-go structures."""
     nodes = [*nodesOfClass(scene, MODEL), *nodesOfClass(scene, SEGMENTATION)]
     return [node for node in nodes if isNoGo(node)]
 

@@ -97,9 +97,6 @@ def readPairs(moving: Any, fixed: Any, choices: Choices) -> Pairs:
     """Return the pairs of two `vtkMRMLMarkupsNode`, by label where both lists are labeled.
 
     Fixed points that were not touched yet are allowed: a trial may be running.
-
-    Raises:
-        InputError: a list is empty, or its points do not pair up.
     """
     for node, words in ((moving, _("moving")), (fixed, _("fixed"))):
         if node is None:

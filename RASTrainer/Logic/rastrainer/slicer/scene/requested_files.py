@@ -55,7 +55,6 @@ def isFileShown(node: Any | None, scenario: str, path: Path | None) -> bool:
 
 
 def requestFile(node: Any, scenario: str, path: Path) -> None:
-    """Have a node show a file of a scenario, once a `FileLoader` has read it."""
     noteShown(node, SCENARIO_ATTRIBUTE, scenario, stampOf(path))
     node.SetAttribute(FILE_ATTRIBUTE, str(path))
 

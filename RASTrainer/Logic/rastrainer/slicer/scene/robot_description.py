@@ -22,11 +22,7 @@ MAX_BYTES = 4 << 20
 
 
 def readUrdf(path: Path) -> Element:
-    """Return the root of a URDF file.
-
-    Raises:
-        InputError: the file is missing, too large or not well-formed.
-    """
+    """Return the root of a URDF file."""
     content = plain_xml(read_bytes(path, MAX_BYTES), f"The URDF {path}")
     try:
         return ElementTree.fromstring(content)
@@ -120,11 +116,7 @@ class ArmChain:
 
 
 def readArmChain(urdf: Path) -> ArmChain:
-    """Read the chain of a robot without branches.
-
-    Raises:
-        InputError: the file cannot be used, or its joints are no chain of turning and fixed ones.
-    """
+    """Read the chain of a robot without branches."""
     root = readUrdf(urdf)
     try:
         joints = {attribute(joint, "parent", "link"): joint for joint in root.findall("joint")}
@@ -186,9 +178,6 @@ def readLinkMeshes(folder: Path, progress: Progress = no_progress) -> tuple[Link
     """Return the surfaces of links 0 to 7 of the robot in a folder.
 
     VTK's filters take half a second: `READ_LINKS` names this for a separate process.
-
-    Raises:
-        InputError: the folder's URDF or a mesh cannot be used.
     """
     meshes: list[LinkMesh] = []
     for shells in _readShells(folder):
@@ -239,7 +228,6 @@ def _shellsOf(
 
 
 def _merged(shells: list[Shell]) -> LinkMesh:
-    """Return the meshes of a link in one, each with its color at its points."""
     parts, first = [], 0
     for shell in shells:
         points, normals, triangles = _smooth(shell)

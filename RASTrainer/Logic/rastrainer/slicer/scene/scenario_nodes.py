@@ -82,9 +82,6 @@ def showTask(
     """Show the fiducials of a task, in RAS mm, and return their `vtkMRMLMarkupsFiducialNode`.
 
     Of a trial by another method the landmarks that it has touched are shown instead.
-
-    Raises:
-        InputError: the scenario has no task of that name, or too few landmarks.
     """
     task = task_by_method(scenario, taskName, method)
     node = findOrAddNode(

@@ -213,9 +213,6 @@ def standings(
         study: of the trial.
         trial: with its results.
         cohort: of another study, such as the published one; its times and FRE are known.
-
-    Raises:
-        InputError: the study cannot be read.
     """
     record = trial.record
     outcomes = study.outcomes(record.task, record.mode)
@@ -241,7 +238,6 @@ def showScore(scene: Any, rows: Sequence[Row]) -> Any:
 
 
 def showMotion(scene: Any, rows: Sequence[Row]) -> Any:
-    """Show motion metrics in a `vtkMRMLTableNode` and return it."""
     return _showRows(scene, Role.MOTION, "Motion metrics", rows)
 
 

@@ -246,11 +246,7 @@ _LINES = {
 
 
 def showCalibration(scene: Any, found: TreCalibration) -> Any:
-    """Plot true over expected TRE in a `vtkMRMLPlotChartNode` and return it.
-
-    Raises:
-        InputError: scipy is missing.
-    """
+    """Plot true over expected TRE in a `vtkMRMLPlotChartNode` and return it."""
     end = 1.1 * max((point.expected_mm for point in found.points), default=1.0)
     table, identity = _showCalibrationTable(scene, found), _showIdentity(scene, end)
     chart = findOrAddNode(
@@ -295,7 +291,6 @@ def _showCalibrationTable(scene: Any, found: TreCalibration) -> Any:
 
 
 def _showIdentity(scene: Any, end: float) -> Any:
-    """Show the ends of the line on which the true error is the expected one."""
     columns = [Column(name, [0.0, end]) for name in (EXPECTED, TRUE)]
     return showTable(scene, f"{Role.CALIBRATION} line", "True equals expected TRE", columns)
 

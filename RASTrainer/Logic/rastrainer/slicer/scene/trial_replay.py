@@ -65,9 +65,6 @@ def showReplay(
 
     Returns:
         The `vtkMRMLSequenceBrowserNode`, at the first sample.
-
-    Raises:
-        InputError: the trial was recorded with another robot, or the scene was closed meanwhile.
     """
     trajectory = track.trajectory
     rows = _rows(trajectory.times_s)
@@ -176,7 +173,6 @@ def moment(scene: Any) -> tuple[float, str] | None:
 
 
 def findReplay(scene: Any) -> Any | None:
-    """Return the browser of the replay that is in the scene, or None."""
     return findNode(scene, "vtkMRMLSequenceBrowserNode", _role("browser"))
 
 
@@ -199,7 +195,6 @@ def isReplayOf(scene: Any, trialId: str) -> bool:
 
 
 def stopReplay(scene: Any) -> None:
-    """Stop playback."""
     browser = findReplay(scene)
     if browser is not None:
         browser.SetPlaybackActive(False)

@@ -49,7 +49,6 @@ def showTouches(scene: Any, record: TrialRecord) -> Any:
 
 
 def noteTouchedTask(scene: Any, scenario: str, task: str, method: RegistrationMethod) -> None:
-    """Note which task the touches that are shown belong to, and by which method."""
     node = capturedPointsNode(scene)
     node.SetAttribute(TASK_ATTRIBUTE, taskKey(scenario, task))
     node.SetAttribute(TRACED_ATTRIBUTE, method.value if method in TRACED_METHODS else None)
@@ -78,11 +77,7 @@ def forgetStoredTouches(scene: Any) -> None:
 
 
 def checkSameTask(moving: Any | None, fixed: Any | None) -> None:
-    """Check that two lists do not belong to different tasks; a user's list belongs to none.
-
-    Raises:
-        InputError: they do, or the touches are landmarks that only begin a registration.
-    """
+    """Check that two lists do not belong to different tasks; a user's list belongs to none."""
     if moving is not None and moving.GetAttribute(TRACED_ATTRIBUTE):
         raise InputError(
             _(
@@ -194,11 +189,7 @@ def followPlacement(scene: Any) -> None:
 
 
 def showTrial(scene: Any, scenario: Scenario, analysis: TrialAnalysis) -> None:
-    """Replace what the scene shows by this trial; the touches are those of its record.
-
-    Raises:
-        InputError: the scenario's files cannot be used.
-    """
+    """Replace what the scene shows by this trial; the touches are those of its record."""
     showScenario(scene, scenario)
     record = analysis.record
     fixed = showTask(scene, scenario, record.task, record.method)

@@ -102,11 +102,7 @@ class Curriculum:
 
 
 def read_curriculum(path: Path | str) -> Curriculum:
-    """Read a curriculum's file.
-
-    Raises:
-        InputError: the file is unusable; the message names the field.
-    """
+    """Read a curriculum's file."""
     return _curriculum(read_fields(Path(path)))
 
 

@@ -62,7 +62,6 @@ class AssignmentMessage:
 
     @property
     def is_reached(self) -> bool:
-        """Whether its goal is reached."""
         return self.state == AssignmentState.REACHED.value
 
     @property
@@ -111,7 +110,6 @@ class CurriculumMessage:
 
     @classmethod
     def from_arguments(cls, arguments: Mapping[str, Any]) -> CurriculumMessage:
-        """Return the message in checked command arguments."""
         assignments = tuple(AssignmentMessage(**each) for each in arguments["assignments"])
         return cls(**{**arguments, "assignments": assignments})
 
@@ -134,9 +132,7 @@ class CurriculumMessage:
 
     @property
     def reached(self) -> int:
-        """How many assignments are reached."""
         return sum(each.is_reached for each in self.assignments)
 
     def find(self, name: str) -> AssignmentMessage | None:
-        """Return the assignment of a name; None where there is none."""
         return next((each for each in self.assignments if each.name == name), None)

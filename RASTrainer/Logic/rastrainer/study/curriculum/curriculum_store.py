@@ -75,9 +75,6 @@ class CurriculumStore:
         """Have a trainee, or by "" all present and future ones, follow a curriculum or none.
 
         What was chosen last counts: a choice for everybody ends those for single trainees.
-
-        Raises:
-            InputError: an unknown trainee, or the study has no mark for an assignment without one.
         """
         if curriculum is not None:
             self._check_marks(curriculum)
@@ -112,11 +109,7 @@ class CurriculumStore:
         return tuple(CurriculumChoice(name, _read(text), utc) for name, text, utc in rows)
 
     def standing(self, pseudonym: str) -> CurriculumStanding | None:
-        """Return the standing of a trainee; None without a curriculum.
-
-        Raises:
-            InputError: an unknown trainee.
-        """
+        """Return the standing of a trainee; None without a curriculum."""
         return self._standing(pseudonym, StudyProgress(self._study).protocol())
 
     def stamps(self) -> dict[str, tuple[int | None, ...]]:
@@ -160,11 +153,7 @@ def _read(text: str | None) -> Curriculum | None:
 
 
 def counted_trials(connection: Connection, pseudonym: str) -> tuple[CountedTrial, ...]:
-    """Return a trainee's trials in order of starting; in the caller's transaction.
-
-    Raises:
-        InputError: an unknown trainee.
-    """
+    """Return a trainee's trials in order of starting; in the caller's transaction."""
     study_trainees.find(connection, pseudonym)
     rows = connection.execute(
         f"SELECT started_utc, trials.stored_utc, task, mode, scenario, {METHOD}, "

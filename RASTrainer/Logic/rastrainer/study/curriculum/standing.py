@@ -125,7 +125,6 @@ class CurriculumStanding:
 
     @property
     def reached(self) -> int:
-        """How many assignments are reached."""
         return sum(each.state is AssignmentState.REACHED for each in self.standings)
 
     @property

@@ -73,9 +73,6 @@ class AbortedTrials:
         """Return what progress is computed from, as started: scored trials and failures.
 
         Failures are aborted trials with a touch, and trials that can have no score.
-
-        Raises:
-            InputError: the study has no trainee of this pseudonym.
         """
         with self._database.reading() as connection:
             scored = study_trials.past_trials(connection, pseudonym)

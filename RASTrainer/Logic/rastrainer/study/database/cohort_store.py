@@ -65,9 +65,6 @@ class CohortStore:
         Args:
             plan: Everything that the trials follow from; JSON.
             planned_trials: Number of trials.
-
-        Raises:
-            InputError: the study is not a virtual cohort, or has another plan.
         """
         with self._database.writing() as connection:
             row = connection.execute("SELECT plan_json FROM cohort").fetchone()

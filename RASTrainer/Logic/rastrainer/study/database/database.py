@@ -85,11 +85,7 @@ StudyPlace = Path | PostgresAddress
 
 
 def study_place(place: str | os.PathLike[str] | PostgresAddress) -> StudyPlace:
-    """Return where a study is, from what a user has entered.
-
-    Raises:
-        InputError: an address of PostgreSQL that cannot be used, with what would be right.
-    """
+    """Return where a study is, from what a user has entered."""
     if isinstance(place, PostgresAddress):
         return place
     text = os.fspath(place)
@@ -148,9 +144,6 @@ def path_beside_study(place: StudyPlace) -> Path:
 
     That of the study's file; for a study in PostgreSQL one in the user's own folder, by its
     address.
-
-    Raises:
-        InputError: that folder cannot be made.
     """
     if isinstance(place, Path):
         return place

@@ -110,11 +110,7 @@ def find_driver_in(folder: Path) -> None:
 
 
 def postgres_driver() -> ModuleType:
-    """Return the module `psycopg`.
-
-    Raises:
-        InputError: it is not installed.
-    """
+    """Return the module `psycopg`."""
     searched = [str(folder) for folder in _folders if folder.is_dir()]
     # Last, and only meanwhile: nothing else of Slicer finds what is in the simulator's folder.
     sys.path.extend(searched)

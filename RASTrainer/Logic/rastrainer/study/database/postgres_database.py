@@ -91,12 +91,7 @@ def check_server(connection: Any, address: PostgresAddress) -> None:
 
 
 def holds_study(connection: Any, address: PostgresAddress) -> bool:
-    """Return whether a database has a study; an empty one has none.
-
-    Raises:
-        InputError: the database is another program's, of another version of the schema, or runs
-            commands of its own.
-    """
+    """Return whether a database has a study; an empty one has none."""
     if _first(connection, _COMMANDS):
         raise InputError(
             f"The study {address} contains triggers, views, rules or policies, which no study of "
@@ -153,11 +148,9 @@ class PostgresStatements:
         self._connection = connection
 
     def execute(self, sql: str, parameters: Sequence[Any] = (), /) -> Rows:
-        """Execute a statement with `?` for each parameter."""
         return self._connection.execute(portable_to_postgres(sql), parameters)
 
     def executemany(self, sql: str, parameters: Iterable[Sequence[Any]], /) -> None:
-        """Execute a statement for each of several sequences of parameters."""
         with self._connection.cursor() as cursor:
             cursor.executemany(portable_to_postgres(sql), parameters)
 

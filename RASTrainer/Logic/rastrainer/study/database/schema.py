@@ -247,7 +247,6 @@ def study_tables() -> tuple[Table, ...]:
 
 
 def has_numbered_rows(statement: str) -> bool:
-    """Return whether a statement creates a table whose rows SQLite numbers, in `rowid`."""
     is_unnumbered = "INTEGER PRIMARY KEY" in statement or "WITHOUT ROWID" in statement
     return _CREATE.match(statement) is not None and not is_unnumbered
 

@@ -61,13 +61,11 @@ class SqliteDatabase(StudyDatabase):
 
     @contextmanager
     def reading(self) -> Iterator[sqlite3.Connection]:
-        """Yield the connection for several reads of one state."""
         with self._transaction("BEGIN") as connection:
             yield connection
 
     @contextmanager
     def writing(self) -> Iterator[sqlite3.Connection]:
-        """Yield the connection for changes in one transaction; see `StudyDatabase`."""
         with self._transaction("BEGIN IMMEDIATE") as connection:
             yield connection
 

@@ -97,7 +97,6 @@ class Study:
         self.close()
 
     def close(self) -> None:
-        """Close the study."""
         self._database.close()
 
     @property
@@ -106,11 +105,7 @@ class Study:
         return self._database
 
     def create_trainee(self, pseudonym: str | None = None, consent: bool = False) -> Trainee:
-        """Add a trainee, by default under the next free pseudonym (`T001`, `T002`, …).
-
-        Raises:
-            InputError: the pseudonym is taken, or cannot be one; see `json_checks.pseudonym`.
-        """
+        """Add a trainee, by default under the next free pseudonym (`T001`, `T002`, …)."""
         with self._database.writing() as connection:
             return study_trainees.create(connection, pseudonym, consent)
 
@@ -120,7 +115,6 @@ class Study:
             return study_trainees.next_pseudonym(connection)
 
     def trainees(self, archived: bool = False) -> tuple[Trainee, ...]:
-        """Return active or archived trainees, by pseudonym."""
         with self._database.reading() as connection:
             return study_trainees.listed(connection, archived)
 
@@ -143,9 +137,6 @@ class Study:
         """Delete a trainee with all trials and results for good; return the number of trials.
 
         `add_trial` refuses these trials from now on.
-
-        Raises:
-            InputError: an unknown trainee.
         """
         self._read_trials.clear()
         with self._database.writing() as connection:
@@ -204,11 +195,7 @@ class Study:
         score: TrialScore | None = None,
         procedure: ProcedureOutcome | None = None,
     ) -> None:
-        """Add results of a stored trial; the latest ones count.
-
-        Raises:
-            InputError: an unknown trial.
-        """
+        """Add results of a stored trial; the latest ones count."""
         with self._database.writing() as connection:
             study_trials.add_results(
                 connection, trial_id, registrations, target_errors or {}, score, procedure
@@ -221,19 +208,12 @@ class Study:
             trial_id: UUID of a stored trial.
             true_tre_mm: True error at the scenario's target.
             head_to_world: 16 numbers row by row, RAS to `World`, mm.
-
-        Raises:
-            InputError: an unknown trial, or the numbers are not finite.
         """
         with self._database.writing() as connection:
             study_trials.set_truth(connection, trial_id, true_tre_mm, head_to_world)
 
     def set_motion(self, trial_id: str, motion: Mapping[str, float]) -> None:
-        """Store the motion metrics of a trial by name; only the first ones count.
-
-        Raises:
-            InputError: an unknown trial, or a metric is not finite.
-        """
+        """Store the motion metrics of a trial by name; only the first ones count."""
         with self._database.writing() as connection:
             study_trials.set_motion(connection, trial_id, motion)
 
@@ -248,25 +228,16 @@ class Study:
             return study_trials.is_revealed(connection, trial_id)
 
     def history(self, pseudonym: str) -> tuple[StoredTrial, ...]:
-        """Return all trials of a trainee in order of starting.
-
-        Raises:
-            InputError: an unknown trainee.
-        """
+        """Return all trials of a trainee in order of starting."""
         with self._database.reading() as connection:
             return study_trials.history(connection, pseudonym, self._read_trials)
 
     def past_trials(self, pseudonym: str) -> tuple[PastTrial, ...]:
-        """Return the scored trials, without trial runs, from which progress is computed.
-
-        Raises:
-            InputError: an unknown trainee.
-        """
+        """Return the scored trials, without trial runs, from which progress is computed."""
         with self._database.reading() as connection:
             return study_trials.past_trials(connection, pseudonym)
 
     def outcomes(self, task: str, mode: str) -> tuple[TrialOutcome, ...]:
-        """Return the outcomes of all trials of a task and mode, in order of storing."""
         with self._database.reading() as connection:
             return study_trials.outcomes(connection, task, mode)
 

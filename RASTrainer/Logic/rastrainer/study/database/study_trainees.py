@@ -74,7 +74,6 @@ def create_where_missing(connection: Connection, pseudonym: str, consent: bool) 
 
 
 def exists(connection: Connection, pseudonym: str) -> bool:
-    """Return whether the study has a trainee."""
     return connection.execute(TRAINEE_ID, (pseudonym,)).fetchone() is not None
 
 

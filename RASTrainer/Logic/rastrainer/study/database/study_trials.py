@@ -164,13 +164,11 @@ def set_motion(connection: Connection, trial_id: str, motion: Mapping[str, float
 
 
 def exists(connection: Connection, trial_id: str) -> bool:
-    """Return whether a trial is stored."""
     query = "SELECT 1 FROM trials WHERE trial_id = ?"
     return connection.execute(query, (trial_id,)).fetchone() is not None
 
 
 def is_revealed(connection: Connection, trial_id: str) -> bool:
-    """Return whether the truth of a trial is stored."""
     query = "SELECT 1 FROM truths WHERE trial_id = ?"
     return connection.execute(query, (trial_id,)).fetchone() is not None
 

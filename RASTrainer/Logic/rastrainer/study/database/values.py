@@ -94,7 +94,6 @@ class StoredRegistration:
         )
 
     def to_json(self) -> dict[str, Any]:
-        """Return the JSON object that `from_json` reads."""
         return dict(vars(self))
 
     @classmethod
@@ -146,11 +145,9 @@ class StoredProcedure:
 
     @classmethod
     def of(cls, outcome: ProcedureOutcome) -> StoredProcedure:
-        """Return an outcome for storage."""
         return cls(outcome.analysis.to_json(), outcome.score)
 
     def to_json(self) -> dict[str, Any]:
-        """Return the JSON object that `from_json` reads."""
         return {"analysis": dict(self.analysis), "score": self.score.to_json()}
 
     @classmethod
@@ -160,12 +157,10 @@ class StoredProcedure:
 
     @property
     def name(self) -> str:
-        """Name of the procedure in its scenario."""
         return str(self.analysis["procedure"])
 
     @property
     def kind(self) -> str:
-        """A `ProcedureKind`."""
         return str(self.analysis["kind"])
 
     @property

@@ -75,19 +75,12 @@ class Questionnaire:
 
         Args:
             answers: One integer for each item, in order or by name.
-
-        Raises:
-            InputError: an answer is missing, superfluous or out of range.
         """
         values = self.formula(self.checked(answers))
         return {scale.name: value for scale, value in zip(self.scales, values, strict=True)}
 
     def checked(self, answers: Sequence[int] | Mapping[str, int]) -> tuple[int, ...]:
-        """Return the answers in the order of the items.
-
-        Raises:
-            InputError: as `score`.
-        """
+        """Return the answers in the order of the items."""
         names = [item.name for item in self.items]
         if isinstance(answers, Mapping):
             if set(answers) != set(names):

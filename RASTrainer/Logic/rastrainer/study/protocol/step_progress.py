@@ -50,7 +50,6 @@ class StepProgress:
     """A trainee's steps and their outcomes.
 
     Attributes:
-        steps: All steps.
         entries: Of the first steps, in order.
         enrolled_utc: Time of enrollment, ISO 8601.
         practiced_s: Time already practiced in the next step, if it is a trial run, in s.
@@ -67,11 +66,7 @@ class StepProgress:
     def of(
         cls, steps: Sequence[Step], entries: Sequence[StepEntry], enrolled_utc: str = ""
     ) -> StepProgress:
-        """Return the progress described by a log.
-
-        Raises:
-            InputError: the log does not match the steps.
-        """
+        """Return the progress described by a log."""
         if [step.name for step in steps[: len(entries)]] != [entry.step for entry in entries]:
             raise InputError(
                 "The steps done so far do not match this protocol; use the protocol that the "
@@ -113,12 +108,10 @@ class StepProgress:
 
     @property
     def counted_trials(self) -> tuple[str, ...]:
-        """UUIDs of the counted trials, in order."""
         return tuple(e.details["trialId"] for e in self.entries if "trialId" in e.details)
 
     @property
     def skipped(self) -> tuple[StepEntry, ...]:
-        """The skipped steps."""
         return tuple(entry for entry in self.entries if entry.outcome == SKIPPED)
 
     @property
@@ -164,11 +157,7 @@ class StepProgress:
         )
 
     def check_start(self, mode: str, task: str) -> Step:
-        """Return the step of a trial to be started.
-
-        Raises:
-            InputError: another step comes next, or an aborted trial needs a reason.
-        """
+        """Return the step of a trial to be started."""
         step = self._next()
         if step.kind not in (StepKind.TRIAL, StepKind.TRIAL_RUN) or (step.mode, step.task) != (
             mode,
@@ -195,20 +184,12 @@ class StepProgress:
         return {"minutes": _checked_minutes(step, details.get("minutes"))}
 
     def check_skipped(self, step_name: str, reason: str) -> dict[str, Any]:
-        """Return the details to store when a step is skipped.
-
-        Raises:
-            InputError: it is not the next step, or there is no reason.
-        """
+        """Return the details to store when a step is skipped."""
         self.expected(step_name)
         return {"reason": _checked_reason(reason, "A step can be skipped")}
 
     def check_repeat(self, reason: str) -> tuple[Step, str]:
-        """Return the aborted step and the reason to store when it is repeated.
-
-        Raises:
-            InputError: it was not aborted, or there is no reason.
-        """
+        """Return the aborted step and the reason to store when it is repeated."""
         if not self.unexplained:
             raise InputError("The next step was not aborted; it needs no reason to be played.")
         return self._next(), _checked_reason(reason, "An aborted trial can be repeated")

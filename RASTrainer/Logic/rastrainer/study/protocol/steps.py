@@ -120,22 +120,16 @@ def trial_title(task: str, mode: str, method: str, procedure: str) -> str:
 
 
 def steps_for(protocol: StudyProtocol, place: int) -> tuple[Step, ...]:
-    """Return the steps of the trainee enrolled at a place, from 0."""
     return tuple(_steps(protocol, place))
 
 
 def mode_order(protocol: StudyProtocol, place: int) -> tuple[str, ...]:
-    """Return the modes in the order of a trainee."""
     return _ordered(protocol.modes, protocol.mode_order, place)
 
 
 def task_order(
     protocol: StudyProtocol, place: int, mode_index: int, round_: int
 ) -> tuple[str, ...]:
-    """Return the tasks in the order of a trainee's round (from 0) in the mode at an index.
-
-    Trainees with the same order of modes get all orders of tasks in turn.
-    """
     rows = len(williams_design(len(protocol.modes))) if protocol.mode_order == BALANCED else 1
     row = place // rows + mode_index * protocol.repetitions + round_
     return _ordered(protocol.tasks, protocol.task_order, row)
@@ -261,12 +255,10 @@ class StudyStep:
 
     @classmethod
     def from_arguments(cls, arguments: Mapping[str, Any]) -> StudyStep:
-        """Return the step in checked command arguments."""
         return cls(**arguments)
 
     @property
     def is_played(self) -> bool:
-        """Whether it is a trial or trial run."""
         return self.kind in (StepKind.TRIAL.value, StepKind.TRIAL_RUN.value)
 
     def left_s(self, passed_s: float = 0.0) -> float:
@@ -299,11 +291,7 @@ class StepAnswers:
 
     @classmethod
     def from_json(cls, value: Mapping[str, Any]) -> StepAnswers:
-        """Return the answers in a JSON object.
-
-        Raises:
-            InputError: it does not have one allowed answer for each item.
-        """
+        """Return the answers in a JSON object."""
         fields = Fields(dict(value), Path("StepAnswered"))
         questionnaire = find_questionnaire(fields.text("questionnaire", 40))
         answers = value.get("answers")
@@ -317,10 +305,8 @@ class StepAnswers:
         )
 
     def to_json(self) -> dict[str, Any]:
-        """Return the JSON object that `from_json` reads."""
         return asdict(self) | {"answers": list(self.answers)}
 
     def belong_to(self, step: StudyStep) -> bool:
-        """Return whether these are answers to a step."""
         answered = (self.trainee, self.number, self.questionnaire)
         return answered == (step.trainee, step.number, step.questionnaire)

@@ -50,11 +50,7 @@ class StudyProgress:
         self._database = study.database
 
     def set_protocol(self, protocol: StudyProtocol) -> None:
-        """Set the study's protocol; the same one again changes nothing.
-
-        Raises:
-            InputError: the study has another one; it cannot change during the study.
-        """
+        """Set the study's protocol; the same one again changes nothing."""
         with self._database.writing() as connection:
             stored = _protocol(connection)
             if stored is None:
@@ -76,9 +72,6 @@ class StudyProgress:
 
         The place determines the order of modes and tasks. The place of a deleted trainee is reused,
         so the orders stay balanced.
-
-        Raises:
-            InputError: an unknown trainee, or the study has no protocol.
         """
         with self._database.writing() as connection:
             _require_protocol(connection)
@@ -94,11 +87,7 @@ class StudyProgress:
             return place
 
     def progress(self, pseudonym: str) -> StepProgress:
-        """Return the progress of a trainee.
-
-        Raises:
-            InputError: the trainee is not enrolled, or the study has no protocol.
-        """
+        """Return the progress of a trainee."""
         with self._database.reading() as connection:
             return _progress(connection, pseudonym)
 
@@ -112,9 +101,6 @@ class StudyProgress:
             step: Name of the next step.
             details: `trialId` of a stored trial, `answers` of a questionnaire, or `minutes` of a
                 trial run or break.
-
-        Raises:
-            InputError: it is not the next step, or the details are invalid.
         """
         with self._database.writing() as connection:
             progress = _progress(connection, pseudonym)
@@ -126,22 +112,14 @@ class StudyProgress:
             return _progress(connection, pseudonym)
 
     def skip(self, pseudonym: str, step: str, reason: str) -> StepProgress:
-        """Skip the next step for a reason and return the new progress.
-
-        Raises:
-            InputError: it is not the next step, or there is no reason of at least ten characters.
-        """
+        """Skip the next step for a reason and return the new progress."""
         with self._database.writing() as connection:
             checked = _progress(connection, pseudonym).check_skipped(step, reason)
             _store(connection, pseudonym, step, SKIPPED, checked)
             return _progress(connection, pseudonym)
 
     def explain_repeat(self, pseudonym: str, reason: str) -> StepProgress:
-        """Store why the next step is repeated after an abort; return the new progress.
-
-        Raises:
-            InputError: it was not aborted, or there is no reason of at least ten characters.
-        """
+        """Store why the next step is repeated after an abort; return the new progress."""
         with self._database.writing() as connection:
             progress = _progress(connection, pseudonym)
             step, checked = progress.check_repeat(reason)
@@ -150,11 +128,7 @@ class StudyProgress:
             return _progress(connection, pseudonym)
 
     def practice(self, pseudonym: str, step: str, seconds: float) -> None:
-        """Add to the practiced time of the next step, a trial run.
-
-        Raises:
-            InputError: it is not the next step, or no trial run.
-        """
+        """Add to the practiced time of the next step, a trial run."""
         with self._database.writing() as connection:
             next_step = _progress(connection, pseudonym).next_step
             if (

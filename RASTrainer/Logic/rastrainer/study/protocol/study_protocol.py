@@ -68,7 +68,6 @@ class StudyProtocol:
         repetitions: How often each task is done in each mode, round by round.
         trial_run_min: Length of the trial run at the start of each mode, in min; 0 for none.
         break_between_modes_min: At least so long, in min; 0 for none.
-        break_between_tasks_min: The same between tasks.
         questionnaires: When each one is answered.
         references: Of the score, by task; a task without one has that of the scenario.
         pass_mark: Score that passes; None where the protocol sets none and the default holds.
@@ -164,11 +163,7 @@ def pass_mark_of(
 
 
 def read_study_protocol(path: Path | str) -> StudyProtocol:
-    """Read a protocol file.
-
-    Raises:
-        InputError: the file is unusable; the message names the field.
-    """
+    """Read a protocol file."""
     return _protocol(read_fields(Path(path)))
 
 
@@ -178,7 +173,6 @@ def study_protocol_from_json(value: Any) -> StudyProtocol:
 
 
 def protocol_text(protocol: StudyProtocol) -> str:
-    """Return the text of a protocol's file."""
     return json.dumps(protocol.to_json(), indent=2, ensure_ascii=False) + "\n"
 
 

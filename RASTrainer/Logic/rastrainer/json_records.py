@@ -1,0 +1,210 @@
+"""Records as JSON: annotated dataclasses, read from untrusted JSON and written.
+
+A field's annotation holds its check, and its key is its name in camel case:
+
+    @dataclass(frozen=True)
+    class TouchedPoint:
+        label: str
+        position_mm: Annotated[tuple[float, float, float], numbers(3, WORLD_LIMIT_MM, "mm")]
+        sim_time_s: Annotated[float, number(0, TIME_LIMIT_S, "s")]
+
+A plain `str` is a text of `json_checks.text()`. `bool`, enums, `Literal`, other records, `X | None`
+and `tuple[X, ...]` of these need no check; all else does. A check sees the decoded JSON; enums and
+records are made of what it accepts. Rules that concern several fields stand in `__post_init__`,
+which raises `InputError`.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, dataclass, fields, is_dataclass
+from enum import Enum
+from functools import cache
+from typing import (
+    Annotated,
+    Any,
+    Literal,
+    TypeVar,
+    cast,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
+
+import numpy as np
+
+from rastrainer import json_checks
+from rastrainer.errors import InputError
+
+T = TypeVar("T")
+Reader = Callable[[Any, str, bool], Any]
+"""Makes a field's value of decoded JSON; it is given the place for errors, and `only_known`."""
+
+
+@dataclass(frozen=True)
+class RecordField:
+    """One field of a record.
+
+    Attributes:
+        hint: Annotation, with checks.
+        default: Returns the value where the key is left out; None where the key is required.
+    """
+
+    name: str
+    key: str
+    hint: Any
+    read: Reader
+    default: Callable[[], Any] | None
+
+
+def record_from_json(kind: type[T], value: object, what: str, only_known: bool = False) -> T:
+    """Return the record that a decoded JSON object holds.
+
+    Args:
+        kind: the dataclass.
+        value: the decoded object.
+        what: begins the sentence of an error, such as "The trial record" or a file's name.
+        only_known: whether keys that the record does not have are refused, as in files that people
+            write: one that is misspelled must not be without effect. Programs of other versions
+            may send more.
+    """
+    return _read_record(kind, value, what, f"{what}: ", only_known)
+
+
+def _read_record(kind: type[T], value: object, what: str, before: str, only_known: bool) -> T:
+    """Read a record; `before` stands before a key in the sentence of an error."""
+    if not isinstance(value, Mapping):
+        raise InputError(f"{what} must be a JSON object.")
+    known = record_fields(cast("Any", kind))
+    unknown = sorted(str(key) for key in set(value) - {each.key for each in known})
+    if only_known and unknown:
+        keys = ", ".join(each.key for each in known)
+        raise InputError(f"{what}: there is no {json.dumps(unknown[0][:40])}; use {keys}.")
+    values = {}
+    for each in known:
+        if each.key in value:
+            values[each.name] = each.read(value[each.key], f"{before}{each.key}", only_known)
+        elif each.default is None:
+            raise InputError(f"{what} needs the key {json.dumps(each.key)}.")
+    return kind(**values)
+
+
+def record_to_json(record: Any, with_defaults: bool = False) -> dict[str, Any]:
+    """Return the JSON object that `record_from_json` reads.
+
+    Fields that hold their default are left out, unless `with_defaults`.
+    """
+    values = {}
+    for each in record_fields(cast("Any", type(record))):
+        value = getattr(record, each.name)
+        if with_defaults or each.default is None or not _are_equal(value, each.default()):
+            values[each.key] = _plain(value, with_defaults)
+    return values
+
+
+@cache
+def record_fields(kind: Any) -> tuple[RecordField, ...]:
+    """Return the fields that a dataclass has in JSON, in their order."""
+    hints = get_type_hints(kind, include_extras=True)
+    return tuple(
+        RecordField(
+            each.name,
+            camel_case(each.name),
+            hints[each.name],
+            _reader(hints[each.name], f"{kind.__name__}.{each.name}"),
+            _default(each),
+        )
+        for each in fields(cast("Any", kind))
+        if each.init
+    )
+
+
+def camel_case(name: str) -> str:
+    """Return the key of a field: `sim_time_s` is `simTimeS`."""
+    first, *others = name.split("_")
+    return first + "".join(word[:1].upper() + word[1:] for word in others)
+
+
+def _default(each: Any) -> Callable[[], Any] | None:
+    if each.default is not MISSING:
+        return lambda: each.default
+    return None if each.default_factory is MISSING else each.default_factory
+
+
+def _reader(hint: Any, name: str) -> Reader:
+    """Return what reads values of an annotation; `name` is the field's, for developers."""
+    kind, *marks = get_args(hint) if get_origin(hint) is Annotated else (hint,)
+    checks = [mark for mark in marks if callable(mark)]
+    parts = get_args(kind)
+    is_optional = type(None) in parts
+    if is_optional:
+        (kind,) = (part for part in parts if part is not type(None))
+    build = _builder(kind, name)
+    if build is None and not checks:
+        if kind not in _CHECKS:
+            raise TypeError(f"{name}: {kind} needs a check.")
+        checks = [_CHECKS[kind]]
+
+    def read(value: Any, place: str, only_known: bool) -> Any:
+        if value is None and is_optional:
+            return None
+        for check in checks:
+            value = json_checks.accepted(check, value, place)
+        return build(value, place, only_known) if build else value
+
+    return read
+
+
+_CHECKS: dict[Any, Callable[[Any], Any]] = {str: json_checks.text(), bool: json_checks.yes_or_no}
+
+
+def _builder(kind: Any, name: str) -> Reader | None:
+    """Return what makes a value of a type; None where the accepted value is that value."""
+    origin, parts = get_origin(kind), get_args(kind)
+    if isinstance(kind, type) and is_dataclass(kind):
+        return lambda value, place, only_known: (
+            value
+            if isinstance(value, kind)
+            else _read_record(kind, value, place, f"{place}.", only_known)
+        )
+    if origin is Literal:
+        choose = json_checks.one_of(*parts)
+        return lambda value, place, _: json_checks.accepted(choose, value, place)
+    if isinstance(kind, type) and issubclass(kind, Enum):
+        choose = json_checks.one_of(*(str(each.value) for each in kind))
+        return lambda value, place, _: (
+            value if isinstance(value, kind) else kind(json_checks.accepted(choose, value, place))
+        )
+    is_list = origin is tuple and len(parts) == 2 and parts[1] is ...
+    if is_list and (get_origin(parts[0]) is Annotated or _builder(parts[0], name)):
+        read_item = _reader(parts[0], name)
+
+        def read_items(value: Any, place: str, only_known: bool) -> Any:
+            if not isinstance(value, (list, tuple)):
+                raise InputError(f"{place} must be a list.")
+            items = enumerate(value)
+            return tuple(read_item(item, f"{place}[{index}]", only_known) for index, item in items)
+
+        return read_items
+    return None
+
+
+def _plain(value: Any, with_defaults: bool) -> Any:
+    if is_dataclass(value):
+        return record_to_json(value, with_defaults)
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, (np.ndarray, np.generic)):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item, with_defaults) for key, item in value.items()}
+    if isinstance(value, (tuple, list)):
+        return [_plain(item, with_defaults) for item in value]
+    return value
+
+
+def _are_equal(value: Any, default: Any) -> bool:
+    if isinstance(value, np.ndarray) or isinstance(default, np.ndarray):
+        return np.array_equal(value, default)
+    return value is default or (type(value) is type(default) and value == default)
