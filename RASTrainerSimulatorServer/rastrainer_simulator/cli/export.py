@@ -5,11 +5,13 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 from pathlib import Path
+from urllib.parse import urlsplit
 
 from rastrainer.errors import InputError
 from rastrainer.files.writing import make_empty_folder, write_text
 from rastrainer.journal.recording import read_trajectory
-from rastrainer.json_checks import accepted
+from rastrainer.number_text import counted
+from rastrainer.protocol import Mode, RegistrationMethod
 from rastrainer.report.published_tables import with_ctps
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
@@ -25,10 +27,10 @@ from rastrainer.study.tidy_csv import (
     touches_csv,
     trials_csv,
 )
-from rastrainer_simulator.cli.options import add_config, add_incomplete, add_study, read_known_study
+from rastrainer_simulator.cli.options import add_incomplete, add_study, read_known_study
+from rastrainer_simulator.export.grades import PLATFORMS, RULES, grade, grades_csv
 from rastrainer_simulator.export.trial_files import write_motion_bids, write_slicer_files
 from rastrainer_simulator.export.xapi import HOME_PAGE, statements_text
-from rastrainer_simulator.net.record_store import home_page_url, read_record_store_settings
 
 FORMATS = ("csv", "bids", "xapi", "slicer")
 
@@ -37,10 +39,11 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     """Add the command to a command line; `arguments.run(arguments)` runs it."""
     parser = subparsers.add_parser(
         "export",
-        help="export a study: tidy CSV, Motion-BIDS, xAPI, Slicer's files",
+        help="export a study: tidy CSV, Motion-BIDS, xAPI, Slicer's files, grades",
         description=(
             "Write a study into an empty folder, a folder a format. Trainees appear by their "
-            "pseudonyms, and only those who consented to research."
+            "pseudonyms, and only those who consented to research. With --grades, write only the "
+            "grades of a course: of all active trainees, whether they consented or not."
         ),
     )
     add_study(parser)
@@ -55,16 +58,35 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     parser.add_argument(
         "--home-page",
+        type=_home_page,
+        default=HOME_PAGE,
         metavar="URL",
-        help=f"of the lab's system, for xAPI (default: as set, or {HOME_PAGE})",
+        help="of the lab's system, which makes pseudonyms unique among labs, for xAPI",
     )
-    add_config(parser)
+    grades = parser.add_argument_group("grades for a course")
+    grades.add_argument("--grades", choices=PLATFORMS, help="write a file that this imports")
+    grades.add_argument("--task", metavar="TASK", help="whose trials count (default: any)")
+    grades.add_argument(
+        "--mode", choices=[each.value for each in Mode], help="whose trials count (default: both)"
+    )
+    grades.add_argument(
+        "--method",
+        choices=[each.value for each in RegistrationMethod],
+        default=RegistrationMethod.FIDUCIALS.value,
+        metavar="METHOD",
+        help="of registration, whose trials count",
+    )
+    grades.add_argument(
+        "--rule", choices=RULES, default="best", help="which acceptable trial counts"
+    )
     add_incomplete(parser)
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the export and return the exit status."""
+    if arguments.grades:
+        return _export_grades(arguments)
     formats = arguments.format or [f for f in FORMATS if f != "bids" or arguments.records]
     if "bids" in formats and arguments.records is None:
         raise InputError("Motion-BIDS needs the journals: give their folder with --records.")
@@ -74,6 +96,26 @@ def run(arguments: argparse.Namespace) -> int:
         print(f"{arguments.output / name}: {_write(name, data, arguments)}")
     if data.without_consent:
         print(f"Left out because they did not consent to research: {data.without_consent} trainees")
+    return 0
+
+
+def _export_grades(arguments: argparse.Namespace) -> int:
+    with Study.open_for_reading(arguments.study) as study:
+        found = {
+            trainee.pseudonym: grade(
+                study.past_trials(trainee.pseudonym),
+                arguments.task,
+                arguments.mode,
+                RegistrationMethod(arguments.method),
+                arguments.rule,
+            )
+            for trainee in study.trainees()
+        }
+    grades = {name: score for name, score in found.items() if score is not None}
+    make_empty_folder(arguments.output)
+    path = arguments.output / f"{arguments.grades}.csv"
+    write_text(path, grades_csv(grades, arguments.grades))
+    print(f"{path}: grades of {len(grades)} of {counted(len(found), 'trainee')}")
     return 0
 
 
@@ -95,7 +137,7 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
         write_text(folder / "answers.csv", answers_csv(data))
         write_text(folder / "ratings.csv", ratings_csv(data))
     elif name == "xapi":
-        write_text(folder / "statements.json", statements_text(data, _home_page(arguments)))
+        write_text(folder / "statements.json", statements_text(data, arguments.home_page))
     else:
         for trial, stored in _stored(data, arguments.study):
             write_slicer_files(stored, folder / trial.trial_id)
@@ -103,10 +145,14 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
     return f"{len(data.trials)} trials, {len(data.aborted)} aborted ones"
 
 
-def _home_page(arguments: argparse.Namespace) -> str:
-    if arguments.home_page:
-        return accepted(home_page_url, arguments.home_page, "--home-page")
-    return read_record_store_settings(arguments.config).home_page or HOME_PAGE
+def _home_page(value: str) -> str:
+    """Accept the address of a lab's own system, from which IRIs are made."""
+    parts = urlsplit(value)
+    # What stands before an "@", such as a password, would be in every statement.
+    is_safe = not any(sign in value for sign in "@?# ") and parts.hostname
+    if parts.scheme not in ("https", "http") or not is_safe:
+        raise argparse.ArgumentTypeError("give an address such as https://lab.example.org")
+    return value.rstrip("/")
 
 
 def _stored(data: StudyData, place: StudyPlace) -> Iterator[tuple[TrialRow, StoredTrial]]:
