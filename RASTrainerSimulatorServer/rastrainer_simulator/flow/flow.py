@@ -164,35 +164,29 @@ class Flow:
         if preparing.text and menu is not None and menu.name != PreparingPage.name:
             lasting = (preparing, *lasting)
         warnings = (*lasting, *self._link_warnings(), *notices.brief())
-        work = self._screen_of_work
         shown = None if page is None else page.screen()
         if shown is not None:
             return replace(shown, warnings=(*shown.warnings, *warnings))
+        is_at_work = menu is None or session.has_open_trial or session.tutorial is not None
+        shown = self._screen_of_work.screen() if is_at_work else Screen()
         if menu is not None:
-            return Screen(
+            in_head = shown if self._procedure_screen.is_open else Screen()
+            shown = Screen(
                 menu=menu,
-                warnings=(*self._pause_warnings(), *warnings),
-                status=work.status() if self._is_work_open else (),
+                warnings=self._pause_warnings(),
+                status=shown.status,
                 hints=self._menu_hints(),
-                language=session.preferences.language,
-                is_spoken=session.preferences.speech,
-                errors=work.errors() if self._procedure_screen.is_open else (),
-                is_head_clear=self._procedure_screen.is_open and work.is_head_clear,
+                errors=in_head.errors,
+                is_head_clear=in_head.is_head_clear,
                 is_private=page is not None and page.is_private,
             )
-        return Screen(
-            instruction=preparing if preparing.text else work.instruction(),
-            warnings=(*work.warnings(), *warnings),
-            status=work.status(),
-            hints=work.hints(),
-            has_sticks=session.screen_sticks.is_shown,
-            has_arrow=work.has_arrow,
+        elif preparing.text:
+            shown = replace(shown, instruction=preparing)
+        return replace(
+            shown,
+            warnings=(*shown.warnings, *warnings),
             language=session.preferences.language,
             is_spoken=session.preferences.speech,
-            errors=work.errors(),
-            is_head_clear=work.is_head_clear,
-            coverage=work.coverage(),
-            ruler=work.ruler(),
         )
 
     def start_tutorial(self, trainee: str, mode: str) -> Answer:
@@ -229,10 +223,6 @@ class Flow:
             return self._tutorial_screen
         is_at_procedure = self._procedure_screen.is_open
         return self._procedure_screen if is_at_procedure else self._trial_screen
-
-    @property
-    def _is_work_open(self) -> bool:
-        return self._session.has_open_trial or self._session.tutorial is not None
 
     def _advance_tutorial(self, dt: float, tutorial: Tutorial) -> None:
         """Advance the tutorial; leave it at its end, or if its head is gone."""
