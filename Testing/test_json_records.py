@@ -199,12 +199,45 @@ def test_unknown_keys_are_ignored_except_in_files_that_people_write():
         read(value, only_known=True)
 
 
+def test_an_error_begins_with_the_words_of_the_record_where_nothing_else_is_said():
+    with pytest.raises(InputError, match=r"^The everything: name must be"):
+        record_from_json(Everything, {**LEAST, "name": 5})
+
+
+def test_texts_in_lists_and_objects_are_checked():
+    @dataclass
+    class Tagged:
+        tags: Annotated[tuple[str, ...], list_of(0, 3)]
+        versions: Mapping[str, str]
+
+    Tagged.__annotations__ |= {
+        "tags": Annotated[tuple[str, ...], list_of(0, 3)],
+        "versions": Mapping[str, str],
+    }
+    value = {"tags": ["a"], "versions": {"numpy": "2"}}
+    assert record_to_json(record_from_json(Tagged, value)) == value
+    with pytest.raises(InputError, match=r"^The tagged: tags\[0\] must be printable text"):
+        record_from_json(Tagged, {**value, "tags": [1]})
+    with pytest.raises(InputError, match=r"^The tagged: versions\.numpy must be printable text"):
+        record_from_json(Tagged, {**value, "versions": {"numpy": 2}})
+
+
 def test_a_unit_ends_the_key():
     assert camel_case("sim_time_s") == "simTimeS"
     assert camel_case("center_ras") == "centerRas"
 
 
-@pytest.mark.parametrize("kind", [float, dict, tuple[str, ...], Mapping[str, int], Any])
+@pytest.mark.parametrize(
+    "kind",
+    [
+        float,
+        dict,
+        Any,
+        tuple[float, ...],
+        Annotated[tuple[float, ...], list_of(0, 3)],
+        Annotated[Mapping[str, int], object_of(3)],
+    ],
+)
 def test_a_field_without_a_check_is_a_mistake_of_the_developer(kind):
     @dataclass
     class Unchecked:

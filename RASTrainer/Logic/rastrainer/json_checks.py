@@ -247,9 +247,17 @@ def point(limit: float, unit: str = "mm") -> Callable[[Any], np.ndarray]:
     return check
 
 
-def list_of(
-    minimum: int = 0, maximum: int = sys.maxsize, what: str = "items"
-) -> Callable[[Any], tuple[Any, ...]]:
+@dataclass(frozen=True)
+class SizeCheck:
+    """A check of how many values a list or an object has; each value needs one of its own."""
+
+    check: Callable[[Any], Any]
+
+    def __call__(self, value: Any) -> Any:
+        return self.check(value)
+
+
+def list_of(minimum: int = 0, maximum: int = sys.maxsize, what: str = "items") -> SizeCheck:
     """Accept a list of `minimum` to `maximum` values, whatever they are."""
 
     def check(value: Any) -> tuple[Any, ...]:
@@ -258,12 +266,12 @@ def list_of(
             raise ValueError(f"a list{size}")
         return tuple(value)
 
-    return check
+    return SizeCheck(check)
 
 
 def object_of(
     maximum: int = sys.maxsize, check_name: Callable[[Any], str] | None = None
-) -> Callable[[Any], dict[str, Any]]:
+) -> SizeCheck:
     """Accept an object of at most `maximum` checked names, whatever their values are."""
     accept_name = check_name or text()
 
@@ -276,7 +284,7 @@ def object_of(
         except ValueError as error:
             raise ValueError(f"an object, its names {error}") from None
 
-    return check
+    return SizeCheck(check)
 
 
 def one_of(*choices: str) -> Callable[[Any], str]:

@@ -18,6 +18,7 @@ made of what it accepts. Rules for several fields stand in `__post_init__`, whic
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass, fields, is_dataclass
 from enum import Enum
@@ -31,7 +32,7 @@ from rastrainer.errors import InputError
 
 T = TypeVar("T")
 Reader = Callable[[Any, str, bool], Any]
-"""Makes a field's value of decoded JSON; it is given the place for errors, and `only_known`."""
+"""Makes a field's value of decoded JSON, its place for errors, and `only_known`."""
 
 
 @dataclass(frozen=True)
@@ -45,30 +46,31 @@ class RecordField:
     default: Callable[[], Any] | None
 
 
-def record_from_json(kind: type[T], value: object, what: str, only_known: bool = False) -> T:
+def record_from_json(kind: type[T], value: object, what: str = "", only_known: bool = False) -> T:
     """Return the record of a dataclass `kind` that a decoded JSON object holds.
 
     Args:
-        what: begins the sentence of an error, such as "The trial record" or a file's name.
+        what: begins the sentence of an error; without it, "The trial record" of a `TrialRecord`.
         only_known: whether unknown keys are refused, as in files that people write: a misspelled
             one must not be without effect.
     """
+    what = what or "The" + re.sub("[A-Z]", lambda each: f" {each[0].lower()}", kind.__name__)
     return _read_record(kind, value, what, f"{what}: ", only_known)
 
 
-def _read_record(kind: type[T], value: object, what: str, before: str, only_known: bool) -> T:
-    """Read a record; `before` stands before a key in the sentence of an error."""
+def _read_record(kind: type[T], value: object, what: str, before_key: str, only_known: bool) -> T:
     if not isinstance(value, Mapping):
         raise InputError(f"{what} must be a JSON object.")
     known = record_fields(cast("Any", kind))
-    unknown = sorted(str(key) for key in set(value) - {each.key for each in known})
-    if only_known and unknown:
-        keys = ", ".join(each.key for each in known)
-        raise InputError(f"{what}: there is no {json.dumps(unknown[0][:40])}; use {keys}.")
+    keys = [each.key for each in known]
+    if only_known and (unknown := sorted(str(key) for key in value if key not in keys)):
+        raise InputError(
+            f"{what}: there is no {json.dumps(unknown[0][:40])}; use {', '.join(keys)}."
+        )
     values = {}
     for each in known:
         if each.key in value:
-            values[each.name] = each.read(value[each.key], f"{before}{each.key}", only_known)
+            values[each.name] = each.read(value[each.key], f"{before_key}{each.key}", only_known)
         elif each.default is None:
             raise InputError(f"{what} needs the key {json.dumps(each.key)}.")
     return kind(**values)
@@ -119,16 +121,15 @@ def _default(each: Any) -> Callable[[], Any] | None:
 def _reader(hint: Any, name: str) -> Reader:
     """Return what reads values of an annotation; `name` is the field's, for developers."""
     kind, checks = _kind_and_checks(hint)
-    parts = get_args(kind)
-    is_optional = type(None) in parts
+    is_optional = type(None) in get_args(kind)
     if is_optional:
-        kind, inner_checks = _kind_and_checks(next(p for p in parts if p is not type(None)))
-        checks += inner_checks
+        kind, more = _kind_and_checks(next(x for x in get_args(kind) if x is not type(None)))
+        checks += more
     build = _builder(kind, name)
-    if build is None and not checks:
+    if build is None and all(isinstance(check, json_checks.SizeCheck) for check in checks):
         if kind not in _CHECKS:
             raise TypeError(f"{name}: {kind} needs a check.")
-        checks = [_CHECKS[kind]]
+        checks = [*checks, _CHECKS[kind]]
 
     def read(value: Any, place: str, only_known: bool) -> Any:
         if value is None and is_optional:
@@ -165,7 +166,7 @@ def _builder(kind: Any, name: str) -> Reader | None:
     if not is_tuple and origin is not Mapping:
         return None
     item = parts[0] if is_tuple else parts[1]
-    if get_origin(item) is not Annotated and _builder(item, name) is None:
+    if not (item in _CHECKS or get_origin(item) is Annotated or _builder(item, name)):
         return None
     read_item = _reader(item, name)
 
