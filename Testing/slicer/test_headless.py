@@ -11,6 +11,7 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.igtl.content import Point, Points
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import DeviceName
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.nodes import Role, findNode, labelsOf, worldPoints
@@ -137,7 +138,7 @@ def test_files_are_written_for_a_trial_whose_true_error_was_not_revealed(
     captions = []
     monkeypatch.setattr(headless, "writeResidualPicture", lambda *words: captions.extend(words[-1]))
     scenario = load_scenario(COLIN)
-    analysis = analyze_trial(TrialRecord.from_json(colin_record), scenario)
+    analysis = analyze_trial(record_from_json(TrialRecord, colin_record), scenario)
     files = writeOutput(tmp_path, HeadlessScene(), scenario, analysis)
     assert results_json(analysis)["truth"] is None
     assert Path(files["scene"]).stat().st_size > 1000

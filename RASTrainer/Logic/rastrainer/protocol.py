@@ -74,7 +74,7 @@ class AbortReason(str, Enum):
     TRAINEE = "trainee"
     CLIENT = "client"
     PRACTICE_OVER = "practice over"
-    NOT_RESUMED = "not gone on with"
+    ABANDONED = "abandoned"
 
 
 COMMANDED_ABORTS = (AbortReason.TRAINEE, AbortReason.CLIENT, AbortReason.PRACTICE_OVER)

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.database.study import Study
@@ -55,7 +56,7 @@ def exact_touches(number, task="task-1"):
 def reviewed(study, number, task="task-1"):
     """A trial with exact touches, stored with its results."""
     record = exact_touches(number, task)
-    registered = analyze_trial(TrialRecord.from_json(record), SCENARIO)
+    registered = analyze_trial(record_from_json(TrialRecord, record), SCENARIO)
     analysis = scored_with_journal(registered, TRUTH, SCENARIO, score_references(study))
     study.add_trial(record, [analysis.rigid], score=analysis.score)
     return with_progress(analysis, study)
@@ -90,7 +91,7 @@ def test_a_delivered_trial_is_checked_once_and_stored_with_its_unknown_keys(stud
 
 
 def test_scoring_a_registered_trial_neither_registers_nor_estimates_again(study, monkeypatch):
-    registered = analyze_trial(TrialRecord.from_json(exact_touches(1)), SCENARIO)
+    registered = analyze_trial(record_from_json(TrialRecord, exact_touches(1)), SCENARIO)
     monkeypatch.setattr("rastrainer.trial.touch_registration.register_all_kinds", None)
     monkeypatch.setattr("rastrainer.trial.touch_registration.target_error", None)
     scored = scored_with_journal(registered, TRUTH, SCENARIO, score_references(study))

@@ -6,11 +6,13 @@ import json
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any, TypeVar
 
 from rastrainer import json_checks, protocol
 from rastrainer.errors import InputError
 from rastrainer.json_checks import decode_finite_json
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.registration import Registration
@@ -179,7 +181,7 @@ def find_record(connection: Connection, trial_id: str) -> TrialRecord:
     (text,) = connection.execute(
         "SELECT record_json FROM trials WHERE trial_id = ?", (trial_id,)
     ).fetchone()
-    return decoded(text, TrialRecord.from_json)
+    return decoded(text, partial(record_from_json, TrialRecord))
 
 
 def find(connection: Connection, trial_id: str) -> StoredTrial:
@@ -269,7 +271,7 @@ def unscored(connection: Connection, pseudonym: str) -> tuple[TrialRecord, ...]:
         "AND trial_id NOT IN (SELECT trial_id FROM scores)",
         (pseudonym, protocol.TRIAL_RUN),
     ).fetchall()
-    return tuple(decoded(text, TrialRecord.from_json) for (text,) in rows)
+    return tuple(decoded(text, partial(record_from_json, TrialRecord)) for (text,) in rows)
 
 
 def unrevealed(connection: Connection) -> tuple[TrialRecord, ...]:
@@ -278,7 +280,7 @@ def unrevealed(connection: Connection) -> tuple[TrialRecord, ...]:
         "SELECT record_json FROM trials "
         "WHERE trial_id NOT IN (SELECT trial_id FROM truths) ORDER BY rowid"
     ).fetchall()
-    return tuple(decoded(text, TrialRecord.from_json) for (text,) in rows)
+    return tuple(decoded(text, partial(record_from_json, TrialRecord)) for (text,) in rows)
 
 
 def cohort(connection: Connection, mode: str | None) -> list[Trial]:
