@@ -60,6 +60,8 @@ def _write(folder: Path, number: int, scenario) -> str:
     header = {"kind": "header", "format": FORMAT, "version": FORMAT_VERSION, **times}
     registered = {"kind": "registered", **times, "record": record_to_json(record)}
     journal = Journal(folder / f"20240517T{number:06d}Z_{trial_id}{SUFFIX}")
-    journal.write([header, registered | {"truth": truth.to_json(), "seed": number}], sync=False)
+    journal.write(
+        [header, registered | {"truth": record_to_json(truth), "seed": number}], sync=False
+    )
     journal.close()
     return trial_id

@@ -11,6 +11,8 @@ import pytest
 from rastrainer.json_records import record_from_json
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.scenario.scenario import load_scenario
+from rastrainer.study import delivered_trial
+from rastrainer.study.database import study as database
 from rastrainer.study.database.study import Study
 from rastrainer.study.delivered_trial import (
     score_references,
@@ -79,8 +81,12 @@ def test_the_pass_mark_is_that_of_the_studys_protocol(study):
 
 def test_a_delivered_trial_is_checked_once_and_stored_with_its_unknown_keys(study, monkeypatch):
     checks = []
-    read = TrialRecord.from_json
-    monkeypatch.setattr(TrialRecord, "from_json", lambda value: checks.append(value) or read(value))
+    for module in (delivered_trial, database):
+        monkeypatch.setattr(
+            module,
+            "record_from_json",
+            lambda kind, value: checks.append(value) or record_from_json(kind, value),
+        )
     delivered = exact_touches(1) | {"ofALaterVersion": 1}
     taken = store_delivered(delivered, study, lambda record: analyze_trial(record, SCENARIO))
     assert checks == [delivered]

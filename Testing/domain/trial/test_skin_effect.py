@@ -97,7 +97,7 @@ def test_one_sentence_describes_the_shift_and_its_effect(scenario):
 def test_unshifted_skin_leaves_score_and_record_unchanged(scenario):
     analysis, _truth = scored(scenario, UNMOVED)
     assert analysis.feedback.skin_sentences == ()
-    assert "unshifted_tre_mm" not in analysis.score.to_json()
+    assert "unshiftedTreMm" not in record_to_json(analysis.score)
     assert "skin" not in record_to_json(analysis.record)
 
 
@@ -129,5 +129,5 @@ def test_a_study_stores_the_skin_shift_and_shows_it_in_tables_and_report(scenari
 def test_a_truth_with_an_impossible_skin_shift_is_refused():
     answer = {"headToWorld": np.eye(4).ravel().tolist(), "trueTreMm": 1.0}
     assert record_from_json(RevealedTruth, answer).skin == UNMOVED
-    with pytest.raises(InputError, match="skin.seed must be a whole number"):
+    with pytest.raises(InputError, match=r"skin\.seed must be a whole number"):
         record_from_json(RevealedTruth, {**answer, "skin": {"shiftMm": 1.0, "seed": -1}})

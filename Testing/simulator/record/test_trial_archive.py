@@ -65,7 +65,7 @@ def write_trial(folder, *more, trial_id=TRIAL_ID):
     registered = {
         "kind": "registered",
         "record": record_to_json(RECORD) | {"trialId": trial_id},
-        "truth": TRUTH.to_json(),
+        "truth": record_to_json(TRUTH),
         "seed": 7,
     }
     samples = [{"kind": "sample", "i": i} for i in range(2000)]
@@ -208,14 +208,18 @@ def test_an_altered_journal_is_named_and_not_delivered(tmp_path):
         {"record": None},
         {"record": {}},
         {"truth": {}},
-        {"truth": TRUTH.to_json() | {"headToWorld": [1.0, 2.0]}},
-        {"truth": TRUTH.to_json() | {"fiducials": {"1": [0.0, 0.0, 0.0]}}},
-        {"truth": TRUTH.to_json() | {"target": "the nose"}},
+        {"truth": record_to_json(TRUTH) | {"headToWorld": [1.0, 2.0]}},
+        {"truth": record_to_json(TRUTH) | {"fiducialsRas": {"1": [0.0, 0.0, 0.0]}}},
+        {"truth": record_to_json(TRUTH) | {"targetRas": "the nose"}},
     ],
     ids=["no record", "empty record", "no truth", "half a matrix", "one fiducial", "no target"],
 )
 def test_a_journal_with_valid_hashes_and_odd_content_is_named_and_blocks_no_other(tmp_path, odd):
-    registered = {"kind": "registered", "record": record_to_json(RECORD), "truth": TRUTH.to_json()}
+    registered = {
+        "kind": "registered",
+        "record": record_to_json(RECORD),
+        "truth": record_to_json(TRUTH),
+    }
     path = write_trial(tmp_path, registered | odd)
     other_id = TRIAL_ID.replace("5c6f", "0000")
     write_trial(tmp_path, trial_id=other_id)

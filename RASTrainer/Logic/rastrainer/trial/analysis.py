@@ -74,8 +74,8 @@ class PublishedScore:
         reference: of the cohort.
     """
 
-    published: float
-    equation_3: float
+    published: Annotated[float, number(-1e9, 1e9)]
+    equation_3: Annotated[float, number(-1e9, 1e9)]
     reference: ctps.CohortReference
 
 
