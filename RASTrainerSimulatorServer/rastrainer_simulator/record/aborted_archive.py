@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.journal.folder import header_number
+from rastrainer.journal.folder import JournalNumber
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal, stamp
 from rastrainer.journal.recording import WholeRecording
 from rastrainer.json_records import record_from_json, record_to_json
@@ -179,7 +179,7 @@ def _interrupted_attempt(entries: tuple[Mapping[str, Any], ...]) -> AbortedTrial
     else:
         # Samples are taken while the trial's time runs.
         elapsed_s = float(trajectory.times_s[-1]) if len(trajectory.times_s) else 0.0
-    number = header_number(header)
+    number = record_from_json(JournalNumber, header)
     record = AbortedTrial(
         trial_id=header["trialId"],
         trainee=header["trainee"],

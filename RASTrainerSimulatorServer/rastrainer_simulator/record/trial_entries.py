@@ -7,7 +7,7 @@ import struct
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from rastrainer.journal.folder import UNNUMBERED, JournalNumber, header_number
+from rastrainer.journal.folder import UNNUMBERED, JournalNumber
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, stamp
 from rastrainer.journal.recording import Recording
 from rastrainer.json_records import record_from_json, record_to_json
@@ -152,7 +152,7 @@ class TrialEntries:
         """
         training = state.training
         entries = cls(simulation, training.trial_id, earlier[0]["utc"], dt)
-        entries.records.number = header_number(earlier[0])
+        entries.records.number = record_from_json(JournalNumber, earlier[0])
         for entry in earlier:
             entries._collect(entry)
             if entry["kind"] in _TOUCHED:

@@ -338,7 +338,7 @@ def test_a_trial_with_touches_only_has_no_procedure_in_its_journal(simulation, t
         server.move()
         server.finish()
         (record,) = server.loop.unacknowledged()
-    text = server.path.read_text().replace('"procedure":{"self_alignment"', "")
+    text = server.path.read_text().replace('"procedure":{"selfAlignment"', "")
     assert '"procedure"' not in text
     assert '"feedMm"' not in text
     assert "procedure" not in record_to_json(record)

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.journal.folder import header_number
+from rastrainer.journal.folder import JournalNumber
 from rastrainer.journal.journal_file import NO_LINE, DamagedLineError, decode_line
 from rastrainer.journal.recording import Recording, WholeRecording
 from rastrainer.json_records import record_from_json
@@ -72,7 +72,7 @@ def _entries(journal: bytes, sealed: str) -> list[Entry]:
 def _check_record(record: TrialRecord, header: Entry, registered: Entry) -> None:
     written = record_from_json(TrialRecord, registered["record"])
     _require(written == replace(record, journal_sha256=""), "the record")
-    number = header_number(header)
+    number = record_from_json(JournalNumber, header)
     method = method_of(header["method"]["name"] if "method" in header else None)
     told = (header["trialId"], header["trainee"], header["task"], header["mode"], header["utc"])
     _require(

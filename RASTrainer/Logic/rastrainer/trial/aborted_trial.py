@@ -20,11 +20,11 @@ from rastrainer.protocol import (
     Phase,
     RegistrationMethod,
 )
-from rastrainer.trial.record import PlayedTrial, Utc
+from rastrainer.trial.record import AnyTrial, Utc
 
 
 @dataclass(frozen=True, kw_only=True)
-class AbortedTrial(PlayedTrial):
+class AbortedTrial(AnyTrial):
     """A trial that was started and never registered.
 
     Attributes:

@@ -21,6 +21,7 @@ from rastrainer.protocol import (
     FIDUCIAL_COUNT,
     MAX_TRACE_POINTS,
     MIN_TRACE_POINTS,
+    NUMBER_LIMIT,
     PLAYED_METHODS,
     TRACED_METHODS,
     WORLD_LIMIT_MM,
@@ -31,7 +32,6 @@ from rastrainer.protocol import (
 from rastrainer.trial.how_played import HowPlayed
 
 TOUCH_LIMIT = 1_000_000
-NUMBER_LIMIT = 1_000_000_000
 VERSIONS_LIMIT = 32
 MOTION_LIMIT = 100
 DISPLAY_LIMIT = 16
@@ -95,7 +95,7 @@ class TouchedPoint:
 
 
 @dataclass(frozen=True, kw_only=True)
-class PlayedTrial:
+class AnyTrial:
     """What the records of a finished and of an aborted trial share: who, what, when, the touches.
 
     Attributes:
@@ -143,7 +143,7 @@ class PlayedTrial:
 
 
 @dataclass(frozen=True, kw_only=True)
-class TrialRecord(PlayedTrial):
+class TrialRecord(AnyTrial):
     """A finished trial, as it was played; a `TrialAnalysis` has what is known of it.
 
     Attributes:
