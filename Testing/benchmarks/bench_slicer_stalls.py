@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer import transforms
+from rastrainer.json_records import record_from_json
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
@@ -248,7 +249,7 @@ class _Steps:
     def _store(self, path: Path, count: int, trainee: str = TRAINEE, first: int = 0) -> None:
         """Store trials of a trainee in a study: one registration serves for all."""
         with Study.open(path) as study:
-            analysis = analyze_trial(TrialRecord.from_json(self._record(0)), self._colin)
+            analysis = analyze_trial(record_from_json(TrialRecord, self._record(0)), self._colin)
             fits, errors = analysis.fits.values(), analysis.target_errors
             for number in range(first, first + count):
                 record = {**self._record(number), "trainee": trainee}
@@ -291,7 +292,7 @@ class _Steps:
             {
                 "label": label,
                 "positionMm": position.tolist(),
-                "simTime": 6.0 * (place + 1),
+                "simTimeS": 6.0 * (place + 1),
                 "utc": f"2026-03-02T10:00:{place:02d}Z",
             }
             for place, (label, position) in enumerate(zip(LABELS, self._touches, strict=True))

@@ -93,10 +93,10 @@ def play_demo(output: Path, seed: int, speed: float) -> None:
     trials = [json.loads(line) for line in lines]
     _draw_robot(output / "robot.png", scenario, states[-1], trials[-1])
     _write_points(output, scenario, record)
-    head_to_world = np.array(trials[-1]["truth"]["head_to_world"])
+    head_to_world = np.reshape(trials[-1]["truth"]["headToWorld"], (4, 4))
     _draw_procedure(output / "procedure.png", scenario, record, head_to_world)
     for trial in trials:
-        print("\n" + trial_summary(trial, scenario.task(trial["task"]).title))
+        print("\n" + trial_summary(trial, scenario.task(trial["record"]["task"]).title))
     print("\n" + procedure_summary(record, scenario, head_to_world))
     print(f"\nWritten to {output} in {time.monotonic() - started:.0f} s: {_listing(output)}.")
 
@@ -229,11 +229,11 @@ def _draw_robot(
     from rastrainer_simulator.scene.scene_glb import scene_nodes
 
     robot = load_robot()
-    task = scenario.task(trial["task"])
+    task = scenario.task(trial["record"]["task"])
     head = read_head_mesh(scenario.head_mesh)
     moment = SceneMoment(
         link_to_world=make_kinematics(robot).links(state["q"]),
-        head_to_world=np.array(trial["truth"]["head_to_world"]),
+        head_to_world=np.reshape(trial["truth"]["headToWorld"], (4, 4)),
         head_base=head.base,
         touched=frozenset(task.labels),
         proximity=Proximity(state["proximity"]),
@@ -276,28 +276,25 @@ def _listing(folder: Path) -> str:
 
 def trial_summary(trial: Mapping[str, Any], title: str) -> str:
     """Return a summary of one trial for people; `trial` is a line of results.jsonl."""
-    truth, target = trial["truth"], trial["target"]["name"]
-    rigid = trial["fits"]["rigid"]
-    low, high = rigid["tre_interval_mm"]
-    where = (
-        "below" if truth["true_tre_mm"] < low else "above" if truth["true_tre_mm"] > high else "in"
-    )
-    undone, refused = trial["undone_touches"], trial["rejected_touches"]
+    record, target, rigid = trial["record"], trial["targetName"], trial["fits"]["rigid"]
+    true_mm, (low, high) = trial["truth"]["trueTreMm"], rigid["treIntervalMm"]
+    where = "below" if true_mm < low else "above" if true_mm > high else "in"
+    undone, refused = record["undoneTouches"], record["rejectedTouches"]
     lines = [
-        f"{title}, {trial['trainee']}, {trial['mode']}",
-        _line("Completion time (CT)", trial["completion_time_s"], "s"),
+        f"{title}, {record['trainee']}, {record['mode']}",
+        _line("Completion time (CT)", record["completionTimeS"], "s"),
         f"  Touches: {undone} undone, {refused} refused",
-        *(_line(f"FRE, {kind}", fit["fre_mm"], "mm") for kind, fit in trial["fits"].items()),
+        *(_line(f"FRE, {kind}", fit["freMm"], "mm") for kind, fit in trial["fits"].items()),
         _line(
             f"Expected TRE, {target}",
-            rigid["expected_tre_mm"],
+            rigid["expectedTreMm"],
             f"mm, 95 % interval from {low:.2f} to {high:.2f}",
         ),
         f"    {INTERVAL_NOTE}",
-        _line(f"True TRE, {target}", truth["true_tre_mm"], f"mm, {where} that interval"),
+        _line(f"True TRE, {target}", true_mm, f"mm, {where} that interval"),
         *_scores(trial["score"], trial["ctps"]),
         "  Residual of each fiducial, rigid (mm)",
-        *_residuals(trial["labels"], rigid["residuals_mm"]),
+        *_residuals([point["label"] for point in record["points"]], rigid["residualsMm"]),
     ]
     lines += [f"  Warning: {warning['message']}" for warning in rigid["warnings"]]
     return "\n".join(lines)
@@ -330,11 +327,11 @@ def _line(name: str, value: float, unit_and_remark: str) -> str:
 
 
 def _scores(score: Mapping[str, Any], ctps: Mapping[str, Any]) -> list[str]:
-    time, accuracy = score["time_desirability"], score["accuracy_desirability"]
+    time, accuracy = score["timeDesirability"], score["accuracyDesirability"]
     return [
         _line("Score", score["score"], f"of 100: time {time:.2f}, accuracy {accuracy:.2f}"),
         _line("CTPS as in the paper's tables", ctps["published"], "against the paper's cohort"),
-        _line("CTPS by the paper's equation 3", ctps["equation_3"], "half of it"),
+        _line("CTPS by the paper's equation 3", ctps["equation3"], "half of it"),
         f"    {CTPS_WARNING}",
     ]
 

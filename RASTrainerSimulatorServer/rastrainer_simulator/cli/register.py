@@ -14,6 +14,7 @@ from rastrainer.errors import InputError
 from rastrainer.files.point_files import read_point_numbers, read_points
 from rastrainer.files.point_list import PointList, pair
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.json_records import record_to_json
 from rastrainer.registration.fits import KINDS, RIGID
 from rastrainer.registration.localization_error import (
     LocalizationError,
@@ -162,7 +163,7 @@ def registration_json(
         "labels": list(registration.labels),
         "residuals_mm": registration.residuals_mm.tolist(),
         "residual_vectors_mm": registration.residual_vectors_mm.tolist(),
-        "warnings": [warning.to_json() for warning in registration.warnings],
+        "warnings": [record_to_json(warning) for warning in registration.warnings],
         "weights": None if weights is None else weights.tolist(),
         "weighted_fre_mm": registration.weighted_fre_mm,
         "stated": None
@@ -309,7 +310,7 @@ def match_json(match: SurfaceMatch, error: TargetError) -> dict[str, Any]:
         "slide_mm": match.slide.distance_mm,
         "slide_place": match.slide.place,
         "residuals_mm": match.residuals_mm.tolist(),
-        "warnings": [warning.to_json() for warning in match.warnings],
+        "warnings": [record_to_json(warning) for warning in match.warnings],
         "expected_tre": {
             "target_mm": list(error.target_mm),
             "expected_mm": error.expected_mm,

@@ -286,5 +286,7 @@ class TrialScreen(ArmScreen):
 
 def points_in_world(truth: Truth) -> tuple[dict[str, Vector], Vector]:
     """Return the fiducials of a trial and the head's center in World, m."""
-    points = {label: in_meters(truth.in_world(point)) for label, point in truth.fiducials.items()}
-    return points, in_meters(truth.in_world(truth.target))
+    points = {
+        label: in_meters(truth.in_world(point)) for label, point in truth.fiducials_ras.items()
+    }
+    return points, in_meters(truth.in_world(truth.target_ras))

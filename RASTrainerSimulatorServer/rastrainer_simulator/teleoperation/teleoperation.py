@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 
+from rastrainer.json_checks import Setting
 from rastrainer_simulator.state import Motion, OperatorInput
 from rastrainer_simulator.teleoperation.commanded_motion import (
     CommandedMotion,
@@ -32,8 +33,8 @@ class StickResponse:
         exponent: of the response curve; 1 is linear, larger is gentler near the center.
     """
 
-    dead_zone: float = 0.12
-    exponent: float = 2.0
+    dead_zone: Setting = 0.12
+    exponent: Setting = 2.0
 
     def __call__(self, deflection: tuple[float, ...]) -> tuple[float, ...]:
         """Return the share of the full speed along each axis, its length 0…1.
@@ -68,10 +69,10 @@ class TeleoperationSettings:
     """
 
     response: StickResponse = field(default_factory=StickResponse)
-    coarse_speed: float = 0.15
-    fine_speed: float = 0.02
-    skin_speed: float = 0.003
-    acceleration: float = 2.0
+    coarse_speed: Setting = 0.15
+    fine_speed: Setting = 0.02
+    skin_speed: Setting = 0.003
+    acceleration: Setting = 2.0
     steering: SteeringSettings = field(default_factory=SteeringSettings)
 
 

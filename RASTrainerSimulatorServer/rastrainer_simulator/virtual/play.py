@@ -16,6 +16,7 @@ from rastrainer.errors import RASTrainerError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.journal.folder import SUFFIX
 from rastrainer.journal.journal_file import file_stamp, iso
+from rastrainer.json_records import record_from_json
 from rastrainer.procedure.record import ProcedureRecord, UsedRegistration
 from rastrainer.protocol import CommandName, Mode, Phase, Proximity
 from rastrainer.scenario.scenario import Scenario
@@ -229,7 +230,7 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
     recorder.record.measured()
     entries = _dated(recorder.entries.taken(), job.started)
     registered = next(entry for entry in entries if entry["kind"] == "registered")
-    record = TrialRecord.from_json(registered["record"])
+    record = record_from_json(TrialRecord, registered["record"])
     if settings.records is not None:
         _write_journal(settings.records, entries, job.started)
     scenario = simulation.setup.scenario
@@ -282,19 +283,19 @@ class _EntryRecorder:
 
 def _dated(entries: list[dict[str, Any]], started: datetime) -> list[dict[str, Any]]:
     """Date entries from the trial's start, in simulated time."""
-    zero = entries[0]["simTime"]
+    zero = entries[0]["simTimeS"]
 
     def utc(sim_time: float) -> str:
         return iso(started + timedelta(seconds=sim_time - zero))
 
     for entry in entries:
-        entry["utc"] = utc(entry["simTime"])
+        entry["utc"] = utc(entry["simTimeS"])
         if entry["kind"] == "registered":
             record = entry["record"]
             # A virtual trainee plays as fast as the machine can, in no simulator.
             record.pop("played", None)
             for point in record["points"]:
-                point["utc"] = utc(point["simTime"])
+                point["utc"] = utc(point["simTimeS"])
             record["startedUtc"] = utc(zero)
             record["completedUtc"] = record["points"][-1]["utc"]
     return entries

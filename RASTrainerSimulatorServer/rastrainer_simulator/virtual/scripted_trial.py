@@ -13,6 +13,7 @@ from rastrainer.errors import RASTrainerError
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import String, Transform
 from rastrainer.igtl.message import Message
+from rastrainer.json_records import record_from_json
 from rastrainer.procedure.checks import planned_bone
 from rastrainer.procedure.plan import ProcedureTrajectory, read_procedure_meshes
 from rastrainer.protocol import PROTOCOL_VERSION, CommandName, DeviceName, Mode, Phase, Proximity
@@ -116,7 +117,7 @@ class _View:
             self._on_progress(state)
         point = state["nextPoint"]
         return Observation(
-            sim_time_s=float(tip.metadata["simTime"]),
+            sim_time_s=float(tip.metadata["simTimeS"]),
             tip_mm=np.array(tip.content.matrix)[:3, 3],
             is_in_contact=state["proximity"] == Proximity.CONTACT.value,
             phase=Phase(state["phase"]),
@@ -188,7 +189,7 @@ def play_procedure(
         _place(client, trajectory, number, bone.inner_mm)
         on_progress(f"{trajectory.name}: the electrode is placed")
     answer = send(client, CommandName.GET_TRIAL, {"trialId": trial_id})
-    return TrialRecord.from_json(answer["record"])
+    return record_from_json(TrialRecord, answer["record"])
 
 
 def _place(client: Client, trajectory: ProcedureTrajectory, number: int, inner_mm: float) -> None:

@@ -144,7 +144,7 @@ class TutorialDonePage(SessionPage):
             self.say("tutorial-done.title"),
             (self.say("tutorial-done.text", trainee=outcome.trainee),),
             (
-                Fact(self.say("tutorial-done.time"), self.session.duration(outcome.seconds)),
+                Fact(self.say("tutorial-done.time"), self.session.duration(outcome.duration_s)),
                 Fact(
                     self.say("tutorial-done.first"),
                     self.say("tutorial.mm", error=outcome.first_error_mm),

@@ -279,7 +279,7 @@ class TrainingSession:
 
     def fiducial(self, label: str) -> Vector:
         """Return where a fiducial of the present trial is, World, m: only after the score."""
-        return self.truly_in_world(self._control_loop.truth.fiducials[label])
+        return self.truly_in_world(self._control_loop.truth.fiducials_ras[label])
 
     def truly_in_world(self, point: np.ndarray) -> Vector:
         """Return where a point of the MRI (RAS mm) truly is, World, m: only after the score."""

@@ -23,6 +23,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import OPEN_PHASES, CommandName
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork
@@ -280,7 +281,7 @@ class TrialLogic:
         """
 
         def score(answer: Mapping[str, Any]) -> None:
-            truth = RevealedTruth.from_json(answer)
+            truth = record_from_json(RevealedTruth, answer, "The simulator's answer")
             self._work.do(
                 self._checksJournals,
                 lambda isChecked: fetch(truth) if isChecked else compute(truth, None),
