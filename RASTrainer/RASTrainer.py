@@ -134,8 +134,6 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
 
         ScriptedLoadableModuleWidget.setup(self)
         self._uiWidget = slicer.util.loadUI(self.resourcePath("UI/RASTrainer.ui"))
-        self._uiWidget.visible = False
-        self.layout.addWidget(self._uiWidget)
         self._uiWidget.setMRMLScene(slicer.mrmlScene)
         # Slicer's window answers between imports and sections.
         self._building = Turns(self._build(), lambda step: qt.QTimer.singleShot(0, step))
@@ -157,7 +155,7 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
         self._panels = PanelStack()
         yield from self._panels.build(self._uiWidget, self.resourcePath, session)
         self.ui = self._panels.ui
-        self._uiWidget.visible = True
+        self.layout.addWidget(self._uiWidget)
         self.initializeParameterNode()
         # Trials arrive whether or not this module is shown.
         self._timer = qt.QTimer()
@@ -340,6 +338,7 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
     def test_theBuiltInScenarioIsShown(self):
         with self.fixture() as fixture:
             fixture.ui.showScenarioButton.click()
+            fixture.process()
         fixed = slicer.util.getNode("* fiducials")
         self.assertEqual(fixed.GetNumberOfControlPoints(), 15)
 
@@ -358,6 +357,7 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
         with self.fixture() as fixture:
             ui = fixture.ui
             ui.showScenarioButton.click()
+            fixture.process()
             touches = fixture.touches()
             touches[6] += 9.0
             fixture.touch(touches)
@@ -374,6 +374,7 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
         with self.fixture() as fixture:
             ui = fixture.ui
             ui.showScenarioButton.click()
+            fixture.process()
             fixture.touch(fixture.touches())
             ui.placeTargetButton.click()
             ui.planComboBox.currentNode().AddControlPoint(10.0, 20.0, 30.0)
@@ -385,11 +386,13 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
     def test_theSceneMayBeClearedAndEveryNodeDeleted(self):
         with self.fixture() as fixture:
             fixture.ui.showScenarioButton.click()
+            fixture.process()
             fixture.ui.robotCheckBox.checked = True
             fixture.touch(fixture.touches())
             fixture.clearScene()
             self.assertEqual(fixture.ui.residualsTable.rowCount, 0)
             fixture.ui.showScenarioButton.click()
+            fixture.process()
             fixture.touch(fixture.touches())
             for node in list(slicer.util.getNodesByClass("vtkMRMLDisplayableNode")):
                 if node.GetScene() is not None and not node.GetSingletonTag():
