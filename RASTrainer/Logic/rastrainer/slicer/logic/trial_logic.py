@@ -238,7 +238,8 @@ class TrialLogic:
         isOther = self._state.get("trialId") != analysis.record.trial_id
         if isOther and self._state.get("phase") in OPEN_PHASES:
             return
-        showTrial(self._scene, self._findScenario(analysis.record.scenario), analysis)
+        scenario = self._findScenario(analysis.record.scenario)
+        showTrial(self._scene, scenario, analysis, self._work.changeScene)
 
     def _score(
         self,
