@@ -1,4 +1,4 @@
-"""`python -m Testing.code_size` prints lines and functions of each room; `walks` the functions called."""
+"""`python -m Testing.code_size` prints the size of each room; `walks` counts functions called."""
 
 import sys
 

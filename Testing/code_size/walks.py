@@ -1,4 +1,4 @@
-"""How many functions are called on the three walks of `docs/design.md`, in all threads and processes."""
+"""How many functions are called on the three walks of `docs/design.md`, in all processes."""
 
 from __future__ import annotations
 

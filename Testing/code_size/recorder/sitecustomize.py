@@ -1,7 +1,7 @@
 """Writes down which functions of the product a process calls while the file `recording` exists.
 
-Python imports this module when it starts, wherever its folder is on `PYTHONPATH`; `RASTRAINER_CALLED`
-names the folder of that file. Module bodies, class bodies, comprehensions and lambdas do not count.
+Python imports this module when it starts, wherever its folder is on `PYTHONPATH`;
+`RASTRAINER_CALLED` names the folder of that file. Module bodies, class bodies, comprehensions and lambdas do not count.
 """
 
 import os
@@ -38,7 +38,7 @@ class Recorder:
 
     def _write(self) -> None:
         lines = {
-            f"{code.co_filename}\t{code.co_qualname}" if sys.version_info >= (3, 11) else f"{code.co_filename}\t{code.co_name}:{code.co_firstlineno}"
+            f"{code.co_filename}\t{code.co_name}:{code.co_firstlineno}"
             for code in list(self._called)
             if "rastrainer" in code.co_filename and not code.co_name.startswith("<")
         }
