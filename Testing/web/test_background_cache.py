@@ -23,13 +23,15 @@ DRAW = """(seconds) => {
   page.isDue = true;
   page.drawFlat(page.flat, window.now, page.stage.model, page.state);
 }"""
-SETTLE = "() => { for (let count = 0; count < 3; count++) (%s)(1); }" % DRAW
+SETTLE = f"() => {{ for (let count = 0; count < 3; count++) ({DRAW})(1); }}"
 CHANGES = {
     "another view": "page.state.view.position[0] += 0.01",
     "another place of the head": "page.stage.model.node('head').position.x += 0.01",
     "paint": "page.stage.model.paintSkin(new Float32Array(page.stage.model.skinVertices.count))",
     "a clear head": "page.screen = { ...page.screen, is_head_clear: true }",
-    "a restored context": "document.getElementById('picture').dispatchEvent(new Event('webglcontextrestored'))",
+    "a restored context": (
+        "page.stage.renderer.domElement.dispatchEvent(new Event('webglcontextrestored'))"
+    ),
 }
 
 
