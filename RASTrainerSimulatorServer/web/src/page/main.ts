@@ -256,7 +256,7 @@ export class Page {
 
   private turn(stage: Stage, nowMs: number, frame?: XRFrame): void {
     const now = nowMs / 1000;
-    this.pads.poll();
+    if (!isDesktop) this.pads.poll();
     this.frames.asked(nowMs);
     this.frames.tell(nowMs);
     const { state, flat } = this;
@@ -324,7 +324,9 @@ export class Page {
   }
 }
 
-const PAGE: Hello = { kind: "page", device: browserName(), refreshHz: 0 };
+/** Whether this is the window of the simulator's own computer, which reads the gamepads itself. */
+const isDesktop = new URLSearchParams(location.search).has("desktop");
+const PAGE: Hello = { kind: isDesktop ? "desktop" : "page", device: browserName(), refreshHz: 0 };
 
 function browserName(): string {
   return /(Firefox|Edg|OPR|Chrome|Safari)\/\d+/.exec(navigator.userAgent)?.[0] ?? "";
