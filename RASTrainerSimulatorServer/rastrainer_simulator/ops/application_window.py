@@ -79,6 +79,17 @@ def application_browser() -> Path | None:
     return next((path for path in map(Path, (*places, *names)) if path.is_file()), None)
 
 
+def application_command(browser: Path, page: str, profile: Path) -> list[str]:
+    """Return the command that shows a page as an application, with a profile of its own."""
+    command = [str(browser), *OPTIONS, f"--app={page}", f"--user-data-dir={profile}"]
+    if sys.platform != "win32" and os.geteuid() == 0:
+        command += AS_ROOT
+    if _has_graphics():
+        return command
+    niceness = [] if shutil.which("nice") is None else ["nice", "-n", NICENESS]
+    return [*niceness, *command, *WITHOUT_GRAPHICS]
+
+
 def _has_graphics() -> bool:
     """Return whether there may be a graphics processor: of Linux, the driver says so."""
     return not sys.platform.startswith("linux") or any(Path("/dev/dri").glob("renderD*"))
@@ -107,7 +118,7 @@ class ApplicationWindow:
                 announce(NO_BROWSER.format(url=self._url, code=self._code))
             return
         self._process = await asyncio.create_subprocess_exec(
-            *self._command(browser, page),
+            *application_command(browser, page.as_uri(), page.parent / "profile"),
             env=environment_without_secrets(),
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
@@ -144,12 +155,3 @@ class ApplicationWindow:
         page.write_text(_REDIRECTION.format(url=self._url, code=self._code), encoding="utf-8")
         return page
 
-    def _command(self, browser: Path, page: Path) -> list[str]:
-        command = [str(browser), *OPTIONS, f"--app={page.as_uri()}"]
-        command.append(f"--user-data-dir={page.parent / 'profile'}")
-        if sys.platform != "win32" and os.geteuid() == 0:
-            command += AS_ROOT
-        if _has_graphics():
-            return command
-        niceness = [] if shutil.which("nice") is None else ["nice", "-n", NICENESS]
-        return [*niceness, *command, *WITHOUT_GRAPHICS]
