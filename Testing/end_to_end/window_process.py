@@ -7,7 +7,7 @@ import subprocess
 import time
 from pathlib import Path
 
-from playwright.sync_api import Page, sync_playwright
+from playwright.sync_api import sync_playwright
 
 from rastrainer_simulator.ops.application_window import application_browser, application_command
 from Testing.end_to_end.virtual_display import VirtualDisplay

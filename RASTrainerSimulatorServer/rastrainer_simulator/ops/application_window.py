@@ -15,7 +15,7 @@ from pathlib import Path
 
 from rastrainer.files.writing import make_private_folder
 from rastrainer.home_folder import home_folder
-from rastrainer_simulator.ops.processes import environment_without_secrets
+from rastrainer_simulator.ops.processes import BELOW_NORMAL, environment_without_secrets
 
 PROGRAMS = (
     *("google-chrome-stable", "google-chrome", "chromium", "chromium-browser"),
@@ -54,8 +54,6 @@ AS_ROOT = ("--no-sandbox", "--test-type")
 """Chromium refuses to run as root otherwise; the second spares a bar that says so."""
 NICENESS = "10"
 """A browser that draws on the processor leaves it to the control loop first."""
-BELOW_NORMAL = getattr(subprocess, "BELOW_NORMAL_PRIORITY_CLASS", 0)
-"""Windows' flag of a process of low priority."""
 ENDING_S = 5.0
 GONE = (
     "continues without its window, which ended with status {status}: open {url} in a browser, and "
@@ -154,4 +152,3 @@ class ApplicationWindow:
         page.touch(mode=0o600)
         page.write_text(_REDIRECTION.format(url=self._url, code=self._code), encoding="utf-8")
         return page
-
