@@ -1,4 +1,4 @@
-"""The simulator's own window: its page in a browser without bars and tabs, on a display in memory."""
+"""The simulator's window: its page in a browser without bars and tabs, on a display in memory."""
 
 from __future__ import annotations
 
