@@ -9,9 +9,9 @@ from contextlib import suppress
 from typing import Protocol
 
 import numpy as np
+from rastrainer_simulator.desktop.connection import screen_from_json
 from scipy.spatial.transform import Rotation
 
-from rastrainer_simulator.desktop.connection import screen_from_json
 from rastrainer_simulator.flow.flow import PICTURE_GRACE_S
 from rastrainer_simulator.presentation.screen import Menu, Screen
 from rastrainer_simulator.teleoperation.steering import camera_axes

@@ -44,7 +44,6 @@ from rastrainer_simulator.record.trial_context import setup_of, versions
 from rastrainer_simulator.robot.kinematics import kinematics_name
 from rastrainer_simulator.server.scenario_loader import ScenarioLoader
 from rastrainer_simulator.state import Answer
-from rastrainer_simulator.texts.texts import LANGUAGES
 
 if TYPE_CHECKING:
     from rastrainer_simulator.flow.running_presenter import RunningPresenter
@@ -257,7 +256,6 @@ class SimulatorServer:
             curricula=self._curricula,
             scores_alone=self._options.scores_alone,
             pin=self._pin,
-            languages=tuple(LANGUAGES),
         )
         running = RunningPresenter(self._control_loop, services, self._options.has_gamepad)
         link.publisher.is_guided = lambda: running.presenter.is_tracing_guided
