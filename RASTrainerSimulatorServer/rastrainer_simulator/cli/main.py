@@ -31,7 +31,6 @@ SUBCOMMANDS = {
     "board": "rastrainer_simulator.cli.instructor:add_board_parser",
     "lti": "rastrainer_simulator.cli.lti:add_parser",
     "instructor-pin": "rastrainer_simulator.cli.instructor:add_instructor_pin_parser",
-    "window": "rastrainer_simulator.cli.simulator:add_window_parser",
     "doctor": "rastrainer_simulator.cli.doctor_command:add_parser",
     "replay": "rastrainer_simulator.cli.replays:add_replay_parser",
     "rate": "rastrainer_simulator.cli.replays:add_rate_parser",

@@ -1,11 +1,9 @@
-"""Commands that run the simulator and its desktop window: `rastrainer simulator`, `window`."""
+"""The command that runs the simulator: `rastrainer simulator`."""
 
 from __future__ import annotations
 
 import argparse
 import asyncio
-import os
-import re
 import secrets
 from functools import partial
 from pathlib import Path
@@ -17,10 +15,9 @@ from rastrainer_simulator.cli.options import (
     add_records,
     announce,
     check_ports,
-    path_of_user,
 )
 from rastrainer_simulator.ops.log_files import keep_logs
-from rastrainer_simulator.ops.processes import VIEW_KEY_VARIABLE, has_display
+from rastrainer_simulator.ops.processes import has_display
 from rastrainer_simulator.ops.system_paths import log_folder
 
 FASTEST = 1000.0
@@ -51,7 +48,7 @@ def add_simulator_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--view-port",
         type=int,
-        help="port for the desktop window and the browser, 0 for any free one (default: "
+        help="port for the browser, 0 for any free one (default: "
         f"{DEFAULT_VIEW_PORT}, or any free one where that is taken)",
     )
     parser.add_argument(
@@ -61,7 +58,7 @@ def add_simulator_parser(subparsers: argparse._SubParsersAction) -> None:
         "made on this computer",
     )
     parser.add_argument(
-        "--no-views", action="store_true", help="serve OpenIGTLink only, no window and no browser"
+        "--no-views", action="store_true", help="serve OpenIGTLink only, no page for browsers"
     )
     parser.add_argument("--speed", type=float, default=1.0, help="simulated seconds a second")
     parser.add_argument(
@@ -80,7 +77,7 @@ def add_simulator_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--desktop",
         action="store_true",
-        help="open the trainee's window; the simulator ends when it is closed",
+        help="open the page in a window of its own; the simulator ends when it is closed",
     )
     parser.add_argument(
         "--gamepad",
@@ -168,100 +165,3 @@ def _address(text: str) -> tuple[str, int]:
     if not host or not port.isdecimal() or not 0 < int(port) < 65536:
         raise InputError("--connect must be HOST:PORT, such as 127.0.0.1:18944.")
     return host, int(port)
-
-
-DEFAULT_URL = "http://127.0.0.1:18945"
-LEAST_SIDE, MAX_SIDE = 320, 16_384
-
-
-def add_window_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add `window`: the desktop window of a simulator."""
-    parser = subparsers.add_parser(
-        "window",
-        help="open the desktop window of a running simulator",
-        description="Shows the robot, the head and the menus of a simulator that is running, and "
-        "sends it the user's input. F11: full screen; F12: save a picture. Not for clinical use.",
-    )
-    parser.add_argument(
-        "--connect",
-        metavar="URL",
-        default=DEFAULT_URL,
-        help="where the simulator serves views",
-    )
-    parser.add_argument("--code", help="the pairing code that the simulator shows")
-    parser.add_argument("--size", metavar="WxH", help="of the window, in pixels")
-    parser.add_argument("--fullscreen", action="store_true", help="fill the display")
-    parser.add_argument(
-        "--quality",
-        choices=("auto", "high", "medium", "low"),
-        default="auto",
-        help="light and shadows (default: what the machine can afford)",
-    )
-    parser.add_argument(
-        "--pictures",
-        type=path_of_user,
-        metavar="DIR",
-        default="~/RASTrainer/pictures",
-        help="folder of the pictures that F12 keeps",
-    )
-    parser.add_argument(
-        "--picture-quality",
-        choices=("high", "medium", "low"),
-        default="high",
-        help="light and shadows of these pictures",
-    )
-    parser.add_argument(
-        "--log-folder", type=Path, metavar="DIR", help="folder of the logs (default: the usual)"
-    )
-    parser.add_argument("--frame-log", type=Path, help=argparse.SUPPRESS)
-    parser.set_defaults(run=run_window)
-
-
-def run_window(arguments: argparse.Namespace) -> int:
-    """Show the window until it is closed and return the exit status.
-
-    Raises:
-        InputError: an argument cannot be used, or there is no such simulator.
-        RASTrainerError: there is no display.
-    """
-    size = None if arguments.size is None else _size(arguments.size)
-    if not re.match(r"https?://[^/\s]+/?$", arguments.connect):
-        raise InputError("--connect must be an address, such as http://127.0.0.1:18945.")
-    key = os.environ.get(VIEW_KEY_VARIABLE, "")
-    if not key and arguments.code is None:
-        raise InputError("--code must be the pairing code that the simulator shows.")
-    os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
-    # Only here: VTK takes time to import.
-    from rastrainer_simulator.desktop.app import DesktopWindow, WindowOptions
-    from rastrainer_simulator.desktop.connection import pair
-    from rastrainer_simulator.desktop.viewports import Quality
-
-    if arguments.code is not None:
-        key = asyncio.run(pair(arguments.connect, arguments.code))
-    options = WindowOptions(
-        url=arguments.connect,
-        key=key,
-        size=size,
-        is_fullscreen=arguments.fullscreen,
-        quality=None if arguments.quality == "auto" else Quality(arguments.quality),
-        pictures=arguments.pictures,
-        picture_quality=Quality(arguments.picture_quality),
-        frame_log=arguments.frame_log,
-    )
-    with keep_logs(arguments.log_folder or log_folder(), "window"):
-        if not has_display():
-            raise InputError("No window can be opened on this machine: there is no display.")
-        asyncio.run(DesktopWindow(options).run())
-    return 0
-
-
-def _size(text: str) -> tuple[int, int]:
-    width, _x, height = text.lower().partition("x")
-    if width.isdecimal() and height.isdecimal():
-        size = int(width), int(height)
-        if min(size) >= LEAST_SIDE and max(size) <= MAX_SIDE:
-            return size
-    raise InputError(
-        "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, "
-        f"each from {LEAST_SIDE} to {MAX_SIDE}."
-    )

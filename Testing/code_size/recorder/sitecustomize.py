@@ -1,7 +1,8 @@
 """Writes down which functions of the product a process calls while the file `recording` exists.
 
 Python imports this module when it starts, wherever its folder is on `PYTHONPATH`;
-`RASTRAINER_CALLED` names the folder of that file. Module bodies, class bodies, comprehensions and lambdas do not count.
+`RASTRAINER_CALLED` names the folder of that file. Module bodies, class bodies, comprehensions and
+lambdas do not count.
 """
 
 import os

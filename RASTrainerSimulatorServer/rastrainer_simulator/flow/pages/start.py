@@ -21,7 +21,6 @@ from rastrainer_simulator.input.inputs import InputDevice
 from rastrainer_simulator.ops.instructor_pin import LONGEST_PIN, SHORTEST_PIN
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 from rastrainer_simulator.presentation.screen import Menu, MenuItem
-from rastrainer_simulator.texts.texts import LANGUAGES
 
 
 class StartPage(SessionPage):
@@ -98,10 +97,7 @@ class SettingsPage(SessionPage):
 
     def step(self, item: str, direction: int) -> None:
         """Choose another option, which takes effect at once."""
-        wanted = self.session.preferences.stepped(item, direction)
-        while wanted.language not in self.session.languages:
-            wanted = wanted.stepped("language", direction)
-        self.session.prefer(wanted)
+        self.session.prefer(self.session.preferences.stepped(item, direction))
 
     def _item(self, name: str) -> MenuItem:
         lock = self.session.lock
@@ -114,8 +110,6 @@ class SettingsPage(SessionPage):
     def _help(self, name: str) -> str:
         if self.session.lock.is_locked and name not in OF_TRAINEES:
             return self.say("settings.locked")
-        if name == "language" and set(self.session.languages) != set(LANGUAGES):
-            return self.say("window.no font")
         return self.say(f"settings.{name} help", file=PREFERENCES_FILE)
 
     def _value(self, name: str) -> str:

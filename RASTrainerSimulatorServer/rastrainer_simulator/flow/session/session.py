@@ -90,7 +90,6 @@ class TrainingSession:
             else None.
         goes_on_blind: the trial that the trainee wants to go on without its picture; "" for none.
         setting_up: has the simulation continue with other settings, or on another head.
-        languages: those that can be chosen.
     """
 
     def __init__(
@@ -127,7 +126,6 @@ class TrainingSession:
         self.screen_sticks = ScreenSticks()
         self.layouts: dict[int, Mapping[str, str]] = {}
         self.lock = InstructorLock(services.pin)
-        self.languages = services.languages
         self.list_scenarios = services.list_scenarios
         self.is_slicer_connected = services.is_slicer_connected
         self.quit = services.quit
