@@ -14,8 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rastrainer.commands import CommandName
 from rastrainer.igtl.client import Client
-from rastrainer.protocol import PROTOCOL_VERSION, CommandName, Phase
+from rastrainer.protocol import PROTOCOL_VERSION, Phase
 from rastrainer_simulator.desktop.app import TRIED_FRAMES
 from Testing.benchmarks.row import row
 from Testing.benchmarks.watched_loop import WatchedLoop

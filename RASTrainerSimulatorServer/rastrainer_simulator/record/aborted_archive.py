@@ -11,11 +11,12 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import header_number
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal, stamp
 from rastrainer.journal.recording import WholeRecording
-from rastrainer.protocol import PROCEDURE_PHASES, AbortReason, CommandName, Phase
+from rastrainer.protocol import PROCEDURE_PHASES, AbortReason, Phase
 from rastrainer.scenario.scenario import method_of
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TouchedPoint

@@ -8,11 +8,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+from rastrainer.commands import CommandName
 from rastrainer.journal.folder import UNNUMBERED, JournalNumber, header_number
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, stamp
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trial_motion import trial_motion
-from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase, RegistrationMethod
+from rastrainer.protocol import PROCEDURE_PHASES, Phase, RegistrationMethod
 from rastrainer.scenario.scenario import method_of, task_by_method
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.how_played import MovedBy

@@ -6,8 +6,9 @@ import json
 import numpy as np
 import pytest
 
+from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
-from rastrainer.protocol import CommandName, Phase
+from rastrainer.protocol import Phase
 from rastrainer.registration.registration import register
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.analysis import RevealedTruth, analyze_trial

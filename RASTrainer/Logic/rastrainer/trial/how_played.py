@@ -13,9 +13,10 @@ from enum import Enum
 from typing import Any
 
 from rastrainer import json_checks
+from rastrainer.commands import CommandName
 from rastrainer.files.json_fields import from_json_object
 from rastrainer.json_checks import Argument
-from rastrainer.protocol import CommandName, Mode, Phase
+from rastrainer.protocol import Mode, Phase
 
 MAX_WAY_MM = 1e9
 MAX_COUNT = 10**9
