@@ -26,7 +26,7 @@ from rastrainer_simulator.vectors import Vector, vector
 
 @dataclass(frozen=True)
 class OperatorCommand:
-    """One command whose arguments `rastrainer.command_arguments.check_arguments` has accepted.
+    """One command whose arguments `rastrainer.commands.check_arguments` has accepted.
 
     `arguments` keep the names and units of the wire (mm); `ticket` is returned in the answer;
     `sender` names the client, for the state's `operator`.

@@ -16,8 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rastrainer.commands import CommandName
 from rastrainer.igtl.client import Client
-from rastrainer.protocol import PROTOCOL_VERSION, CommandName, Phase
+from rastrainer.protocol import PROTOCOL_VERSION, Phase
 from Testing.benchmarks.row import row
 from Testing.benchmarks.watched_loop import WatchedLoop
 from Testing.end_to_end.lab import Lab

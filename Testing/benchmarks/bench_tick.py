@@ -13,10 +13,10 @@ from pathlib import Path
 
 import numpy as np
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
 from rastrainer.igtl.client import Client
-from rastrainer.protocol import PROTOCOL_VERSION, CommandName
+from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.state import HANDS_OFF, Motion, OperatorCommand, OperatorInput

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from rastrainer import transforms
-from rastrainer.command_arguments import check_arguments
-from rastrainer.protocol import CommandName, Phase, TouchRule
+from rastrainer.commands import CommandName, check_arguments
+from rastrainer.protocol import Phase, TouchRule
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.state import HANDS_OFF, Motion, OperatorCommand, OperatorInput

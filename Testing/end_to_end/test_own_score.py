@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import pytest
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import check_arguments
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Client
 from rastrainer.journal.folder import journals_of

@@ -15,16 +15,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import COMMANDS, CommandName, check_arguments
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import newest_journal
 from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, JournalReading, read_journal
-from rastrainer.protocol import CommandName, Phase, Proximity
+from rastrainer.protocol import Phase, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.procedure_motion import FED
 from rastrainer_simulator.state import OperatorCommand, StartingPoint
 from rastrainer_simulator.training.feed import NO_FEED, Feed, HeadAhead
-from rastrainer_simulator.training.procedure_phases import OF_A_PROCEDURE
 from rastrainer_simulator.training.rules import INTERRUPTED, RECORDING_FAILED, TRACED, TouchMoment
 from rastrainer_simulator.training.trial_start import DRAWN_SEED
 from rastrainer_simulator.vectors import ZERO, vector
@@ -113,14 +112,7 @@ def meters(value_mm: float) -> float:
 
 _OVER = frozenset({"registered", "aborted", "attempt"})
 _EFFECTS: Mapping[str, frozenset[str]] = {
-    CommandName.START_TASK: frozenset({"phase"}),
-    CommandName.CAPTURE: frozenset({"touch", "checkpoint", "rejected"}),
-    CommandName.TRACE: frozenset({"stroke"}),
-    CommandName.UNDO: frozenset({"undo", "stroke"}),
-    CommandName.PAUSE: frozenset({"phase"}),
-    CommandName.RESUME: frozenset({"phase"}),
-    CommandName.REGISTER: frozenset({"phase"}),
-    **dict.fromkeys(OF_A_PROCEDURE, frozenset({"phase"})),
+    **{each: each.entries for each in COMMANDS.values() if each.entries},
     RECORDING_FAILED: frozenset({"phase"}),
 }
 """The kinds of entries that show that a command was carried out."""

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rastrainer.commands import CommandName
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.protocol import CommandName, Phase, Proximity
+from rastrainer.protocol import Phase, Proximity
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.collision import head_collision, stand_pose

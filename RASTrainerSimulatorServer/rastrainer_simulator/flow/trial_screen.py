@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 
+from rastrainer.commands import CommandName
 from rastrainer.protocol import (
     FIDUCIAL_COUNT,
     MAX_TRACE_POINTS,
     MIN_TRACE_POINTS,
     PROCEDURE_PHASES,
     TRIAL_RUN,
-    CommandName,
     Guidance,
     Phase,
     StepKind,

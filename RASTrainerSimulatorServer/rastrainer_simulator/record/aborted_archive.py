@@ -11,12 +11,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import JournalNumber
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal, stamp
 from rastrainer.journal.recording import WholeRecording
 from rastrainer.json_records import record_from_json, record_to_json
-from rastrainer.protocol import PROCEDURE_PHASES, AbortReason, CommandName, Phase
+from rastrainer.protocol import AbortReason, PROCEDURE_PHASES, Phase
 from rastrainer.scenario.scenario import method_of
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TouchedPoint

@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
+from rastrainer.commands import CommandName
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.journal.folder import SUFFIX, journals_of
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
 from rastrainer.json_records import record_from_json, record_to_json
-from rastrainer.protocol import CommandName
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.record.aborted_archive import AbortedArchive

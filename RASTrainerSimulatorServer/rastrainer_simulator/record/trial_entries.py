@@ -7,12 +7,13 @@ import struct
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from rastrainer.journal.folder import UNNUMBERED, JournalNumber
+from rastrainer.commands import CommandName
+from rastrainer.journal.folder import JournalNumber, UNNUMBERED, header_number
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, stamp
 from rastrainer.journal.recording import Recording
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.motion.trial_motion import trial_motion
-from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase, RegistrationMethod
+from rastrainer.protocol import PROCEDURE_PHASES, Phase, RegistrationMethod
 from rastrainer.scenario.scenario import method_of, task_by_method
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.how_played import MovedBy

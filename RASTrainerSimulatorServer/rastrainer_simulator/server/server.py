@@ -13,9 +13,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rastrainer.commands import CommandName
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.journal.journal_file import JournalReading
-from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, CommandName
+from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
 from rastrainer.scenario.scenario import task_by_method
 from rastrainer.study.curriculum.curriculum_message import CurriculumMessage
 from rastrainer.study.protocol.steps import StudyStep

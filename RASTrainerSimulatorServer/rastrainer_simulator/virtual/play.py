@@ -11,14 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import RASTrainerError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.journal.folder import SUFFIX
 from rastrainer.journal.journal_file import file_stamp, iso
 from rastrainer.json_records import record_from_json
 from rastrainer.procedure.record import ProcedureRecord, UsedRegistration
-from rastrainer.protocol import CommandName, Mode, Phase, Proximity
+from rastrainer.protocol import Mode, Phase, Proximity
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial

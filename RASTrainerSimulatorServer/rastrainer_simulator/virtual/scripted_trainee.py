@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 
 from rastrainer import transforms
+from rastrainer.commands import CommandName
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.protocol import SPEED_LIMIT_MM_S, CommandName, Phase
+from rastrainer.protocol import SPEED_LIMIT_MM_S, Phase
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.score_reference import computed_once, fiducial_normals
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from rastrainer.commands import CommandName
 from rastrainer.errors import RASTrainerError
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import String, Transform
@@ -16,7 +17,7 @@ from rastrainer.igtl.message import Message
 from rastrainer.json_records import record_from_json
 from rastrainer.procedure.checks import planned_bone
 from rastrainer.procedure.plan import ProcedureTrajectory, read_procedure_meshes
-from rastrainer.protocol import PROTOCOL_VERSION, CommandName, DeviceName, Mode, Phase, Proximity
+from rastrainer.protocol import PROTOCOL_VERSION, DeviceName, Mode, Phase, Proximity
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.touch_registration import GivenPoints, register_trial

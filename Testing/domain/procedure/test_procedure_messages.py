@@ -5,7 +5,12 @@ import json
 import numpy as np
 
 from rastrainer import transforms
-from rastrainer.command_arguments import check_arguments, decode_answer_object, decode_json_object
+from rastrainer.commands import (
+    CommandName,
+    check_arguments,
+    decode_answer_object,
+    decode_json_object,
+)
 from rastrainer.json_checks import MAX_MESSAGE_VALUES, MAX_RECORD_VALUES
 from rastrainer.json_records import record_from_json
 from rastrainer.procedure.errors import analyze_procedure
@@ -16,7 +21,7 @@ from rastrainer.procedure.record import (
     MAX_FEED_METRICS,
     MAX_TOUCHED_CHECKPOINTS,
 )
-from rastrainer.protocol import FIDUCIAL_COUNT, PROCEDURE_PHASES, CommandName
+from rastrainer.protocol import FIDUCIAL_COUNT, PROCEDURE_PHASES
 from rastrainer.study.database.study_trials import RECORD_LIMIT_BYTES
 from rastrainer.trial.procedure_outcome import ProcedureMeasures, ProcedureOutcome, score_procedure
 from rastrainer.trial.record import TrialRecord

@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_from_json, record_to_json
-from rastrainer.protocol import CommandName
 from rastrainer.registration.registration import register
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.trial.analysis import RevealedTruth, analyze_trial, score_arguments

@@ -5,9 +5,9 @@ import copy
 import numpy as np
 import pytest
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.journal.journal_file import read_journal, revealed_seed
-from rastrainer.protocol import CommandName, Proximity
+from rastrainer.protocol import Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.proximity import DEEPEST, Pressing
 from rastrainer_simulator.core.simulation import Simulation

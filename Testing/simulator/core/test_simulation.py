@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.protocol import CommandName, Phase, Proximity, TouchRule
+from rastrainer.protocol import Phase, Proximity, TouchRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.score_reference import fiducial_normals
 from rastrainer_simulator.core.settings import SimulationSettings

@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import check_arguments
 from rastrainer.protocol import Phase, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.presentation.presenter import Control, Feedback, Hello

@@ -12,11 +12,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.journal.folder import number_of
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.json_records import record_from_json
-from rastrainer.protocol import CommandName, Phase
+from rastrainer.protocol import Phase
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop import control_loop
@@ -500,8 +500,9 @@ KILLED = """
 import sys
 from dataclasses import replace
 from pathlib import Path
-from rastrainer.command_arguments import check_arguments
-from rastrainer.protocol import CommandName, TouchRule
+from rastrainer.commands import check_arguments
+from rastrainer.commands import CommandName
+from rastrainer.protocol import TouchRule
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation

@@ -9,9 +9,10 @@ from dataclasses import replace
 
 import pytest
 
+from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, read_journal
-from rastrainer.protocol import MIN_ABORTED_S, CommandName, Phase
+from rastrainer.protocol import MIN_ABORTED_S, Phase
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.trial.aborted_trial import AbortedTrial

@@ -6,11 +6,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.journal import journal_file
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.json_records import record_from_json, record_to_json
-from rastrainer.protocol import CommandName, Phase
+from rastrainer.protocol import Phase
 from rastrainer.study.database.study import Study
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import find_interrupted

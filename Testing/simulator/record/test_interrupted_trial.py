@@ -9,12 +9,12 @@ import threading
 import numpy as np
 import pytest
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, read_journal
 from rastrainer.journal.recording import Recording
 from rastrainer.json_records import record_from_json
-from rastrainer.protocol import CommandName, Phase, Proximity
+from rastrainer.protocol import Phase, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import InterruptedTrial, find_interrupted

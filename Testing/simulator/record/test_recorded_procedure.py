@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
+from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.journal.recording import Recording, WholeRecording, read_track
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.motion.trial_motion import trial_motion
-from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
+from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.study.journal_check import check_journal
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.aborted_trial import AbortedTrial

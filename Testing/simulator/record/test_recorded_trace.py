@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import pytest
 
+from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, read_journal
 from rastrainer.json_records import record_from_json, record_to_json
-from rastrainer.protocol import MIN_TRACE_POINTS, CommandName, Phase, RegistrationMethod
+from rastrainer.protocol import MIN_TRACE_POINTS, Phase, RegistrationMethod
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
 from rastrainer_simulator.core.simulation import Simulation

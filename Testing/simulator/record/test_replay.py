@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.files.writing import write_json
 from rastrainer.journal.journal_file import SEED_SUFFIX, read_journal
-from rastrainer.protocol import CommandName, TouchRule
+from rastrainer.protocol import TouchRule
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.cli.main import main

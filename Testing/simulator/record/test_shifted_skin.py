@@ -5,13 +5,13 @@ import json
 import numpy as np
 import pytest
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.trial_head import UNMOVED, SkinShift
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.json_records import record_from_json, record_to_json
-from rastrainer.protocol import CommandName, Phase
+from rastrainer.protocol import Phase
 from rastrainer.study.journal_check import check_journal
 from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.record import TrialRecord

@@ -7,12 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rastrainer.command_arguments import check_arguments, decode_json_object
+from rastrainer.commands import CommandName, check_arguments, decode_json_object
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, Integrity, read_journal, stamp
 from rastrainer.json_checks import MAX_DEPTH
 from rastrainer.json_records import record_to_json
-from rastrainer.protocol import CommandName
 from rastrainer.trial.record import TouchedPoint, TrialRecord
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_archive import (

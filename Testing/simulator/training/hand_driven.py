@@ -5,8 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
+from rastrainer.commands import CommandName
 from rastrainer.procedure.plan import Checkpoint, Procedure, ProcedureKind, ProcedureTrajectory
-from rastrainer.protocol import CommandName, Phase
+from rastrainer.protocol import Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import OperatorCommand
 from rastrainer_simulator.training.feed import NO_FEED, Feed, HeadAhead

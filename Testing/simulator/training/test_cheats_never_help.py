@@ -5,9 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
+from rastrainer.commands import CommandName
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.json_records import record_from_json
-from rastrainer.protocol import CommandName, TouchRule
+from rastrainer.protocol import TouchRule
 from rastrainer.scenario.points import LABELS, Task
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.writer import HeadDraft, write_scenario

@@ -6,9 +6,10 @@ import json
 import numpy as np
 import pytest
 
+from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_from_json
-from rastrainer.protocol import CommandName, Phase
+from rastrainer.protocol import Phase
 from rastrainer.registration.registration import register
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.analysis import RevealedTruth, analyze_trial

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.head.mesh import outward_normal, read_head_mesh
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trajectory import Trajectory
-from rastrainer.protocol import CommandName, Proximity, TouchRule
+from rastrainer.protocol import Proximity, TouchRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.score_reference import fiducial_normals

@@ -12,8 +12,11 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Annotated, Any
 
-from rastrainer.json_checks import number, object_of, text, whole_number
-from rastrainer.protocol import CommandName, Mode, Phase
+from rastrainer import json_checks
+from rastrainer.commands import CommandName
+from rastrainer.files.json_fields import from_json_object
+from rastrainer.json_checks import Argument, number, object_of, text, whole_number
+from rastrainer.protocol import Mode, Phase
 
 MAX_WAY_MM = 1e9
 MAX_COUNT = 10**9

@@ -15,10 +15,10 @@ from concurrent.futures import Future
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_from_json
-from rastrainer.protocol import TRIAL_RUN, CommandName, Phase
+from rastrainer.protocol import Phase, TRIAL_RUN
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.delivered_trial import scored_with_journal, with_progress_among
 from rastrainer.trial.analysis import (

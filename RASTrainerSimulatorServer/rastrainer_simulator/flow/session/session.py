@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals_of
 from rastrainer.procedure.geometry import BoneAhead
-from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, CommandName, Mode, RegistrationMethod
+from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Mode, RegistrationMethod
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
 from rastrainer.study.protocol.steps import StudyStep

@@ -11,8 +11,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from rastrainer.commands import CommandName
 from rastrainer.head.trial_head import Perturbation
-from rastrainer.protocol import TRIAL_RUN, CommandName
+from rastrainer.protocol import TRIAL_RUN
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import SimulationSetup

@@ -10,8 +10,8 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from typing import Any, Generic, TypeVar
 
+from rastrainer.commands import CommandName
 from rastrainer.json_records import record_from_json
-from rastrainer.protocol import CommandName
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.signal import Signal

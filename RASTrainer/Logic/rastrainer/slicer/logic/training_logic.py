@@ -8,17 +8,11 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
 from rastrainer.json_checks import is_number
-from rastrainer.protocol import (
-    FIDUCIAL_COUNT,
-    OPEN_PHASES,
-    TRIAL_RUN,
-    CommandName,
-    Phase,
-    RegistrationMethod,
-)
+from rastrainer.protocol import FIDUCIAL_COUNT, OPEN_PHASES, TRIAL_RUN, Phase, RegistrationMethod
 from rastrainer.scenario.scenario import Scenario, method_of
 from rastrainer.slicer.background_work import CallLater, callNow
 from rastrainer.slicer.link.link import Link

@@ -21,10 +21,11 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
 from rastrainer.json_records import record_from_json
-from rastrainer.protocol import OPEN_PHASES, CommandName
+from rastrainer.protocol import OPEN_PHASES
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
