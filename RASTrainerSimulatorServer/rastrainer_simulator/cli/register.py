@@ -26,7 +26,15 @@ from rastrainer.registration.registration import Registration, register
 from rastrainer.registration.surface_error import knowledge_of, surface_target_error
 from rastrainer.registration.surface_match import SurfaceMatch, match_surface
 from rastrainer.registration.target_error import INTERVAL_NOTE, TargetError, target_error
-from rastrainer_simulator.cli.options import add_json, json_text, text_table
+from rastrainer_simulator.cli.options import (
+    JSON,
+    Command,
+    json_text,
+    one_of,
+    option,
+    path,
+    text_table,
+)
 
 FRE_NOTE = (
     "FRE is the error at the fiducials; it does not predict the error at a target in a single case."
@@ -63,65 +71,14 @@ class StatedErrors:
         return cls(fle_mm, error, expected_fre(registration, error), misfit)
 
 
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add the command to a command line; `arguments.run(arguments)` runs it."""
-    parser = subparsers.add_parser(
-        "register",
-        help="register moving points to fixed points",
-        description=(
-            "Register two files of points: CSV with the header label,x,y,z (mm), or Slicer's "
-            ".mrk.json, .fcsv or exported table. Points are paired by label, or by order where the "
-            "labels are left out; what is deselected or not placed in Slicer is not used. "
-            "With --surface they are landmarks, and a trace over the skin is matched to a head."
-        ),
-    )
-    parser.add_argument("moving", metavar="MOVING", help="the points to be mapped")
-    parser.add_argument("fixed", metavar="FIXED", help="the points to map them to")
-    parser.add_argument("--type", choices=KINDS, default=RIGID, help="of the transform")
-    parser.add_argument(
-        "--target",
-        nargs=3,
-        type=float,
-        metavar=("X", "Y", "Z"),
-        help="point in the fixed space (mm) whose error is estimated; default: the centroid",
-    )
-    weighting = parser.add_mutually_exclusive_group()
-    weighting.add_argument(
-        "--fle",
-        metavar="FILE.csv",
-        help=(
-            "weight each point by 1/FLE² (rigid only): a CSV file with the header label,fle, the "
-            "RMS localization error of each point in mm; may be MOVING itself with that column"
-        ),
-    )
-    weighting.add_argument(
-        "--weights",
-        metavar="FILE.csv",
-        help=(
-            "weight the points (rigid only): a CSV file with the header label,weight; only the "
-            "ratios matter, and the size of the errors is estimated from the residuals"
-        ),
-    )
-    parser.add_argument(
-        "--surface",
-        metavar="TRACE",
-        help="points drawn over the skin, in the frame of MOVING: CSV, .mrk.json or .ply",
-    )
-    parser.add_argument(
-        "--head", type=Path, metavar="HEAD.ply", help="the head's mesh for --surface, RAS mm"
-    )
-    add_json(parser)
-    parser.set_defaults(run=run)
-
-
 def run(arguments: argparse.Namespace) -> int:
     """Print the registration and return the exit status."""
     left_out: dict[str, tuple[str, ...]] = {}
 
-    def read(path: str) -> PointList:
-        points = read_points(path)
+    def read(name: str) -> PointList:
+        points = read_points(name)
         if points.left_out:
-            left_out[path] = points.left_out_names
+            left_out[name] = points.left_out_names
         return points
 
     if arguments.surface is None:
@@ -134,8 +91,8 @@ def run(arguments: argparse.Namespace) -> int:
         print(json_text({**answer, "left_out": left_out}))
         return 0
     print(text)
-    for path, names in left_out.items():
-        print(f"Left out of {path}, deselected or not placed in Slicer: {', '.join(names)}")
+    for name, names in left_out.items():
+        print(f"Left out of {name}, deselected or not placed in Slicer: {', '.join(names)}")
     return 0
 
 
@@ -277,9 +234,9 @@ def match_files(
 
     The points MOVING and FIXED, three landmarks or more, give the start.
     """
-    for option in ("type", "fle", "weights"):
-        if getattr(arguments, option) not in (None, "rigid"):
-            raise InputError(f"--surface matches rigidly and unweighted: leave out --{option}.")
+    for name in ("type", "fle", "weights"):
+        if getattr(arguments, name) not in (None, "rigid"):
+            raise InputError(f"--surface matches rigidly and unweighted: leave out --{name}.")
     mesh = _head(arguments.head)
     labels, moving, fixed = pair(read(arguments.moving), read(arguments.fixed))
     trace = read(arguments.surface).points
@@ -344,3 +301,52 @@ def match_text(match: SurfaceMatch, error: TargetError) -> str:
     if match.warnings:
         lines += ["", *(f"Warning: {warning.message}" for warning in match.warnings)]
     return "\n".join(lines)
+
+
+COMMANDS = (
+    Command(
+        "register",
+        "register moving points to fixed points",
+        run,
+        (
+            option("moving", metavar="MOVING", help="the points to be mapped"),
+            option("fixed", metavar="FIXED", help="the points to map them to"),
+            option("--type", choices=KINDS, default=RIGID, help="of the transform"),
+            option(
+                "--target",
+                nargs=3,
+                type=float,
+                metavar=("X", "Y", "Z"),
+                help="point in the fixed space (mm) whose error is estimated; default: the "
+                "centroid",
+            ),
+            one_of(
+                option(
+                    "--fle",
+                    metavar="FILE.csv",
+                    help="weight each point by 1/FLE² (rigid only): a CSV file with the header "
+                    "label,fle, the RMS localization error of each point in mm; may be MOVING "
+                    "itself with that column",
+                ),
+                option(
+                    "--weights",
+                    metavar="FILE.csv",
+                    help="weight the points (rigid only): a CSV file with the header label,weight; "
+                    "only the ratios matter, and the size of the errors is estimated from the "
+                    "residuals",
+                ),
+            ),
+            option(
+                "--surface",
+                metavar="TRACE",
+                help="points drawn over the skin, in the frame of MOVING: CSV, .mrk.json or .ply",
+            ),
+            path("--head", "HEAD.ply", "the head's mesh for --surface, RAS mm"),
+            JSON,
+        ),
+        "Register two files of points: CSV with the header label,x,y,z (mm), or Slicer's "
+        ".mrk.json, .fcsv or exported table. Points are paired by label, or by order where the "
+        "labels are left out; what is deselected or not placed in Slicer is not used. With "
+        "--surface they are landmarks, and a trace over the skin is matched to a head.",
+    ),
+)
