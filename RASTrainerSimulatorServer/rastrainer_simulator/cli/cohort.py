@@ -36,7 +36,6 @@ MAX_TRAINEES = 100_000
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Simulate the cohort and return the exit status."""
     if not 2 <= arguments.trainees <= MAX_TRAINEES or arguments.seed < 0:
         raise InputError(f"A cohort has 2 to {MAX_TRAINEES} trainees, and its seed is 0 or above.")
     protocol = read_study_protocol(arguments.protocol or asset_path(*SHIPPED_PROTOCOL))

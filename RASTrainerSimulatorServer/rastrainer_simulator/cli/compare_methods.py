@@ -55,7 +55,6 @@ MOST_TRIALS = 10_000
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print the comparison and return the exit status."""
     folder = arguments.scenario or asset_path("scenarios", "colin27")
     scenario = load_scenario(folder)
     notes: list[str] = [NOTE]

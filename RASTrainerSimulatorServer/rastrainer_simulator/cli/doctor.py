@@ -33,7 +33,6 @@ Answers = Iterator[tuple[str, str]]
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print a line for each finding and return the exit status."""
     findings = [
         {"check": title, "verdict": verdict, "sentence": sentence, "remedy": remedy}
         for title, test, advice in CHECKS

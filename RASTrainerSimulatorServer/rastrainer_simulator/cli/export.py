@@ -42,7 +42,6 @@ FORMATS = ("csv", "bids", "xapi", "slicer")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write the export and return the exit status."""
     formats = arguments.format or [f for f in FORMATS if f != "bids" or arguments.records]
     if "bids" in formats and arguments.records is None:
         raise InputError("Motion-BIDS needs the journals: give their folder with --records.")

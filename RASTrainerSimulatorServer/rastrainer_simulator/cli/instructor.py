@@ -29,7 +29,6 @@ DEFAULT_BOARD_PORT = 18955
 
 
 def serve_board(arguments: argparse.Namespace) -> int:
-    """Serve the board until it is stopped, and return the exit status."""
     check_ports(arguments)
     config = arguments.config or config_folder()
     asyncio.run(_serve(config, arguments.port, arguments.study))
@@ -61,7 +60,6 @@ async def _serve(config: Path, port: int, place: StudyPlace | None) -> None:
 
 
 def set_pin(arguments: argparse.Namespace) -> int:
-    """Set or remove the PIN, and return the exit status."""
     pin = InstructorPin(arguments.config or config_folder())
     if arguments.remove:
         pin.set("")

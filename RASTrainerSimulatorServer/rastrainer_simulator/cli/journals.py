@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
 
 def verify(arguments: argparse.Namespace) -> int:
-    """Print one line for each journal and return the exit status."""
     if arguments.study is None:
         return max([_verify(path) for path in arguments.journals])
     from rastrainer.study.database.study import Study
@@ -58,7 +57,6 @@ def _differs(reading: JournalReading, study: Study) -> str:
 
 
 def measure(arguments: argparse.Namespace) -> int:
-    """Print the metrics and return the exit status."""
     # Only here: to verify a journal, no metric need be imported.
     from rastrainer.journal.recording import Recording
     from rastrainer.motion.trial_motion import trial_motion

@@ -31,7 +31,6 @@ DEFAULT_LTI_PORT = 18965
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Serve until it is stopped, or print what to register, and return the exit status."""
     if importlib.util.find_spec("jwt") is None:
         raise InputError("This needs PyJWT: install it with pip install 'rastrainer[lti]'.")
     check_ports(arguments)

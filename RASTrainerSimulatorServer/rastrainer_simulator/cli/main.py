@@ -38,8 +38,8 @@ MODULES = {
     "simulate-cohort": "rastrainer_simulator.cli.cohort",
     "demo": "rastrainer_simulator.cli.demo",
 }
-"""Which module has each command among its `COMMANDS`: only that one is imported, so that `rastrainer
-register` does not wait for the robot."""
+"""Which module has each command among its `COMMANDS`. Only that one is imported, so that
+`rastrainer register` does not wait for the robot."""
 
 
 class _HelpWithDefaults(argparse.HelpFormatter):

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
-from dataclasses import dataclass
-from pathlib import Path
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.files.point_files import read_point_numbers, read_points
 from rastrainer.files.point_list import PointList, pair
-from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.head.mesh import read_head_mesh
 from rastrainer.registration.fits import KINDS, RIGID
 from rastrainer.registration.localization_error import (
     LocalizationError,
@@ -72,7 +71,6 @@ class StatedErrors:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print the registration and return the exit status."""
     left_out: dict[str, tuple[str, ...]] = {}
 
     def read(name: str) -> PointList:
@@ -129,17 +127,7 @@ def registration_json(
             "expected_fre_mm": stated.expected_fre_mm,
             "misfit_probability": stated.misfit,
         },
-        "expected_tre": None
-        if error is None
-        else {
-            "target_mm": list(error.target_mm),
-            "expected_mm": error.expected_mm,
-            "independent_mm": error.independent_mm,
-            "interval_mm": list(error.interval_mm),
-            "confidence": error.confidence,
-            "fle_mm": error.fle_mm,
-            "note": INTERVAL_NOTE,
-        },
+        "expected_tre": None if error is None else {**asdict(error), "note": INTERVAL_NOTE},
     }
 
 
@@ -159,15 +147,8 @@ def registration_text(
     if stated is not None:
         lines.append(f"     {stated.expected_fre_mm:.3f} mm to be expected from the stated FLE")
     if error is not None:
-        x, y, z = error.target_mm
-        low, high = error.interval_mm
-        lines += [
-            f"TRE  {error.expected_mm:.3f} mm expected at ({x:.1f}, {y:.1f}, {z:.1f}), "
-            f"{error.confidence:.0%} interval from {low:.3f} to {high:.3f} mm",
-            INTERVAL_NOTE,
-        ]
-    lines += [FRE_NOTE, "", "Moving to fixed (mm)"]
-    lines += ["  ".join(f"{value:12.6f}" for value in row) for row in registration.matrix]
+        lines += [f"TRE  {_expected(error)}", INTERVAL_NOTE]
+    lines += [FRE_NOTE, "", "Moving to fixed (mm)", *_matrix_lines(registration.matrix)]
     lines += ["", _residual_table(registration, stated)]
     warnings = [warning.message for warning in registration.warnings]
     if stated is not None and stated.misfit < MISFIT_LEVEL:
@@ -180,25 +161,31 @@ def registration_text(
     return "\n".join(lines)
 
 
+def _expected(error: TargetError) -> str:
+    x, y, z = error.target_mm
+    low, high = error.interval_mm
+    return (
+        f"{error.expected_mm:.3f} mm expected at ({x:.1f}, {y:.1f}, {z:.1f}), "
+        f"{error.confidence:.0%} interval from {low:.3f} to {high:.3f} mm"
+    )
+
+
+def _matrix_lines(matrix: np.ndarray) -> list[str]:
+    return ["  ".join(f"{value:12.6f}" for value in row) for row in matrix]
+
+
 def _residual_table(registration: Registration, stated: StatedErrors | None) -> str:
-    header, columns = ["Point", "Residual (mm)", "x", "y", "z"], []
+    header, last = ["Point", "Residual (mm)", "x", "y", "z"], None
     if stated is not None:
-        header.append("FLE (mm)")
-        columns = [f"{value:g}" for value in stated.fle_mm]
+        header, last = [*header, "FLE (mm)"], stated.fle_mm
     elif registration.weights is not None:
-        header.append("Weight")
-        columns = [f"{value:g}" for value in registration.weights]
+        header, last = [*header, "Weight"], registration.weights
+    lengths, vectors = registration.residuals_mm, registration.residual_vectors_mm
     rows = [
-        [label, f"{length:.3f}", *(f"{value:+.3f}" for value in vector)]
-        for label, length, vector in zip(
-            registration.labels,
-            registration.residuals_mm,
-            registration.residual_vectors_mm,
-            strict=True,
-        )
+        [label, f"{lengths[row]:.3f}", *(f"{value:+.3f}" for value in vectors[row])]
+        + ([] if last is None else [f"{last[row]:g}"])
+        for row, label in enumerate(registration.labels)
     ]
-    if columns:
-        rows = [[*row, cell] for row, cell in zip(rows, columns, strict=True)]
     return text_table(header, rows)
 
 
@@ -237,18 +224,14 @@ def match_files(
     for name in ("type", "fle", "weights"):
         if getattr(arguments, name) not in (None, "rigid"):
             raise InputError(f"--surface matches rigidly and unweighted: leave out --{name}.")
-    mesh = _head(arguments.head)
+    if arguments.head is None:
+        raise InputError("--surface needs the head: give its mesh with --head HEAD.ply.")
+    mesh = read_head_mesh(arguments.head)
     labels, moving, fixed = pair(read(arguments.moving), read(arguments.fixed))
     trace = read(arguments.surface).points
     match = match_surface(trace, mesh, register(moving, fixed, labels=labels).matrix)
     target = mesh.middle if arguments.target is None else np.array(arguments.target)
     return match, surface_target_error(knowledge_of(match), target)
-
-
-def _head(path: Path | None) -> HeadMesh:
-    if path is None:
-        raise InputError("--surface needs the head: give its mesh with --head HEAD.ply.")
-    return read_head_mesh(path)
 
 
 def match_json(match: SurfaceMatch, error: TargetError) -> dict[str, Any]:
@@ -267,28 +250,19 @@ def match_json(match: SurfaceMatch, error: TargetError) -> dict[str, Any]:
         "slide_place": match.slide.place,
         "residuals_mm": match.residuals_mm.tolist(),
         "warnings": [warning.to_json() for warning in match.warnings],
-        "expected_tre": {
-            "target_mm": list(error.target_mm),
-            "expected_mm": error.expected_mm,
-            "interval_mm": list(error.interval_mm),
-            "confidence": error.confidence,
-            "note": RESIDUAL_NOTE,
-        },
+        "expected_tre": {**asdict(error), "note": RESIDUAL_NOTE},
     }
 
 
 def match_text(match: SurfaceMatch, error: TargetError) -> str:
     """Return a match as text for people, with units and warnings."""
-    x, y, z = error.target_mm
-    low, high = error.interval_mm
     slide = match.slide
     lines = [
         f"Surface registration of {len(match.residuals_mm)} points",
         "",
         f"Residual  {match.rms_mm:.3f} mm (root mean square of the points that count, "
         f"{match.inlier_share:.0%})",
-        f"TRE       {error.expected_mm:.3f} mm expected at ({x:.1f}, {y:.1f}, {z:.1f}), "
-        f"{error.confidence:.0%} interval from {low:.3f} to {high:.3f} mm",
+        f"TRE       {_expected(error)}",
         f"Slide     {slide.distance_mm:.1f} mm at most in the brain, {slide.way}; largest at the "
         f"{slide.place} of the head",
         f"Starts    {match.best_starts} of {match.starts} ended here; "
@@ -296,8 +270,8 @@ def match_text(match: SurfaceMatch, error: TargetError) -> str:
         RESIDUAL_NOTE,
         "",
         "Trace to head (mm)",
+        *_matrix_lines(match.matrix),
     ]
-    lines += ["  ".join(f"{value:12.6f}" for value in row) for row in match.matrix]
     if match.warnings:
         lines += ["", *(f"Warning: {warning.message}" for warning in match.warnings)]
     return "\n".join(lines)

@@ -29,7 +29,6 @@ REPLAYS = 20
 
 
 def replay(arguments: argparse.Namespace) -> int:
-    """Show the trial, or print the result of the comparison, and return the exit status."""
     if not arguments.verify:
         return _show(arguments)
     # Only here: the robot and the scenario take time to import.
@@ -71,7 +70,6 @@ def _summary(sentence: str, report) -> str:
 
 
 def rate(arguments: argparse.Namespace) -> int:
-    """Let the rater work, report the progress, and return the exit status."""
     check_ports(arguments)
     if arguments.replays < 1:
         raise InputError("--replays must be at least 1.")

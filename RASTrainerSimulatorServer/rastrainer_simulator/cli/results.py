@@ -31,7 +31,6 @@ from rastrainer_simulator.cli.options import (
 
 
 def score(arguments: argparse.Namespace) -> int:
-    """Print the scores and return the exit status."""
     modes = trials_by_mode(read_trials(arguments.trials))
     notes = read_notes(arguments.trials.with_suffix(".json"))
     means = {
@@ -50,15 +49,9 @@ def score(arguments: argparse.Namespace) -> int:
 
 def _scores_json(scores: CohortScores) -> dict[str, Any]:
     """Return the scores of one mode as a JSON object; undefined values are None."""
+    names = ("overall", "equation_3_overall", "tasks", "subjects", "sd_population", "sd_sample")
     return {
-        "overall": scores.overall,
-        "equation_3_overall": scores.equation_3_overall,
-        "tasks": scores.tasks,
-        "subjects": scores.subjects,
-        "sd_population": scores.sd_population,
-        "sd_sample": scores.sd_sample,
-        "pearson_r": scores.pearson_r,
-        "r_squared": scores.r_squared,
+        **{name: getattr(scores, name) for name in (*names, "pearson_r", "r_squared")},
         "mean_ct": scores.reference.mean_ct_s,
         "best_rmse": scores.reference.best_rmse_mm,
         "trials": len(scores.trials),
@@ -91,7 +84,6 @@ def _or_dash(value: float | None, digits: int) -> str:
 
 
 def report(arguments: argparse.Namespace) -> int:
-    """Write the report and return the exit status."""
     # Only here: what `score` needs is imported much faster.
     from rastrainer.report.report import write_report
 

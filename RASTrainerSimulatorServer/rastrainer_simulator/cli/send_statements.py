@@ -121,7 +121,6 @@ class Sender:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Send and return the exit status: 1 if the store does not have everything."""
     if arguments.watch is not None and not 1.0 <= arguments.watch <= 86_400.0:
         raise InputError("--watch must be from 1 to 86400 s.")
     settings = read_record_store_settings(arguments.config)

@@ -38,7 +38,6 @@ NO_DISPLAY = (
 
 
 def run_simulator(arguments: argparse.Namespace) -> int:
-    """Run the simulator until it is stopped, and return the exit status."""
     _check(arguments)
     connect_to = None if arguments.connect is None else _address(arguments.connect)
     # Only here: the robot and the scenario take time to import.
@@ -98,7 +97,6 @@ LEAST_SIDE, MAX_SIDE = 320, 16_384
 
 
 def run_window(arguments: argparse.Namespace) -> int:
-    """Show the window until it is closed and return the exit status."""
     size = None if arguments.size is None else _size(arguments.size)
     if not re.match(r"https?://[^/\s]+/?$", arguments.connect):
         raise InputError("--connect must be an address, such as http://127.0.0.1:18945.")

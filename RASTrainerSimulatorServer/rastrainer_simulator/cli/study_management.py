@@ -20,7 +20,6 @@ COUNTER = "trainee_numbers"
 
 
 def run_copy_study(arguments: argparse.Namespace) -> int:
-    """Copy, print the number of rows, and return the exit status."""
     if str(arguments.source) == str(arguments.target):
         raise InputError("FROM and TO are the same study.")
     with Study.open_for_reading(arguments.source) as source, Study.open(arguments.target) as target:
@@ -80,7 +79,6 @@ def _count(connection: Connection, table: Table) -> int:
 
 
 def run_delete_trainee(arguments: argparse.Namespace) -> int:
-    """Delete the trainee and return the exit status."""
     with Study.open(arguments.study, must_exist=True) as opened:
         count = len(opened.history(arguments.pseudonym))
         if not arguments.yes:

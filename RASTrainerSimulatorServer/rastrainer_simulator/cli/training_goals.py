@@ -39,7 +39,6 @@ HEADER = ("assignment", "trial", "so far", "goal", "after", "trials", "mean")
 
 
 def follow_curriculum(arguments: argparse.Namespace) -> int:
-    """Set the curriculum if asked to, print the tables, and return the exit status."""
     curriculum = None if arguments.set is None else read_curriculum(arguments.set)
     who = arguments.trainee or ""
     if curriculum is not None or arguments.end:
@@ -80,7 +79,6 @@ LAST_TRIALS = 3
 
 
 def compute_pass_mark(arguments: argparse.Namespace) -> int:
-    """Print the mark, write it to the protocol if requested, and return the exit status."""
     both = sorted({*arguments.novices} & {*arguments.experts})
     if both:
         raise InputError(f"{both[0]} is named in both groups; name each person once, in one group.")

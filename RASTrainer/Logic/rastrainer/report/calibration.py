@@ -6,21 +6,7 @@ from collections.abc import Mapping
 
 from rastrainer.number_text import fixed
 from rastrainer.registration.target_error import INTERVAL_NOTE
-from rastrainer.report.elements import (
-    FAINT,
-    GRID,
-    INK,
-    SCATTER_LEFT,
-    Axis,
-    Sheet,
-    bullets,
-    figure,
-    mode_color,
-    paragraph,
-    scatter_sheet,
-    section,
-    table,
-)
+from rastrainer.report import page, svg
 from rastrainer.statistics.intervals import Proportion
 from rastrainer.study.outcomes import mode_title, short_mode_title
 from rastrainer.study.study_data import StudyData, TrialRow
@@ -37,10 +23,10 @@ def calibration(data: StudyData) -> str:
     found = _calibration(data)
     if not found.points and not found.without_truth:
         return ""
-    parts = [bullets(found.sentences())]
+    parts = [page.bullets(found.sentences())]
     if found.points:
         colors = {
-            mode: (short_mode_title(mode), mode_color(mode, index))
+            mode: (short_mode_title(mode), svg.mode_color(mode, index))
             for index, mode in enumerate(data.modes)
             if found.of_mode(mode).points
         }
@@ -56,9 +42,12 @@ def calibration(data: StudyData) -> str:
             for title, part in parted.items()
             if (inside := part.inside) is not None
         ]
-        parts += [figure([calibration_chart(found, colors)], caption), table([HEADER], rows)]
-    parts.append(paragraph(f"{INTERVAL_NOTE} {_note()}", "small"))
-    return section("Expected and true target error", *parts)
+        parts += [
+            page.figure([calibration_chart(found, colors)], caption),
+            page.table([HEADER], rows),
+        ]
+    parts.append(page.paragraph(f"{INTERVAL_NOTE} {_note()}", "small"))
+    return page.section("Expected and true target error", *parts)
 
 
 def _calibration(data: StudyData) -> TreCalibration:
@@ -115,7 +104,7 @@ def calibration_chart(calibration: TreCalibration, colors: Mapping[str, tuple[st
         colors: Mode → its title and color.
     """
     points = calibration.points
-    sheet, along, up = scatter_sheet(
+    sheet, along, up = svg.scatter_sheet(
         "True against expected target error (mm)",
         "expected TRE (mm)",
         "true TRE (mm)",
@@ -134,7 +123,12 @@ def calibration_chart(calibration: TreCalibration, colors: Mapping[str, tuple[st
 
 
 def _bar(
-    sheet: Sheet, along: Axis, up: Axis, point: CalibrationPoint, color: str, opacity: float
+    sheet: svg.Sheet,
+    along: svg.Axis,
+    up: svg.Axis,
+    point: CalibrationPoint,
+    color: str,
+    opacity: float,
 ) -> None:
     x = along.at(point.expected_mm)
     low, high = (up.at(end) for end in point.interval_mm)
@@ -144,7 +138,12 @@ def _bar(
 
 
 def _dot(
-    sheet: Sheet, along: Axis, up: Axis, point: CalibrationPoint, color: str, radius: float
+    sheet: svg.Sheet,
+    along: svg.Axis,
+    up: svg.Axis,
+    point: CalibrationPoint,
+    color: str,
+    radius: float,
 ) -> None:
     x, y = along.at(point.expected_mm), up.at(point.true_mm)
     if not point.is_inside:
@@ -156,21 +155,21 @@ def _dot(
     sheet.dot(x, y, radius, color, 0.85, words)
 
 
-def _legend(sheet: Sheet, colors: Mapping[str, tuple[str, str]]) -> None:
-    x, y = float(SCATTER_LEFT), 38.0
+def _legend(sheet: svg.Sheet, colors: Mapping[str, tuple[str, str]]) -> None:
+    x, y = float(svg.SCATTER_LEFT), 38.0
     for title, color in colors.values():
         sheet.dot(x + 5, y - 4, 3.6, color, 0.85)
         x = _words(sheet, x + 14, y, title)
     sheet.dot(x + 5, y - 4, 6, OFF)
-    sheet.dot(x + 5, y - 4, 3.6, GRID)
+    sheet.dot(x + 5, y - 4, 3.6, svg.GRID)
     x = _words(sheet, x + 16, y, "outside of its interval")
-    sheet.line(x + 5, y - 11, x + 5, y + 3, FAINT, 1.6)
+    sheet.line(x + 5, y - 11, x + 5, y + 3, svg.FAINT, 1.6)
     x = _words(sheet, x + 14, y, "95 % interval")
-    sheet.line(x, y - 4, x + 22, y - 4, INK, 1.3, "5 4")
+    sheet.line(x, y - 4, x + 22, y - 4, svg.INK, 1.3, "5 4")
     _words(sheet, x + 28, y, "true = expected")
 
 
-def _words(sheet: Sheet, x: float, y: float, text: str) -> float:
+def _words(sheet: svg.Sheet, x: float, y: float, text: str) -> float:
     """Draw a name and return the position of the next."""
     sheet.text(x, y, text, 11)
     return x + 22 + 5.1 * len(text)

@@ -8,22 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from rastrainer.number_text import fixed, p_text, percent, significant
-from rastrainer.report.elements import (
-    FAINT,
-    INK,
-    Axis,
-    Cell,
-    Line,
-    Sheet,
-    axis_over,
-    bullets,
-    figure,
-    mode_color,
-    paragraph,
-    section,
-    table,
-    y_grid,
-)
+from rastrainer.report import page, svg
 from rastrainer.report.paired_statistics import interval_text
 from rastrainer.statistics.trend import (
     ALPHA,
@@ -41,19 +26,9 @@ from rastrainer.study.study_data import StudyData, values_of
 SHOWN = ("completion_time_s", "rmse_mm", "score")
 MIN_CURVE_TRIALS = 8
 """With fewer trials the plateau is too uncertain to report."""
-HEADER: Line = [
-    *(
-        "Outcome",
-        Cell("mode", kind="text"),
-        "n",
-        "trials",
-        "first",
-        "last",
-        "change [95 %]",
-        "p (Page)",
-        "p (Holm)",
-    ),
-    "alone: better / steady / undecided",
+HEADER: page.Line = [
+    *("Outcome", page.text("mode"), "n", "trials", "first", "last", "change [95 %]"),
+    *("p (Page)", "p (Holm)", "alone: better / steady / undecided"),
 ]
 
 Points = dict[str, list[tuple[float, float]]]
@@ -71,16 +46,16 @@ def learning(data: StudyData) -> str:
             rows.append(_row(outcome, mode, trend, len(own)))
         if curve is not None and trend is not None and len(trend.means) >= MIN_CURVE_TRIALS:
             sentences.append(_sentence(outcome, mode, curve))
-    return section(
+    return page.section(
         "Learning curves",
-        figure(
+        page.figure(
             charts,
             "Thin: each trainee. Thick: the means of all or, where getting better is shown, the "
             "curve that is fitted to them.",
         ),
-        *([table([HEADER], rows, "wide"), paragraph(_words(), "small")] if rows else []),
-        bullets(sentences) if sentences else "",
-        paragraph(_limits(data)),
+        *([page.table([HEADER], rows, "wide"), page.paragraph(_words(), "small")] if rows else []),
+        page.bullets(sentences),
+        page.paragraph(_limits(data)),
     )
 
 
@@ -136,12 +111,12 @@ def _chart(
         fitted = [(x, curve.at(x)) for x in np.linspace(1, last, 60)]
     heading = f"{short_mode_title(mode)}: {outcome.heading}"
     span = values_of(data.trials, outcome.name)
-    color = mode_color(mode, index)
+    color = svg.mode_color(mode, index)
     return learning_curves(heading, color, points, x_title, fitted, (min(span), max(span)))
 
 
-def _row(outcome: Outcome, mode: str, trend: CohortTrend | None, trainees: int) -> Line:
-    start: Line = [outcome.heading, Cell(mode_title(mode), kind="text")]
+def _row(outcome: Outcome, mode: str, trend: CohortTrend | None, trainees: int) -> page.Line:
+    start: page.Line = [outcome.heading, page.text(mode_title(mode))]
     if trend is None:
         return [*start, str(trainees), "too few", *["–"] * (len(HEADER) - 4)]
     change = "–"
@@ -222,13 +197,12 @@ def learning_curves(
         curve: A fitted curve; by default the means are connected.
         span: Further values that the axis must include, to make charts comparable.
     """
-    sheet = Sheet(WIDTH, HEIGHT, heading)
-    sheet.text(10, 16, heading, 12.5, INK, weight="600")
+    sheet = svg.Sheet(WIDTH, HEIGHT, heading)
     points = [point for own in trainees.values() for point in own]
     numbers = sorted({x for x, _ in points})
-    axis = axis_over([*span, *(y for _, y in points)], BOTTOM, TOP)
-    y_grid(sheet, axis, LEFT, RIGHT)
-    across = Axis(numbers[0] - 0.35, numbers[-1] + 0.35, LEFT, RIGHT)
+    axis = svg.axis_over([*span, *(y for _, y in points)], BOTTOM, TOP)
+    svg.y_grid(sheet, axis, LEFT, RIGHT)
+    across = svg.Axis(numbers[0] - 0.35, numbers[-1] + 0.35, LEFT, RIGHT)
     opacity = 0.55 if len(trainees) <= 12 else max(0.08, 6 / len(trainees))
     for name, own in trainees.items():
         sheet.polyline([(across.at(x), axis.at(y)) for x, y in own], color, 1.2, opacity)
@@ -236,9 +210,9 @@ def learning_curves(
             for x, y in own:
                 sheet.dot(across.at(x), axis.at(y), 2.6, color, 0.8, f"{name}: {significant(y, 4)}")
     means = [(x, float(np.mean([y for n, y in points if n == x]))) for x in numbers]
-    sheet.polyline([(across.at(x), axis.at(y)) for x, y in curve or means], INK, 2.4)
+    sheet.polyline([(across.at(x), axis.at(y)) for x, y in curve or means], svg.INK, 2.4)
     ticks = numbers if len(numbers) <= 12 else across.ticks(6)
     for tick in ticks:
-        sheet.text(across.at(tick), BOTTOM + 16, f"{tick:g}", 10, FAINT, "middle")
-    sheet.text((LEFT + RIGHT) / 2, HEIGHT - 8, x_title, 10, FAINT, "middle")
+        sheet.text(across.at(tick), BOTTOM + 16, f"{tick:g}", 10, svg.FAINT, "middle")
+    sheet.text((LEFT + RIGHT) / 2, HEIGHT - 8, x_title, 10, svg.FAINT, "middle")
     return sheet.svg()

@@ -10,17 +10,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer.number_text import counted, fixed, percent
-from rastrainer.report.elements import (
-    INK,
-    SCATTER_LEFT,
-    bullets,
-    figure,
-    heading,
-    paragraph,
-    scatter_sheet,
-    section,
-    table,
-)
+from rastrainer.report import page, svg
 from rastrainer.statistics.intervals import Estimate, mean
 from rastrainer.study.study_data import StudyData, TrialRow
 from rastrainer.trial.procedure_outcome import (
@@ -170,21 +160,21 @@ def procedures(data: StudyData) -> str:
     )
     by_hand = {kind: group.aligned_by(robot=False) for kind, group in kinds.items()}
     charted = {kind: group for kind, group in by_hand.items() if group.lines}
-    return section(
+    return page.section(
         "Procedures: from the registration to the target",
-        bullets(_sentences(everything, len(data.trials))),
-        table([list(HEADER)], rows, "wide"),
-        paragraph(_explanation(), "small"),
-        figure([split_chart(charted)], caption) if charted else "",
-        table([list(TIME_HEADER)], [_time_row(KINDS[kind][0], kinds[kind]) for kind in kinds]),
-        heading("Trainees"),
-        table([list(TRAINEE_HEADER)], _trainee_rows(everything)),
-        heading("Published figures, for orientation"),
-        table(
+        page.bullets(_sentences(everything, len(data.trials))),
+        page.table([list(HEADER)], rows, "wide"),
+        page.paragraph(_explanation(), "small"),
+        page.figure([split_chart(charted)], caption) if charted else "",
+        page.table([list(TIME_HEADER)], [_time_row(KINDS[kind][0], kinds[kind]) for kind in kinds]),
+        page.heading("Trainees"),
+        page.table([list(TRAINEE_HEADER)], _trainee_rows(everything)),
+        page.heading("Published figures, for orientation"),
+        page.table(
             [["what", "target point error (mm)", "source"]],
             [[what, errors, f"doi:{doi}"] for what, errors, doi in PUBLISHED],
         ),
-        paragraph(
+        page.paragraph(
             "They are no pass marks: patients, images and definitions differ between studies, and "
             "a simulator has no brain shift and no resistance of tissue.",
             "small",
@@ -353,7 +343,7 @@ def split_chart(kinds: Mapping[str, _Group]) -> str:
         for kind, group in kinds.items()
     }
     largest = max(float(values.max()) for both in points.values() for values in both)
-    sheet, along, up = scatter_sheet(
+    sheet, along, up = svg.scatter_sheet(
         "What caused the target point error (mm)",
         "by the hand (mm)",
         "by the registration (mm)",
@@ -365,13 +355,13 @@ def split_chart(kinds: Mapping[str, _Group]) -> str:
     for kind, (by_registration, by_hand) in points.items():
         for x, y in zip(by_hand, by_registration, strict=True):
             sheet.dot(along.at(float(x)), up.at(float(y)), radius, KINDS[kind][1], 0.75)
-    x = float(SCATTER_LEFT)
+    x = float(svg.SCATTER_LEFT)
     for kind in points:
         name, color = KINDS[kind]
         sheet.dot(x + 5, 34, 3.6, color, 0.85)
         sheet.text(x + 14, 38, name, 11)
         x += 36 + 6 * len(name)
-    sheet.line(x, 34, x + 22, 34, INK, 1.3, "5 4")
+    sheet.line(x, 34, x + 22, 34, svg.INK, 1.3, "5 4")
     sheet.text(x + 28, 38, "both parts equal", 11)
     return sheet.svg()
 

@@ -10,8 +10,8 @@ import numpy as np
 import rastrainer
 from rastrainer.number_text import counted, p_text, percent
 from rastrainer.protocol import RegistrationMethod
+from rastrainer.report import page
 from rastrainer.report.comparisons import ModeComparison, compared_method
-from rastrainer.report.elements import bullets, heading, paragraph, section, table
 from rastrainer.statistics.intervals import (
     ALPHA,
     TARGET_POWER,
@@ -70,18 +70,18 @@ def limits(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
         "CTPS depends on the cohort and rises with slower completion; differences in CTPS are not "
         "differences in skill."
     )
-    parts = [bullets(sentences)]
+    parts = [page.bullets(sentences)]
     if data.skipped:
         parts += [
-            heading("Steps of the protocol that were left out"),
-            bullets([f"{who}, {step}: {reason}" for who, step, reason in data.skipped]),
+            page.heading("Steps of the protocol that were left out"),
+            page.bullets([f"{who}, {step}: {reason}" for who, step, reason in data.skipped]),
         ]
     if data.objections:
         parts += [
-            heading("Trials that did not count, and why"),
-            bullets([f"{who}, {what}: {reasons}" for who, what, reasons in data.objections]),
+            page.heading("Trials that did not count, and why"),
+            page.bullets([f"{who}, {what}: {reasons}" for who, what, reasons in data.objections]),
         ]
-    return section("What cannot be concluded", *parts)
+    return page.section("What cannot be concluded", *parts)
 
 
 def what_cannot_be_concluded(
@@ -220,15 +220,15 @@ def methods(data: StudyData) -> str:
             f"{platform.python_version()}, {np.__version__}, {scipy_module('version').version}",
         ],
     ]
-    return section(
+    return page.section(
         "Methods and versions",
-        paragraph(_design(data)),
-        paragraph(_measures(data)),
-        paragraph(_analysis()),
-        heading("References"),
-        bullets(REFERENCES),
-        heading("Versions"),
-        table([["what", "version"]], [*own, *versions]),
+        page.paragraph(_design(data)),
+        page.paragraph(_measures(data)),
+        page.paragraph(_analysis()),
+        page.heading("References"),
+        page.bullets(REFERENCES),
+        page.heading("Versions"),
+        page.table([["what", "version"]], [*own, *versions]),
     )
 
 

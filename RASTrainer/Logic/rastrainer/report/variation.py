@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.number_text import counted, fixed
-from rastrainer.report.elements import Cell, Line, heading, paragraph, section, table
+from rastrainer.report import page
 from rastrainer.report.paired_statistics import interval_text
 from rastrainer.statistics.intervals import Estimate, Proportion, mean, proportion
 from rastrainer.statistics.variation import (
@@ -123,14 +123,14 @@ def _rows(data: StudyData) -> list[tuple[TrialRow, int]]:
     ]
 
 
-HEADER: Line = [
-    Cell("Source of variation [95 %]", kind="text"),
+HEADER: page.Line = [
+    page.text("Source of variation [95 %]"),
     "n",
     "completion time",
     "RMSE",
 ]
-BIAS_HEADER: Line = [
-    Cell("View", kind="text"),
+BIAS_HEADER: page.Line = [
+    page.text("View"),
     "n, trials",
     "n, trainees",
     "displacement of the target, mm [95 %]",
@@ -143,13 +143,13 @@ def variation(data: StudyData) -> str:
     biases = {mode: view_bias(data, mode) for mode in sorted(data.modes)}
     parts = [] if found is None else _sources(found, sorted(data.modes))
     parts += _view_biases({mode: bias for mode, bias in biases.items() if bias is not None})
-    return section("What completion time and error vary with", *parts) if parts else ""
+    return page.section("What completion time and error vary with", *parts) if parts else ""
 
 
 def _sources(found: StudyVariation, modes: list[str]) -> list[str]:
     both = (found.time, found.error)
     trials, trainees = counted(found.trials, "trial"), counted(found.trainees, "trainee")
-    rows: list[Line] = [
+    rows: list[page.Line] = [
         [
             "Practice: exponent b, the m-th trial of all in proportion to m⁻ᵇ",
             trials,
@@ -170,12 +170,16 @@ def _sources(found: StudyVariation, modes: list[str]) -> list[str]:
             f"{found.lapses.count} of {found.trials}",
             *("–" if one.lapse is None else _factor(one.lapse) for one in both),
         ],
-        ["Trials with an undone touch (share)", trials, Cell(share_text(found.lapses), span=2)],
+        [
+            "Trials with an undone touch (share)",
+            trials,
+            page.Cell(share_text(found.lapses), span=2),
+        ],
     ]
-    return [table([HEADER], rows, "wide"), paragraph(_words(found), "small")]
+    return [page.table([HEADER], rows, "wide"), page.paragraph(_words(found), "small")]
 
 
-def _against_first(found: StudyVariation, modes: list[str], trainees: str) -> list[Line]:
+def _against_first(found: StudyVariation, modes: list[str], trainees: str) -> list[page.Line]:
     first, *others = map(mode_title, modes)
     return [
         [f"{mode} against {first}", trainees, _factor(time), _factor(error)]
@@ -186,14 +190,14 @@ def _against_first(found: StudyVariation, modes: list[str], trainees: str) -> li
 def _view_biases(biases: dict[str, ViewBias]) -> list[str]:
     if not biases:
         return []
-    rows: list[Line] = [
+    rows: list[page.Line] = [
         [mode_title(mode), str(bias.trials), str(bias.trainees), _length(bias)]
         for mode, bias in biases.items()
     ]
     return [
-        heading("Bias of the views"),
-        table([BIAS_HEADER], rows),
-        paragraph(BIAS_WORDS, "small"),
+        page.heading("Bias of the views"),
+        page.table([BIAS_HEADER], rows),
+        page.paragraph(BIAS_WORDS, "small"),
     ]
 
 
