@@ -18,9 +18,18 @@ HEADER = [
 ]
 
 
+NOTE = (
+    "True errors that lie above their intervals mostly come from touches that share an offset: "
+    "hovering, aiming beside, a view that misleads. The share's own interval is Wilson's (1927); "
+    "it takes the trials as independent, which those of one trainee are not."
+)
+
+
 def calibration(data: StudyData) -> str:
     """Return the section; "" if no target errors are known."""
-    found = _calibration(data)
+    points = [point for point in map(_point, data.trials) if point is not None]
+    known = sum({"expected_tre_mm", "tre_low_mm"} <= set(trial.values) for trial in data.trials)
+    found = TreCalibration.of(points, known - len(points), len(data.trials) - known)
     if not found.points and not found.without_truth:
         return ""
     parts = [page.bullets(found.sentences())]
@@ -46,29 +55,17 @@ def calibration(data: StudyData) -> str:
             page.figure([calibration_chart(found, colors)], caption),
             page.table([HEADER], rows),
         ]
-    parts.append(page.paragraph(f"{INTERVAL_NOTE} {_note()}", "small"))
+    parts.append(page.paragraph(f"{INTERVAL_NOTE} {NOTE}", "small"))
     return page.section("Expected and true target error", *parts)
-
-
-def _calibration(data: StudyData) -> TreCalibration:
-    points = [point for point in map(_point, data.trials) if point is not None]
-    known = [{"expected_tre_mm", "tre_low_mm"} <= set(trial.values) for trial in data.trials]
-    without_truth = sum(known) - len(points)
-    return TreCalibration.of(points, without_truth, len(known) - sum(known))
 
 
 def _point(trial: TrialRow) -> CalibrationPoint | None:
     values = trial.values
     if not {"expected_tre_mm", "tre_low_mm", "tre_high_mm", "true_tre_mm"} <= set(values):
         return None
-    return CalibrationPoint(
-        trial.trainee,
-        trial.mode,
-        trial.task,
-        values["expected_tre_mm"],
-        (values["tre_low_mm"], values["tre_high_mm"]),
-        values["true_tre_mm"],
-    )
+    interval = values["tre_low_mm"], values["tre_high_mm"]
+    errors = values["expected_tre_mm"], interval, values["true_tre_mm"]
+    return CalibrationPoint(trial.trainee, trial.mode, trial.task, *errors)
 
 
 def _row(title: str, found: TreCalibration, inside: Proportion) -> list[str]:
@@ -82,14 +79,6 @@ def _row(title: str, found: TreCalibration, inside: Proportion) -> list[str]:
         str(found.above),
         str(count - inside.count - found.above),
     ]
-
-
-def _note() -> str:
-    return (
-        "True errors that lie above their intervals mostly come from touches that share an offset: "
-        "hovering, aiming beside, a view that misleads. The share's own interval is Wilson's "
-        "(1927); it takes the trials as independent, which those of one trainee are not."
-    )
 
 
 OFF = "#b3261e"
@@ -114,45 +103,23 @@ def calibration_chart(calibration: TreCalibration, colors: Mapping[str, tuple[st
     # Bars of many trials overlap.
     opacity = max(0.05, min(0.55, 14 / len(points)))
     for point in points:
-        _bar(sheet, along, up, point, colors[point.mode][1], opacity)
+        x, color = along.at(point.expected_mm), colors[point.mode][1]
+        low, high = (up.at(end) for end in point.interval_mm)
+        sheet.polyline([(x, low), (x, high)], color, 1.6, opacity)
+        for end in (low, high):
+            sheet.polyline([(x - 2.5, end), (x + 2.5, end)], color, 1.2, opacity)
     radius = 3.6 if len(points) <= 120 else 2.4
     for point in points:
-        _dot(sheet, along, up, point, colors[point.mode][1], radius)
+        x, y = along.at(point.expected_mm), up.at(point.true_mm)
+        if not point.is_inside:
+            sheet.dot(x, y, radius + 2.4, OFF)
+        words = (
+            f"{point.trainee}, {point.task}: true {fixed(point.true_mm, 2)} mm, expected "
+            f"{fixed(point.expected_mm, 2)} mm"
+        )
+        sheet.dot(x, y, radius, colors[point.mode][1], 0.85, words)
     _legend(sheet, colors)
     return sheet.svg()
-
-
-def _bar(
-    sheet: svg.Sheet,
-    along: svg.Axis,
-    up: svg.Axis,
-    point: CalibrationPoint,
-    color: str,
-    opacity: float,
-) -> None:
-    x = along.at(point.expected_mm)
-    low, high = (up.at(end) for end in point.interval_mm)
-    sheet.polyline([(x, low), (x, high)], color, 1.6, opacity)
-    for end in (low, high):
-        sheet.polyline([(x - 2.5, end), (x + 2.5, end)], color, 1.2, opacity)
-
-
-def _dot(
-    sheet: svg.Sheet,
-    along: svg.Axis,
-    up: svg.Axis,
-    point: CalibrationPoint,
-    color: str,
-    radius: float,
-) -> None:
-    x, y = along.at(point.expected_mm), up.at(point.true_mm)
-    if not point.is_inside:
-        sheet.dot(x, y, radius + 2.4, OFF)
-    words = (
-        f"{point.trainee}, {point.task}: true {fixed(point.true_mm, 2)} mm, expected "
-        f"{fixed(point.expected_mm, 2)} mm"
-    )
-    sheet.dot(x, y, radius, color, 0.85, words)
 
 
 def _legend(sheet: svg.Sheet, colors: Mapping[str, tuple[str, str]]) -> None:

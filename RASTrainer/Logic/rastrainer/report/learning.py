@@ -31,6 +31,16 @@ HEADER: page.Line = [
     *("p (Page)", "p (Holm)", "alone: better / steady / undecided"),
 ]
 
+WORDS = (
+    "First and last: means of the trainees at their first trial and at the last that all of them "
+    "did. Change: between these two by each trainee's regression line over ln(trial), the mean of "
+    "all. Page's test (one-sided) asks whether all trainees together get better: that is shown "
+    "where its p, corrected by Holm's method for all such tests of this table, is below "
+    f"{percent(ALPHA)}. Each trainee alone: better by the permutation test of the slope "
+    "(one-sided; one in twenty who do not learn passes it by chance), steady where a change by "
+    f"{percent(STEADY)} of the mean is excluded, and undecided where the trials allow both; these "
+    "tests are not corrected for being several."
+)
 Points = dict[str, list[tuple[float, float]]]
 
 
@@ -39,13 +49,33 @@ def learning(data: StudyData) -> str:
     points, trends = _all_points(data), learning_trends(data)
     charts, rows, sentences = [], [], []
     for (outcome, mode), own in points.items():
-        trend, index = trends.get((outcome, mode)), data.modes.index(mode)
+        trend = trends.get((outcome, mode))
         curve = _curve(trend, outcome)
-        charts.append(_chart(data, outcome, mode, index, own, curve))
+        fitted = []
+        if curve is not None:
+            last = max(map(len, own.values()))
+            fitted = [(x, curve.at(x)) for x in np.linspace(1, last, 60)]
+        values = values_of(data.trials, outcome.name)
+        charts.append(
+            learning_curves(
+                f"{short_mode_title(mode)}: {outcome.heading}",
+                svg.mode_color(mode, data.modes.index(mode)),
+                own,
+                "trial" if data.has_order else "task",
+                fitted,
+                (min(values), max(values)),
+            )
+        )
         if data.has_order:
             rows.append(_row(outcome, mode, trend, len(own)))
         if curve is not None and trend is not None and len(trend.means) >= MIN_CURVE_TRIALS:
-            sentences.append(_sentence(outcome, mode, curve))
+            sentences.append(
+                f"{outcome.title}, {mode_title(mode)}: the means follow a·n^−b + c with "
+                f"a = {fixed(curve.gain, outcome.digits)} {outcome.unit}, "
+                f"b = {fixed(curve.rate, 2)} and "
+                f"c = {fixed(curve.plateau, outcome.digits)} {outcome.unit} "
+                f"(R² = {fixed(curve.r_squared, 2)})."
+            )
     return page.section(
         "Learning curves",
         page.figure(
@@ -53,7 +83,7 @@ def learning(data: StudyData) -> str:
             "Thin: each trainee. Thick: the means of all or, where getting better is shown, the "
             "curve that is fitted to them.",
         ),
-        *([page.table([HEADER], rows, "wide"), page.paragraph(_words(), "small")] if rows else []),
+        *([page.table([HEADER], rows, "wide"), page.paragraph(WORDS, "small")] if rows else []),
         page.bullets(sentences),
         page.paragraph(_limits(data)),
     )
@@ -96,25 +126,6 @@ def _curve(trend: CohortTrend | None, outcome: Outcome) -> LearningCurve | None:
     return fit_learning_curve(trend.means) if len(trend.means) >= MIN_FIT_TRIALS else None
 
 
-def _chart(
-    data: StudyData,
-    outcome: Outcome,
-    mode: str,
-    index: int,
-    points: Points,
-    curve: LearningCurve | None,
-) -> str:
-    x_title = "trial" if data.has_order else "task"
-    fitted = []
-    if curve is not None:
-        last = max(len(own) for own in points.values())
-        fitted = [(x, curve.at(x)) for x in np.linspace(1, last, 60)]
-    heading = f"{short_mode_title(mode)}: {outcome.heading}"
-    span = values_of(data.trials, outcome.name)
-    color = svg.mode_color(mode, index)
-    return learning_curves(heading, color, points, x_title, fitted, (min(span), max(span)))
-
-
 def _row(outcome: Outcome, mode: str, trend: CohortTrend | None, trainees: int) -> page.Line:
     start: page.Line = [outcome.heading, page.text(mode_title(mode))]
     if trend is None:
@@ -133,28 +144,6 @@ def _row(outcome: Outcome, mode: str, trend: CohortTrend | None, trainees: int) 
         *("–" if p is None else p_text(p) for p in (trend.p, trend.adjusted_p)),
         " / ".join(map(str, counts)),
     ]
-
-
-def _sentence(outcome: Outcome, mode: str, curve: LearningCurve) -> str:
-    return (
-        f"{outcome.title}, {mode_title(mode)}: the means follow a·n^−b + c with "
-        f"a = {fixed(curve.gain, outcome.digits)} {outcome.unit}, b = {fixed(curve.rate, 2)} and "
-        f"c = {fixed(curve.plateau, outcome.digits)} {outcome.unit} "
-        f"(R² = {fixed(curve.r_squared, 2)})."
-    )
-
-
-def _words() -> str:
-    return (
-        "First and last: means of the trainees at their first trial and at the last that all of "
-        "them did. Change: between these two by each trainee's regression line over ln(trial), the "
-        "mean of all. Page's test (one-sided) asks whether all trainees together get better: that "
-        "is shown where its p, corrected by Holm's method for all such tests of this table, is "
-        f"below {percent(ALPHA)}. Each trainee alone: better by the permutation test of the slope "
-        "(one-sided; one in twenty who do not learn passes it by chance), steady where a change by "
-        f"{percent(STEADY)} of the mean is excluded, and undecided where the trials allow both; "
-        "these tests are not corrected for being several."
-    )
 
 
 def _limits(data: StudyData) -> str:

@@ -135,14 +135,13 @@ def _row(by_method: StudyData, method: str) -> page.Line:
     trials = by_method.of_mode(method)
     trainees = {trial.trainee for trial in trials}
     means = [_mean_text(trials, outcome) for outcome in OUTCOMES]
-    held = [_is_inside(t) for t in trials if {"tre_low_mm", "true_tre_mm"} <= set(t.values)]
+    held = [
+        values["tre_low_mm"] <= values["true_tre_mm"] <= values["tre_high_mm"]
+        for values in (trial.values for trial in trials)
+        if {"tre_low_mm", "true_tre_mm"} <= set(values)
+    ]
     inside = f"{sum(held)} of {len(held)}" if held else "–"
     return [TITLES[method], str(len(trainees)), str(len(trials)), *means, inside]
-
-
-def _is_inside(trial: TrialRow) -> bool:
-    values = trial.values
-    return values["tre_low_mm"] <= values["true_tre_mm"] <= values["tre_high_mm"]
 
 
 def _mean_text(trials: Sequence[TrialRow], outcome: Outcome) -> str:
@@ -197,21 +196,17 @@ def shifted_skin(data: StudyData) -> str:
             groups.setdefault((*amounts, trial.method), []).append(trial)
     if not groups:
         return ""
-    rows = [_skin_row(*key, groups[key]) for key in sorted(groups)]
+    names = ("rmse_mm", "expected_tre_mm", "true_tre_mm", "unshifted_tre_mm")
+    rows = [
+        [
+            *(fixed(shift, 1), fixed(indentation, 1), TITLES.get(method, method), str(len(trials))),
+            *(
+                fixed(float(np.mean(values)), 2) if (values := values_of(trials, name)) else "–"
+                for name in names
+            ),
+        ]
+        for (shift, indentation, method), trials in sorted(groups.items())
+    ]
     return page.section(
         "Shifted skin", page.paragraph(SKIN_INTRO), page.table([SKIN_HEADER], rows, "wide")
     )
-
-
-def _skin_row(
-    shift: float, indentation: float, method: str, trials: Sequence[TrialRow]
-) -> page.Line:
-    names = ("rmse_mm", "expected_tre_mm", "true_tre_mm", "unshifted_tre_mm")
-    means = [_mean_of(trials, name) for name in names]
-    by = TITLES.get(method, method)
-    return [fixed(shift, 1), fixed(indentation, 1), by, str(len(trials)), *means]
-
-
-def _mean_of(trials: Sequence[TrialRow], name: str) -> str:
-    values = values_of(trials, name)
-    return fixed(float(np.mean(values)), 2) if values else "–"

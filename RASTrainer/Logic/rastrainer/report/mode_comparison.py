@@ -11,7 +11,6 @@ from rastrainer.number_text import fixed
 from rastrainer.report import page, svg
 from rastrainer.report.comparisons import ModeComparison, tested
 from rastrainer.report.paired_statistics import interval_text
-from rastrainer.statistics.paired import PairedComparison
 from rastrainer.study.outcomes import (
     MAIN_OUTCOMES,
     MOTION_OUTCOMES,
@@ -185,13 +184,13 @@ def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
         values = [values_of(data.of_mode(mode), outcome.name) for mode in data.modes]
         means = [_mean_and_sd(own, outcome.digits) if own else "–" for own in values]
         counts = " / ".join(str(len(own)) for own in values)
-        rows.append([outcome.heading, *means, counts, *_effect(compared.get(outcome.name))])
-    definitions: list[page.Line] = [
-        [
-            outcome.title,
-            page.text(outcome.definition),
-            page.text(outcome.source),
-        ]
+        result, effect = compared.get(outcome.name), "–"
+        if result is not None and result.hedges_gz is not None and result.gz_interval is not None:
+            effect = interval_text(result.hedges_gz, result.gz_interval, 2)
+        n = "–" if result is None else str(result.n)
+        rows.append([outcome.heading, *means, counts, n, effect])
+    definitions = [
+        [outcome.title, page.text(outcome.definition), page.text(outcome.source)]
         for outcome in outcomes
     ]
     modes = [mode_title(mode) for mode in data.modes]
@@ -207,15 +206,6 @@ def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
             definitions,
         ),
     )
-
-
-def _effect(result: PairedComparison | None) -> list[str]:
-    """Return the number of trainees and the effect size, if known."""
-    if result is None:
-        return ["–", "–"]
-    if result.hedges_gz is None or result.gz_interval is None:
-        return [str(result.n), "–"]
-    return [str(result.n), interval_text(result.hedges_gz, result.gz_interval, 2)]
 
 
 def _mean_and_sd(values: Sequence[float], digits: int) -> str:

@@ -99,10 +99,11 @@ def performance_color(value: float, values: Iterable[float]) -> str:
 
 def _whole(data: StudyData, mode: str, scores: CohortScores) -> str:
     subjects = list(scores.subjects)
+    titles = [f"Subject {name}" if name.isdigit() else name for name in subjects]
     headers: list[page.Line] = [
         [
             page.Cell("", kind="group"),
-            *(page.Cell(_subject(name), 2, kind="group") for name in subjects),
+            *(page.Cell(title, 2, kind="group") for title in titles),
             page.Cell("", kind="group"),
         ],
         ["Task", *("CT (s)", "RMSE (mm)") * len(subjects), "Task Perf."],
@@ -151,10 +152,6 @@ def _by_task(data: StudyData, mode: str, scores: CohortScores) -> str:
 
 def _performance(value: float, among: Iterable[float]) -> page.Cell:
     return page.Cell(fixed(value, 2), color=performance_color(value, among), kind="marginal")
-
-
-def _subject(name: str) -> str:
-    return f"Subject {name}" if name.isdigit() else name
 
 
 def _overall(mode: str, scores: CohortScores) -> str:

@@ -123,12 +123,7 @@ def _rows(data: StudyData) -> list[tuple[TrialRow, int]]:
     ]
 
 
-HEADER: page.Line = [
-    page.text("Source of variation [95 %]"),
-    "n",
-    "completion time",
-    "RMSE",
-]
+HEADER: page.Line = [page.text("Source of variation [95 %]"), "n", "completion time", "RMSE"]
 BIAS_HEADER: page.Line = [
     page.text("View"),
     "n, trials",
@@ -149,19 +144,15 @@ def variation(data: StudyData) -> str:
 def _sources(found: StudyVariation, modes: list[str]) -> list[str]:
     both = (found.time, found.error)
     trials, trainees = counted(found.trials, "trial"), counted(found.trainees, "trainee")
+    practice = "Practice: exponent b, the m-th trial of all in proportion to m⁻ᵇ"
+    speed = "Speed and accuracy: exponent k, RMSE in proportion to time⁻ᵏ"
     rows: list[page.Line] = [
-        [
-            "Practice: exponent b, the m-th trial of all in proportion to m⁻ᵇ",
-            trials,
-            *(_exponent(one.learning) for one in both),
-        ],
-        [
-            "Speed and accuracy: exponent k, RMSE in proportion to time⁻ᵏ",
-            trials,
-            "–",
-            _exponent(found.trade_off),
-        ],
-        *_against_first(found, modes, trainees),
+        [practice, trials, *(_exponent(one.learning) for one in both)],
+        [speed, trials, "–", _exponent(found.trade_off)],
+        *(
+            [f"{mode_title(mode)} against {mode_title(modes[0])}", trainees, *map(_factor, both)]
+            for mode, *both in zip(modes[1:], found.time.modes, found.error.modes, strict=True)
+        ),
         ["Between trainees (SD)", trainees, *(_sd(one.trainee_variance) for one in both)],
         ["Trainee × mode (SD)", trainees, *(_sd(one.interaction_variance) for one in both)],
         ["From trial to trial (SD)", trials, *(_sd(one.trial_variance) for one in both)],
@@ -179,21 +170,14 @@ def _sources(found: StudyVariation, modes: list[str]) -> list[str]:
     return [page.table([HEADER], rows, "wide"), page.paragraph(_words(found), "small")]
 
 
-def _against_first(found: StudyVariation, modes: list[str], trainees: str) -> list[page.Line]:
-    first, *others = map(mode_title, modes)
-    return [
-        [f"{mode} against {first}", trainees, _factor(time), _factor(error)]
-        for mode, time, error in zip(others, found.time.modes, found.error.modes, strict=True)
-    ]
-
-
 def _view_biases(biases: dict[str, ViewBias]) -> list[str]:
     if not biases:
         return []
-    rows: list[page.Line] = [
-        [mode_title(mode), str(bias.trials), str(bias.trainees), _length(bias)]
-        for mode, bias in biases.items()
-    ]
+    rows: list[page.Line] = []
+    for mode, bias in biases.items():
+        low, high = map(_root, bias.squared.interval)
+        length = interval_text(_root(bias.squared.value), (low, high), 2)
+        rows.append([mode_title(mode), str(bias.trials), str(bias.trainees), length])
     return [
         page.heading("Bias of the views"),
         page.table([BIAS_HEADER], rows),
@@ -223,11 +207,6 @@ def _sd(found: Estimate) -> str:
 def _factor(found: Estimate) -> str:
     low, high = (math.exp(limit) for limit in found.interval)
     return f"× {interval_text(math.exp(found.value), (low, high), 2)}"
-
-
-def _length(bias: ViewBias) -> str:
-    low, high = map(_root, bias.squared.interval)
-    return interval_text(_root(bias.squared.value), (low, high), 2)
 
 
 def _root(square: float) -> float:
