@@ -56,10 +56,6 @@ def play_demo(output: Path, seed: int, speed: float) -> None:
 
     An `output` that is not empty is renamed, never overwritten. The virtual trainee consents to
     research, so that the study can be reported and exported.
-
-    Raises:
-        InputError: the package that plays Slicer's part is not installed; nothing was done then.
-        RASTrainerError: a part could not be started or failed; the sentence names its log.
     """
     check_slicers_side()
     started = time.monotonic()

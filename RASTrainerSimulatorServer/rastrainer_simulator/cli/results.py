@@ -100,7 +100,6 @@ def _mean_times(given: list[str], modes: list[str]) -> dict[str, float]:
 
     Args:
         given: `MODE=SECONDS`, or `SECONDS` for all modes; the later one counts.
-        modes: The modes of the trials.
     """
     means: dict[str, float] = {}
     for text in given:

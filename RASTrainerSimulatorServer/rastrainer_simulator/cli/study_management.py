@@ -40,10 +40,6 @@ def copy_study(source: Study, target: Study) -> dict[str, int]:
     """Copy all rows in one transaction, compare them, and return their number by table.
 
     The numbers of rows stay, and with them the order of storing; every float keeps each bit.
-
-    Raises:
-        InputError: the target holds something, or has other values afterward; it stays empty.
-        StudyUnreachableError: a server cannot be reached.
     """
     counts = {}
     with source.database.reading() as given, target.database.writing() as taken:

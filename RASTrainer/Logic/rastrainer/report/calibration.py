@@ -86,12 +86,7 @@ OFF = "#b3261e"
 
 
 def calibration_chart(calibration: TreCalibration, colors: Mapping[str, tuple[str, str]]) -> str:
-    """Return the chart; both axes start at 0 and have different scales.
-
-    Args:
-        calibration: With at least one point.
-        colors: Mode → its title and color.
-    """
+    """Return the chart; both axes start at 0 and have different scales."""
     points = calibration.points
     sheet, along, up = svg.scatter_sheet(
         "True against expected target error (mm)",

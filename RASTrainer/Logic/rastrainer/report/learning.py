@@ -179,10 +179,7 @@ def learning_curves(
     """Return the chart of every trainee's values over the trials, with the curve of all.
 
     Args:
-        heading: With the unit.
-        color: Of the mode.
         trainees: Pseudonym → points (trial number, value).
-        x_title: Below the axis.
         curve: A fitted curve; by default the means are connected.
         span: Further values that the axis must include, to make charts comparable.
     """

@@ -60,11 +60,7 @@ SKIN_HEADER = (
 
 
 def method_comparison(data: StudyData) -> str:
-    """Return the section; "" where all trials were registered by one method.
-
-    Args:
-        data: With the trials of all methods.
-    """
+    """Return the section; "" where all trials were registered by one method."""
     by_method = as_conditions(data)
     methods = [name for name in TITLES if name in by_method.modes]
     if len(methods) < 2:

@@ -63,14 +63,8 @@ def what_it_shows(
     """Return a sentence that says what the comparison shows, never more.
 
     Args:
-        name: Of the outcome, such as "Completion time".
-        unit: Of it, "" where it has none.
-        first: Name of the first condition.
-        second: Name of the second condition.
         comparison: Second minus first.
-        adjusted_p: Its p, adjusted for the number of outcomes.
         digits: After the point, of the difference and its interval.
-        several: What p was adjusted for.
     """
     low, high = comparison.interval
     difference = comparison.mean_difference

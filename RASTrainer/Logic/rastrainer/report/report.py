@@ -47,9 +47,7 @@ def write_report(data: StudyData, folder: Path, made_utc: str | None = None) -> 
     """Write the report of a study into a folder.
 
     Args:
-        data: From `read_study_data`.
         folder: Created if missing; files of an earlier report are replaced.
-        made_utc: Time stated in the report; now by default.
     """
     page_text = report_html(data, made_utc)
     make_folder(folder)

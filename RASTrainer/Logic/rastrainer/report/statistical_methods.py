@@ -90,7 +90,6 @@ def what_cannot_be_concluded(
     """Return what a paired comparison of n subjects cannot show, in sentences.
 
     Args:
-        n: Subjects who did both conditions.
         comparison: Of theirs; None where none could be computed.
         order_known: Whether it is known which condition each subject did first.
     """

@@ -31,12 +31,7 @@ class StudyVariation:
     """Sources of variation of time and RMSE.
 
     Attributes:
-        trainees: Number who did every mode.
-        trials: Number of their trials.
-        time: Of the completion time.
-        error: Of the RMSE.
         trade_off: k.
-        lapses: Share of the trials with an undone touch.
     """
 
     trainees: int
@@ -78,8 +73,6 @@ class ViewBias:
     """By how much a view displaces the target, beyond what the residuals say.
 
     Attributes:
-        trainees: Number of trainees.
-        trials: Number of their trials with a true and an expected target error.
         squared: Of the displacement, mm²; below 0 by chance where it is about 0.
     """
 
