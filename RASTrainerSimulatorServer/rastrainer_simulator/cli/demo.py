@@ -34,6 +34,7 @@ from rastrainer.trial.ctps import CTPS_WARNING
 from rastrainer.trial.procedure_outcome import procedure_outcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.cli.options import Command, number, path
 from rastrainer_simulator.core.setup import DEFAULT_SCENARIO
 
 TASKS = (TRIAL_RUN, "task-1")
@@ -43,23 +44,6 @@ TRAINEE = "virtual-01"
 TOUCHES, FIDUCIALS = "touches.csv", "fiducials.csv"
 BAR_WIDTH = 30
 SLICER_TIMEOUT_S = 60.0
-
-
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add the subcommand to the parser of `rastrainer`."""
-    parser = subparsers.add_parser(
-        "demo", help="play two trials with a virtual trainee and show the results"
-    )
-    parser.add_argument(
-        "--output",
-        type=Path,
-        default=Path("rastrainer-demo"),
-        metavar="DIR",
-        help="folder to write into",
-    )
-    parser.add_argument("--seed", type=int, default=2026, help="of the trainee and the head's pose")
-    parser.add_argument("--speed", type=float, default=10.0, help="simulated seconds a second")
-    parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -72,10 +56,6 @@ def play_demo(output: Path, seed: int, speed: float) -> None:
 
     An `output` that is not empty is renamed, never overwritten. The virtual trainee consents to
     research, so that the study can be reported and exported.
-
-    Raises:
-        InputError: the package that plays Slicer's part is not installed; nothing was done then.
-        RASTrainerError: a part could not be started or failed; the sentence names its log.
     """
     check_slicers_side()
     started = time.monotonic()
@@ -341,3 +321,17 @@ def _residuals(labels: Sequence[str], residuals_mm: Sequence[float]) -> list[str
     bars = ["▇" * max(1, round(20 * residual / longest)) for residual in residuals_mm]
     rows = zip(labels, residuals_mm, bars, strict=True)
     return [f"    {label:>3}  {residual:5.2f}  {bar}" for label, residual, bar in rows]
+
+
+COMMANDS = (
+    Command(
+        "demo",
+        "play two trials with a virtual trainee and show the results",
+        run,
+        (
+            path("--output", "DIR", "folder to write into", default=Path("rastrainer-demo")),
+            number("--seed", 2026, "of the trainee and the head's pose"),
+            number("--speed", 10.0, "simulated seconds a second"),
+        ),
+    ),
+)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
-from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.files.writing import make_empty_folder, write_text
@@ -25,7 +24,16 @@ from rastrainer.study.tidy_csv import (
     touches_csv,
     trials_csv,
 )
-from rastrainer_simulator.cli.options import add_config, add_incomplete, add_study, read_known_study
+from rastrainer_simulator.cli.options import (
+    CONFIG,
+    INCOMPLETE,
+    Command,
+    option,
+    output,
+    path,
+    read_known_study,
+    study,
+)
 from rastrainer_simulator.export.trial_files import write_motion_bids, write_slicer_files
 from rastrainer_simulator.export.xapi import HOME_PAGE, statements_text
 from rastrainer_simulator.net.record_store import home_page_url, read_record_store_settings
@@ -33,38 +41,7 @@ from rastrainer_simulator.net.record_store import home_page_url, read_record_sto
 FORMATS = ("csv", "bids", "xapi", "slicer")
 
 
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add the command to a command line; `arguments.run(arguments)` runs it."""
-    parser = subparsers.add_parser(
-        "export",
-        help="export a study: tidy CSV, Motion-BIDS, xAPI, Slicer's files",
-        description=(
-            "Write a study into an empty folder, a folder a format. Trainees appear by their "
-            "pseudonyms, and only those who consented to research."
-        ),
-    )
-    add_study(parser)
-    parser.add_argument(
-        "-o", "--output", type=Path, required=True, metavar="DIR", help="an empty folder"
-    )
-    parser.add_argument(
-        "--format", action="append", choices=FORMATS, help="may be repeated; default: all"
-    )
-    parser.add_argument(
-        "--records", type=Path, metavar="DIR", help="the simulator's journals, for Motion-BIDS"
-    )
-    parser.add_argument(
-        "--home-page",
-        metavar="URL",
-        help=f"of the lab's system, for xAPI (default: as set, or {HOME_PAGE})",
-    )
-    add_config(parser)
-    add_incomplete(parser)
-    parser.set_defaults(run=run)
-
-
 def run(arguments: argparse.Namespace) -> int:
-    """Write the export and return the exit status."""
     formats = arguments.format or [f for f in FORMATS if f != "bids" or arguments.records]
     if "bids" in formats and arguments.records is None:
         raise InputError("Motion-BIDS needs the journals: give their folder with --records.")
@@ -86,14 +63,18 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
         return f"{count} of {len(data.trials)} trials"
     make_empty_folder(folder)
     if name == "csv":
-        write_text(folder / "trials.csv", trials_csv(data.trials))
-        write_text(folder / "touches.csv", touches_csv(_stored(data, arguments.study)))
-        write_text(folder / "procedures.csv", procedures_csv(data.trials))
-        write_text(folder / "aborted.csv", aborted_csv(data.aborted))
-        write_text(folder / "aborted_touches.csv", aborted_touches_csv(data.aborted))
-        write_text(folder / "scores.csv", scores_csv(data))
-        write_text(folder / "answers.csv", answers_csv(data))
-        write_text(folder / "ratings.csv", ratings_csv(data))
+        tables = {
+            "trials": trials_csv(data.trials),
+            "touches": touches_csv(_stored(data, arguments.study)),
+            "procedures": procedures_csv(data.trials),
+            "aborted": aborted_csv(data.aborted),
+            "aborted_touches": aborted_touches_csv(data.aborted),
+            "scores": scores_csv(data),
+            "answers": answers_csv(data),
+            "ratings": ratings_csv(data),
+        }
+        for table, text in tables.items():
+            write_text(folder / f"{table}.csv", text)
     elif name == "xapi":
         write_text(folder / "statements.json", statements_text(data, _home_page(arguments)))
     else:
@@ -114,6 +95,32 @@ def _stored(data: StudyData, place: StudyPlace) -> Iterator[tuple[TrialRow, Stor
     known = [trial for trial in data.trials if trial.trial_id]
     if not known:
         return
-    with Study.open_for_reading(place) as study:
+    with Study.open_for_reading(place) as opened:
         for trial in known:
-            yield trial, study.trial(trial.trial_id)
+            yield trial, opened.trial(trial.trial_id)
+
+
+COMMANDS = (
+    Command(
+        "export",
+        "export a study: tidy CSV, Motion-BIDS, xAPI, Slicer's files",
+        run,
+        (
+            study(),
+            output("an empty folder", required=True),
+            option(
+                "--format", action="append", choices=FORMATS, help="may be repeated; default: all"
+            ),
+            path("--records", "DIR", "the simulator's journals, for Motion-BIDS"),
+            option(
+                "--home-page",
+                metavar="URL",
+                help=f"of the lab's system, for xAPI (default: as set, or {HOME_PAGE})",
+            ),
+            CONFIG,
+            INCOMPLETE,
+        ),
+        "Write a study into an empty folder, a folder a format. Trainees appear by their "
+        "pseudonyms, and only those who consented to research.",
+    ),
+)

@@ -12,7 +12,16 @@ from typing import TYPE_CHECKING
 from rastrainer.errors import InputError
 from rastrainer.files.reading import failure_reason, printable_name
 from rastrainer.protocol import DEFAULT_HOST
-from rastrainer_simulator.cli.options import add_config, add_study, announce, check_ports
+from rastrainer_simulator.cli.options import (
+    CONFIG,
+    Command,
+    announce,
+    check_ports,
+    flag,
+    number,
+    path,
+    study,
+)
 
 if TYPE_CHECKING:
     from rastrainer_simulator.lti.settings import LtiSettings, ToolKey
@@ -21,45 +30,7 @@ if TYPE_CHECKING:
 DEFAULT_LTI_PORT = 18965
 
 
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add the subcommand to the parser of `rastrainer`."""
-    parser = subparsers.add_parser(
-        "lti",
-        help="let a course of a learning platform launch RASTrainer, and return grades (LTI 1.3)",
-        description=(
-            "Serves launches by LTI 1.3 until Ctrl-C: a learner of a course becomes a trainee of "
-            "the study, under a pseudonym, and their scores become grades of the course. Nothing "
-            "but these grades is sent. Platforms are registered in lti.json in the folder of "
-            "settings."
-        ),
-    )
-    add_study(parser, nargs="?")
-    parser.add_argument(
-        "--show", action="store_true", help="print what the platform's administrator enters"
-    )
-    parser.add_argument(
-        "--port",
-        type=int,
-        default=DEFAULT_LTI_PORT,
-        help="to listen on, 0 for any free one",
-    )
-    parser.add_argument(
-        "--lan",
-        action="store_true",
-        help="listen in the network, by TLS (default: on this computer only, for a reverse proxy)",
-    )
-    parser.add_argument(
-        "--certificate",
-        type=Path,
-        metavar="FILE",
-        help="PEM with private key and chain, for --lan (default: one made on this computer)",
-    )
-    add_config(parser)
-    parser.set_defaults(run=run)
-
-
 def run(arguments: argparse.Namespace) -> int:
-    """Serve until it is stopped, or print what to register, and return the exit status."""
     if importlib.util.find_spec("jwt") is None:
         raise InputError("This needs PyJWT: install it with pip install 'rastrainer[lti]'.")
     check_ports(arguments)
@@ -135,3 +106,31 @@ def _tls(certificate: Path | None, config: Path) -> ssl.SSLContext:
             f"{failure_reason(error)}."
         ) from None
     return context
+
+
+COMMANDS = (
+    Command(
+        "lti",
+        "let a course of a learning platform launch RASTrainer, and return grades (LTI 1.3)",
+        run,
+        (
+            study(nargs="?"),
+            flag("--show", "print what the platform's administrator enters"),
+            number("--port", DEFAULT_LTI_PORT, "to listen on, 0 for any free one"),
+            flag(
+                "--lan",
+                "listen in the network, by TLS (default: on this computer only, for a reverse "
+                "proxy)",
+            ),
+            path(
+                "--certificate",
+                "FILE",
+                "PEM with private key and chain, for --lan (default: one made on this computer)",
+            ),
+            CONFIG,
+        ),
+        "Serves launches by LTI 1.3 until Ctrl-C: a learner of a course becomes a trainee of the "
+        "study, under a pseudonym, and their scores become grades of the course. Nothing but these "
+        "grades is sent. Platforms are registered in lti.json in the folder of settings.",
+    ),
+)

@@ -17,7 +17,7 @@ from rastrainer.json_checks import accepted
 from rastrainer.number_text import counted
 from rastrainer.study.database.database import path_beside_study
 from rastrainer.study.study_data import read_study_data
-from rastrainer_simulator.cli.options import add_study
+from rastrainer_simulator.cli.options import Command, option, path, study
 from rastrainer_simulator.export.xapi import statements
 from rastrainer_simulator.net.record_store import (
     BATCH,
@@ -120,43 +120,7 @@ class Sender:
         return statement["id"] not in self._refused
 
 
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add the command to a command line; `arguments.run(arguments)` runs it."""
-    parser = subparsers.add_parser(
-        "send-statements",
-        help="send a study's trials to a learning record store (xAPI)",
-        description=(
-            "Send a statement for each trial, aborted trial and questionnaire that the store does "
-            "not have yet. Pseudonyms, results and times leave this computer; trainees who did not "
-            "consent to research are left out. Name and password of the store are read from "
-            f"{CREDENTIALS_VARIABLE} or a file, as name:password."
-        ),
-    )
-    add_study(parser)
-    parser.add_argument("--store", metavar="URL", help="of its xAPI endpoint (default: as set)")
-    parser.add_argument(
-        "--home-page",
-        metavar="URL",
-        help="of the lab's system; it makes pseudonyms and tasks unique (default: as set)",
-    )
-    parser.add_argument("--credentials", type=Path, metavar="FILE", help="that only you can read")
-    parser.add_argument(
-        "--watch",
-        type=float,
-        metavar="S",
-        help="keep sending new trials, looking for them every S seconds, until Ctrl-C",
-    )
-    parser.add_argument(
-        "--config",
-        type=Path,
-        metavar="DIR",
-        help=f"folder of your settings, in which {RECORD_STORE_FILE} may set the others",
-    )
-    parser.set_defaults(run=run)
-
-
 def run(arguments: argparse.Namespace) -> int:
-    """Send and return the exit status: 1 if the store does not have everything."""
     if arguments.watch is not None and not 1.0 <= arguments.watch <= 86_400.0:
         raise InputError("--watch must be from 1 to 86400 s.")
     settings = read_record_store_settings(arguments.config)
@@ -193,21 +157,55 @@ def _tell(delivery: Delivery) -> None:
         print(f"{name}: refused by the store ({reason})", flush=True)
 
 
-def _credentials(path: Path | None) -> str:
-    if path is None:
+def _credentials(file: Path | None) -> str:
+    if file is None:
         if CREDENTIALS_VARIABLE not in os.environ:
             raise InputError(
                 f"Give name:password of the record store in {CREDENTIALS_VARIABLE}, or in a file "
                 "with --credentials."
             )
         return os.environ[CREDENTIALS_VARIABLE]
-    text = read_text(path, _MAX_CREDENTIALS)
-    if os.name == "posix" and path.stat().st_mode & _OTHERS:
+    text = read_text(file, _MAX_CREDENTIALS)
+    if os.name == "posix" and file.stat().st_mode & _OTHERS:
         raise InputError(
-            f"Others can read {printable_name(path)}; restrict it to yourself with chmod 600."
+            f"Others can read {printable_name(file)}; restrict it to yourself with chmod 600."
         )
     return text.strip()
 
 
 def _is_list_of_texts(value: Any) -> bool:
     return isinstance(value, list) and all(isinstance(each, str) for each in value)
+
+
+COMMANDS = (
+    Command(
+        "send-statements",
+        "send a study's trials to a learning record store (xAPI)",
+        run,
+        (
+            study(),
+            option("--store", metavar="URL", help="of its xAPI endpoint (default: as set)"),
+            option(
+                "--home-page",
+                metavar="URL",
+                help="of the lab's system; it makes pseudonyms and tasks unique (default: as set)",
+            ),
+            path("--credentials", "FILE", "that only you can read"),
+            option(
+                "--watch",
+                type=float,
+                metavar="S",
+                help="keep sending new trials, looking for them every S seconds, until Ctrl-C",
+            ),
+            path(
+                "--config",
+                "DIR",
+                f"folder of your settings, in which {RECORD_STORE_FILE} may set the others",
+            ),
+        ),
+        "Send a statement for each trial, aborted trial and questionnaire that the store does not "
+        "have yet. Pseudonyms, results and times leave this computer; trainees who did not consent "
+        "to research are left out. Name and password of the store are read from "
+        f"{CREDENTIALS_VARIABLE} or a file, as name:password.",
+    ),
+)

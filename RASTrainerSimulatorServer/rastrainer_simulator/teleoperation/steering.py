@@ -76,11 +76,7 @@ def camera_axes(view_direction: Vector, view_up: Vector) -> Axes:
 
 
 class ChosenAxes:
-    """The axes of the chosen camera, and those that the sticks follow.
-
-    Attributes:
-        camera: name of the chosen one.
-    """
+    """The axes of the chosen camera, and those that the sticks follow."""
 
     def __init__(self, cameras: Mapping[str, Camera], camera: str, choice: AxesChoice) -> None:
         self._choice = choice

@@ -59,13 +59,11 @@ class TeleoperationSettings:
     """How the arm answers to the operator.
 
     Attributes:
-        response: dead zone and response curve of the sticks.
         coarse_speed: of the tip at full deflection, m/s.
         fine_speed: the same while the trigger for fine speed is held, m/s.
         skin_speed: the fastest slow motion at the skin, m/s: that the tip has reached it is seen
             late, and what it is pressed in by then counts.
         acceleration: of the tip at most, m/s²; a released stick stops it immediately.
-        steering: how the tool's direction is chosen, and how fast it turns.
     """
 
     response: StickResponse = field(default_factory=StickResponse)
@@ -100,7 +98,6 @@ class MotionRequest:
         displacement: of the tip, m, World.
         direction: of the tool, unit vector; None where it is free.
         across: the x axis of the tool's tip, unit vector; None where the tool may roll.
-        ended: how a commanded motion has just ended, None while none has.
         goal: end of the motion, m, World; None if no position is commanded.
     """
 

@@ -69,7 +69,6 @@ class VirtualTrial:
     Attributes:
         touches_mm: (15, 3) float, World, mm, in the order of the task.
         fiducials_mm: (15, 3) float, the same points in the MRI, RAS mm.
-        head_to_world: (4, 4) float, mm.
         completion_time_s: simulated time from the start to the last touch.
     """
 
@@ -94,18 +93,11 @@ def play_virtual_trial(
 
     Args:
         simulation: free for the next trial.
-        task_name: of the scenario.
-        seed: of the head's pose and of the hands.
-        skill: of the hands.
         dt: the simulation's step in s.
         on_step: is called after each step as a recorder wants it.
         trainee: pseudonym; by default derived from the seed.
         mode: goes into the record; the hands do not see it.
         trial_id: UUID; by default derived from the simulation's seed and the trial's number.
-
-    Raises:
-        InputError: there is no such task.
-        UnfinishedTrialError: the trainee did not get to a fiducial.
     """
     scenario = simulation.setup.scenario
     task = scenario.task(task_name)
@@ -178,8 +170,6 @@ class PlaySettings:
     """How the jobs of a cohort are played.
 
     Attributes:
-        scenario: Folder; None for the one that comes with RASTrainer.
-        step_s: Length of a step of the simulation.
         references: Of the score, by task; the scenario's for tasks that it leaves out.
         records: Folder for the journals; None for none.
     """

@@ -40,11 +40,7 @@ class ScriptedTrialResult:
 
 
 def send_hello(client: Client, name: str) -> None:
-    """Greet the server, and subscribe to poses even while the arm is still: they are our clock.
-
-    Raises:
-        TrialStoppedError: it speaks another version of the protocol.
-    """
+    """Greet the server, and subscribe to poses even while the arm is still: they are our clock."""
     hello = {"protocolVersion": PROTOCOL_VERSION, "client": name, "steady": True}
     send(client, CommandName.HELLO, hello)
 
@@ -64,10 +60,6 @@ def play_trial(
     `StartTask` gets the same seed, by which the scripted trainee knows where the head is, as a
     person sees on the screen. `on_progress` gets every new `SimState`. `procedure` is to follow the
     registration; it is carried out by others.
-
-    Raises:
-        TrialStoppedError: the server refused a command, or the tip did not reach a fiducial.
-        LinkError: the connection was lost.
     """
     head_to_world = scenario.perturbed_head_to_world(seed)
     trainee = ScriptedTrainee.of(scenario, task_name, head_to_world, skill or Skill(), seed)
@@ -138,11 +130,7 @@ def _state(message: Message) -> dict[str, Any]:
 
 
 def send(client: Client, name: str, arguments: dict[str, Any]) -> dict[str, Any]:
-    """Have a command carried out, and return the data of its answer.
-
-    Raises:
-        TrialStoppedError: it was refused.
-    """
+    """Have a command carried out, and return the data of its answer."""
     reply = client.send_command(name, arguments, ANSWER_TIMEOUT_S)
     if not reply.ok:
         raise TrialStoppedError(f"{name} was refused: {reply.error}")
@@ -170,10 +158,6 @@ def play_procedure(
 
     The touches are registered as Slicer's side does; the robot aligns the guide by itself. Depths
     are fed by the plan as the registration shows it. `on_progress` gets what was done, in words.
-
-    Raises:
-        TrialStoppedError: the server refused a command, or a tool did not get where it should.
-        LinkError: the connection was lost.
     """
     answer = send(client, CommandName.GET_TRIAL, {"trialId": trial_id})
     registered = register_trial(GivenPoints.of_answer(answer), scenario)
