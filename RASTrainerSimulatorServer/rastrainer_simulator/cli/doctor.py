@@ -9,20 +9,19 @@ import platform
 import re
 import shutil
 import socket
-import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
 from importlib import import_module, metadata
 from pathlib import Path
 
-from rastrainer.errors import InputError, RASTrainerError
+from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DEFAULT_VIEW_PORT
-from rastrainer.python_environment import python_command
 from rastrainer_simulator.assets import page_folder
 from rastrainer_simulator.cli.options import RECORDS, Command, flag, number, path
 from rastrainer_simulator.input.gamepads import NoGamepadsError, start_sdl
 from rastrainer_simulator.net.listener import listening_socket
+from rastrainer_simulator.ops.application_window import application_browser
 from rastrainer_simulator.ops.processes import has_display
 from rastrainer_simulator.ops.system_paths import config_folder, log_folder
 
@@ -77,45 +76,20 @@ def check_python(_arguments: argparse.Namespace) -> Answers:
         yield PROBLEM, f"The robot's kinematics cannot be computed: {error}"
 
 
-LONGEST_PROBE_S = 60.0
-PROBE = python_command(__name__)
-NO_WINDOW = "The trainee's window cannot open; browsers and headsets can still be used."
-
-
-def check_graphics(_arguments: argparse.Namespace) -> Answers:
-    """Open a hidden window, in a process that a broken driver may end."""
+def check_window(_arguments: argparse.Namespace) -> Answers:
     if not has_display():
-        yield WARNING, f"There is no display. {NO_WINDOW}"
-        return
-    try:
-        done = subprocess.run(
-            PROBE, capture_output=True, text=True, timeout=LONGEST_PROBE_S, check=False
-        )
-        said = [line for line in (done.stdout + done.stderr).splitlines() if "OpenGL" in line]
-        failed = f"OpenGL does not work: it ended with {done.returncode}. {NO_WINDOW}"
-        yield OK if done.returncode == 0 else WARNING, said[-1] if said else failed
-    except subprocess.TimeoutExpired:
-        yield WARNING, f"A window did not open within {LONGEST_PROBE_S:g} s. {NO_WINDOW}"
-
-
-def open_hidden_window() -> None:
-    """Print what draws, or exit with a sentence if it is not a graphics card."""
-    from rastrainer_simulator.desktop.gl_window import GlWindow, is_software_renderer
-
-    try:
-        name = GlWindow((320, 240), is_fullscreen=False, is_hidden=True).renderer_name
-    except RASTrainerError as error:
-        sys.exit(f"OpenGL does not work: {error} {NO_WINDOW}")
-    if is_software_renderer(name):
-        sys.exit(f"OpenGL works, but the processor draws, slowly: {name}.")
-    print(f"OpenGL works: {name}.")
+        yield WARNING, "There is no display, so no window can open; other computers can show it."
+    elif (browser := application_browser()) is None:
+        yield WARNING, "There is no Chrome, Chromium or Edge: your usual browser shows the page."
+    else:
+        yield OK, f"{browser} shows the page in a window of its own."
 
 
 def check_page(_arguments: argparse.Namespace) -> Answers:
     if folder := page_folder():
         yield OK, f"The page for browsers and headsets is in {folder}."
     else:
-        yield WARNING, "The page for browsers and headsets is not built; the window needs none."
+        yield WARNING, "The page for browsers and headsets is not built."
 
 
 KEYBOARD = "The keyboard does everything a gamepad does."
@@ -226,7 +200,7 @@ CHECKS = (
         "Install Python 3.10 or newer, and what is missing: "
         f"{sys.executable} -m pip install --force-reinstall PACKAGE",
     ),
-    ("graphics", check_graphics, "Use a desktop session and the graphics card's driver."),
+    ("window", check_window, "Install one of them, or open the page on another computer: --lan"),
     ("browser", check_page, "Build it: make page"),
     (
         "gamepad",
@@ -259,6 +233,3 @@ COMMANDS = (
         "Exit status: 0 without problems (warnings leave something out), 1 with one.",
     ),
 )
-
-if __name__ == "__main__":
-    open_hidden_window()

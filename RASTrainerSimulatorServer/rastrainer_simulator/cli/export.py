@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
+from urllib.parse import urlsplit
 
 from rastrainer.errors import InputError
 from rastrainer.files.writing import make_empty_folder, write_text
 from rastrainer.journal.recording import read_trajectory
-from rastrainer.json_checks import accepted
+from rastrainer.number_text import counted
+from rastrainer.protocol import Mode, RegistrationMethod
 from rastrainer.report.published_tables import with_ctps
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
@@ -25,7 +27,6 @@ from rastrainer.study.tidy_csv import (
     trials_csv,
 )
 from rastrainer_simulator.cli.options import (
-    CONFIG,
     INCOMPLETE,
     Command,
     option,
@@ -34,14 +35,16 @@ from rastrainer_simulator.cli.options import (
     read_known_study,
     study,
 )
+from rastrainer_simulator.export.grades import PLATFORMS, RULES, grade, grades_csv
 from rastrainer_simulator.export.trial_files import write_motion_bids, write_slicer_files
 from rastrainer_simulator.export.xapi import HOME_PAGE, statements_text
-from rastrainer_simulator.net.record_store import home_page_url, read_record_store_settings
 
 FORMATS = ("csv", "bids", "xapi", "slicer")
 
 
 def run(arguments: argparse.Namespace) -> int:
+    if arguments.grades:
+        return _export_grades(arguments)
     formats = arguments.format or [f for f in FORMATS if f != "bids" or arguments.records]
     if "bids" in formats and arguments.records is None:
         raise InputError("Motion-BIDS needs the journals: give their folder with --records.")
@@ -51,6 +54,46 @@ def run(arguments: argparse.Namespace) -> int:
         print(f"{arguments.output / name}: {_write(name, data, arguments)}")
     if data.without_consent:
         print(f"Left out because they did not consent to research: {data.without_consent} trainees")
+    return 0
+
+
+def _export_grades(arguments: argparse.Namespace) -> int:
+    with Study.open_for_reading(arguments.study) as opened:
+        found = {
+            trainee.pseudonym: grade(
+                opened.past_trials(trainee.pseudonym),
+                arguments.task,
+                arguments.mode,
+                RegistrationMethod(arguments.method),
+                arguments.rule,
+            )
+            for trainee in opened.trainees()
+        }
+    grades = {name: score for name, score in found.items() if score is not None}
+    make_empty_folder(arguments.output)
+    written = arguments.output / f"{arguments.grades}.csv"
+    write_text(written, grades_csv(grades, arguments.grades))
+    print(f"{written}: grades of {len(grades)} of {counted(len(found), 'trainee')}")
+    return 0
+
+
+def _export_grades(arguments: argparse.Namespace) -> int:
+    with Study.open_for_reading(arguments.study) as opened:
+        found = {
+            trainee.pseudonym: grade(
+                opened.past_trials(trainee.pseudonym),
+                arguments.task,
+                arguments.mode,
+                RegistrationMethod(arguments.method),
+                arguments.rule,
+            )
+            for trainee in opened.trainees()
+        }
+    grades = {name: score for name, score in found.items() if score is not None}
+    make_empty_folder(arguments.output)
+    written = arguments.output / f"{arguments.grades}.csv"
+    write_text(written, grades_csv(grades, arguments.grades))
+    print(f"{written}: grades of {len(grades)} of {counted(len(found), 'trainee')}")
     return 0
 
 
@@ -76,7 +119,7 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
         for table, text in tables.items():
             write_text(folder / f"{table}.csv", text)
     elif name == "xapi":
-        write_text(folder / "statements.json", statements_text(data, _home_page(arguments)))
+        write_text(folder / "statements.json", statements_text(data, arguments.home_page))
     else:
         for trial, stored in _stored(data, arguments.study):
             write_slicer_files(stored, folder / trial.trial_id)
@@ -84,10 +127,24 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
     return f"{len(data.trials)} trials, {len(data.aborted)} aborted ones"
 
 
-def _home_page(arguments: argparse.Namespace) -> str:
-    if arguments.home_page:
-        return accepted(home_page_url, arguments.home_page, "--home-page")
-    return read_record_store_settings(arguments.config).home_page or HOME_PAGE
+def _home_page(value: str) -> str:
+    """Accept the address of a lab's own system, from which IRIs are made."""
+    parts = urlsplit(value)
+    # What stands before an "@", such as a password, would be in every statement.
+    is_safe = not any(sign in value for sign in "@?# ") and parts.hostname
+    if parts.scheme not in ("https", "http") or not is_safe:
+        raise argparse.ArgumentTypeError("give an address such as https://lab.example.org")
+    return value.rstrip("/")
+
+
+def _home_page(value: str) -> str:
+    """Accept the address of a lab's own system, from which IRIs are made."""
+    parts = urlsplit(value)
+    # What stands before an "@", such as a password, would be in every statement.
+    is_safe = not any(sign in value for sign in "@?# ") and parts.hostname
+    if parts.scheme not in ("https", "http") or not is_safe:
+        raise argparse.ArgumentTypeError("give an address such as https://lab.example.org")
+    return value.rstrip("/")
 
 
 def _stored(data: StudyData, place: StudyPlace) -> Iterator[tuple[TrialRow, StoredTrial]]:
@@ -103,7 +160,7 @@ def _stored(data: StudyData, place: StudyPlace) -> Iterator[tuple[TrialRow, Stor
 COMMANDS = (
     Command(
         "export",
-        "export a study: tidy CSV, Motion-BIDS, xAPI, Slicer's files",
+        "export a study: tidy CSV, Motion-BIDS, xAPI, Slicer's files, grades",
         run,
         (
             study(),
@@ -114,13 +171,30 @@ COMMANDS = (
             path("--records", "DIR", "the simulator's journals, for Motion-BIDS"),
             option(
                 "--home-page",
+                type=_home_page,
+                default=HOME_PAGE,
                 metavar="URL",
-                help=f"of the lab's system, for xAPI (default: as set, or {HOME_PAGE})",
+                help="of the lab's system, which makes pseudonyms unique among labs, for xAPI",
             ),
-            CONFIG,
+            option("--grades", choices=PLATFORMS, help="write only what this platform imports"),
+            option("--task", metavar="TASK", help="whose trials give the grade (default: any)"),
+            option(
+                "--mode",
+                choices=[each.value for each in Mode],
+                help="whose trials give the grade (default: both)",
+            ),
+            option(
+                "--method",
+                choices=[each.value for each in RegistrationMethod],
+                default=RegistrationMethod.FIDUCIALS.value,
+                metavar="METHOD",
+                help="of registration, whose trials give the grade",
+            ),
+            option("--rule", choices=RULES, default="best", help="which acceptable trial gives it"),
             INCOMPLETE,
         ),
         "Write a study into an empty folder, a folder a format. Trainees appear by their "
-        "pseudonyms, and only those who consented to research.",
+        "pseudonyms, and only those who consented to research. With --grades, write only the "
+        "grades of a course: of all active trainees, whether they consented or not.",
     ),
 )

@@ -8,10 +8,9 @@ from itertools import zip_longest
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import counted
-from rastrainer.study.database.database import Connection, path_beside_study
+from rastrainer.study.database.database import Connection
 from rastrainer.study.database.schema import Table, study_tables
 from rastrainer.study.database.study import Study
-from rastrainer.study.platform_links import PlatformLinks
 from rastrainer.study.trainee_data import erase_trainee
 from rastrainer_simulator.cli.options import Command, flag, option, path, study
 
@@ -24,15 +23,11 @@ def run_copy_study(arguments: argparse.Namespace) -> int:
         raise InputError("FROM and TO are the same study.")
     with Study.open_for_reading(arguments.source) as source, Study.open(arguments.target) as target:
         counts = copy_study(source, target)
-        links = PlatformLinks(path_beside_study(source.database.place))
-        users = links.copy_to(PlatformLinks(path_beside_study(target.database.place)))
     print(
         f"{arguments.target}: {counted(counts['trainees'], 'trainee')}, "
         f"{counted(counts['trials'], 'trial')}, {counted(sum(counts.values()), 'row')} in all, "
         "each compared with its original"
     )
-    if users:
-        print(f"{counted(users, 'user')} of learning platforms copied with it")
     return 0
 
 

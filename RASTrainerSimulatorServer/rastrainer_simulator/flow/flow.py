@@ -34,7 +34,7 @@ from rastrainer_simulator.texts.texts import LocalizedText
 
 PICTURE_GRACE_S = 0.5
 """A picture that is there so soon is no reason to pause a trial."""
-OF_A_RESULT = (FinishedPage, ReplayPage, ErrorsPage, ProcedureErrorsPage, ProcedureLinesPage)
+RESULT_PAGES = (FinishedPage, ReplayPage, ErrorsPage, ProcedureErrorsPage, ProcedureLinesPage)
 
 NOT_RECORDED = "not recorded"
 INTERRUPTED = ("interrupted", "interrupted procedure")
@@ -203,7 +203,7 @@ class Flow:
         if tutorial is not None and tutorial.trainee != trainee:
             return Answer(0, False, say("tutorial is open", trainee=tutorial.trainee))
         if tutorial is None:
-            if session.setting_up.is_under_way:
+            if session.reload.is_under_way:
                 return Answer(0, False, say("being set up"))
             session.trainee, session.mode = trainee, mode
             if not needs_tutorial(session):
@@ -245,7 +245,7 @@ class Flow:
             session.pages.open(ExperimentPage(session))
             if outcome is not None:
                 page = PracticedPage if tutorial.practiced else TutorialDonePage
-                session.pages.open(page(session, outcome), has_grace=True)
+                session.pages.open(page(session, outcome), ignore_input_briefly=True)
 
     def _follow(self, before: tuple[str, Phase]) -> None:
         """Show what belongs to the trial's new phase."""
@@ -262,17 +262,17 @@ class Flow:
         elif training.phase is Phase.PAUSED:
             page: type[SessionPage] = PreparingPage if self._waits_for_picture else TrialPage
             page = PracticePage if self._trial_screen.is_practice_over else page
-            session.pages.show(page(session), has_grace=not is_requested)
+            session.pages.show(page(session), ignore_input_briefly=not is_requested)
         elif training.phase is Phase.REGISTERED:
             session.note_done()
             session.study.note_registered(training.trainee, training.task, training.mode)
-            session.pages.show(WaitingPage(session), has_grace=True)
+            session.pages.show(WaitingPage(session), ignore_input_briefly=True)
         elif training.phase is Phase.SCORED:
-            session.pages.show(ResultPage(session), has_grace=True)
-        elif before[1] in OPEN_PHASES or isinstance(session.pages.top, OF_A_RESULT):
+            session.pages.show(ResultPage(session), ignore_input_briefly=True)
+        elif before[1] in OPEN_PHASES or isinstance(session.pages.top, RESULT_PAGES):
             # Another simulation may follow a trial while other pages are open: they stay.
             session.pages.show_start()
-            session.pages.open(ExperimentPage(session), has_grace=was_working)
+            session.pages.open(ExperimentPage(session), ignore_input_briefly=was_working)
 
     def _note_trial(self, previous_id: str) -> None:
         """Note a new trial, and a trial run whose points are all touched."""

@@ -17,7 +17,7 @@ from rastrainer.journal.folder import JournalNumber
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal, stamp
 from rastrainer.journal.recording import WholeRecording
 from rastrainer.json_records import record_from_json, record_to_json
-from rastrainer.protocol import AbortReason, PROCEDURE_PHASES, Phase
+from rastrainer.protocol import PROCEDURE_PHASES, AbortReason, Phase
 from rastrainer.scenario.scenario import method_of
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TouchedPoint

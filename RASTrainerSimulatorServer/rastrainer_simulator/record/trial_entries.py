@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.commands import CommandName
-from rastrainer.journal.folder import JournalNumber, UNNUMBERED, header_number
+from rastrainer.journal.folder import UNNUMBERED, JournalNumber
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, stamp
 from rastrainer.journal.recording import Recording
 from rastrainer.json_records import record_from_json, record_to_json

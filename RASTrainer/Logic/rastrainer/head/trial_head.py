@@ -17,7 +17,6 @@ import numpy as np
 from numpy.random import default_rng
 
 from rastrainer import transforms
-from rastrainer.commands import skin_amounts
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields
 from rastrainer.head.mesh import HeadMesh

@@ -12,10 +12,8 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Annotated, Any
 
-from rastrainer import json_checks
 from rastrainer.commands import CommandName
-from rastrainer.files.json_fields import from_json_object
-from rastrainer.json_checks import Argument, number, object_of, text, whole_number
+from rastrainer.json_checks import number, object_of, text, whole_number
 from rastrainer.protocol import Mode, Phase
 
 MAX_WAY_MM = 1e9

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_from_json
-from rastrainer.protocol import Phase, TRIAL_RUN
+from rastrainer.protocol import TRIAL_RUN, Phase
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.delivered_trial import scored_with_journal, with_progress_among
 from rastrainer.trial.analysis import (

@@ -50,7 +50,7 @@ class FlowServices:
     pin: PinGuesses | None = None
 
 
-class SettingUp:
+class SimulationReload:
     """Has the simulation continue with other settings, or on another head, between two trials."""
 
     def __init__(
@@ -74,7 +74,7 @@ class SettingUp:
         is_ours = self._answer is not None or self._wanted is not None
         return is_ours or self._control_loop.is_being_replaced
 
-    def want(self, present: SimulationSettings, wanted: SimulationSettings) -> None:
+    def request(self, present: SimulationSettings, wanted: SimulationSettings) -> None:
         """Continue with settings other than the present ones, once they have stayed unchanged."""
         is_needed = wanted != present or self._answer is not None
         self._wanted = wanted if is_needed else None

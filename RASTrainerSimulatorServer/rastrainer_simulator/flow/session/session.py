@@ -31,7 +31,7 @@ from rastrainer_simulator.flow.session.preferences import (
     Preferences,
     write_preferences,
 )
-from rastrainer_simulator.flow.session.services import FlowServices, SettingUp
+from rastrainer_simulator.flow.session.services import FlowServices, SimulationReload
 from rastrainer_simulator.flow.session.trace_places import TracePlaces
 from rastrainer_simulator.flow.session.trainee_history import (
     DoneTasks,
@@ -89,7 +89,7 @@ class TrainingSession:
         picture_share: how much of its picture the trainee's view has, 0 to 1, while it is awaited;
             else None.
         goes_on_blind: the trial that the trainee wants to go on without its picture; "" for none.
-        setting_up: has the simulation continue with other settings, or on another head.
+        reload: has the simulation continue with other settings, or on another head.
     """
 
     def __init__(
@@ -130,7 +130,7 @@ class TrainingSession:
         self.is_slicer_connected = services.is_slicer_connected
         self.quit = services.quit
         self.study = services.study
-        self.setting_up = SettingUp(services, control_loop, self.complain)
+        self.reload = SimulationReload(services, control_loop, self.complain)
         self._services = services
         self._control_loop = control_loop
         self._controls = controls
@@ -215,7 +215,7 @@ class TrainingSession:
             self.own_score.advance(dt, self.training, self.scenario, is_in_study)
         self._take_answers()
         self._note_reached()
-        self.setting_up.advance(dt, self.has_open_trial)
+        self.reload.advance(dt, self.has_open_trial)
 
     def do(self, command: str, arguments: Mapping[str, Any] | None = None) -> None:
         """Have a command carried out."""
@@ -234,7 +234,7 @@ class TrainingSession:
 
     def begin_practice(self, task: str, point: str = "") -> None:
         """Open the practice of a task's point, recorded nowhere; without one the tutorial."""
-        if self.setting_up.is_under_way:
+        if self.reload.is_under_way:
             self.complain(self.texts.say("being set up"))
             return
         wanted = {"task": task, "trainee": self.trainee.strip(), "mode": self.mode}
@@ -272,7 +272,7 @@ class TrainingSession:
         before = self._control_loop.setup.settings
         self.preferences = preferences
         self.texts = Texts(LANGUAGES[preferences.language])
-        self.setting_up.want(before, preferences.applied_to(before))
+        self.reload.request(before, preferences.applied_to(before))
         self._save(lambda: write_preferences(self._services.config / PREFERENCES_FILE, preferences))
 
     def fiducial(self, label: str) -> Vector:

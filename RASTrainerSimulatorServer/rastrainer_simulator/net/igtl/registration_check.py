@@ -16,7 +16,7 @@ import numpy as np
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_from_json
-from rastrainer.protocol import Phase, TRACED_METHODS
+from rastrainer.protocol import TRACED_METHODS, Phase
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.touch_registration import GivenPoints, register_trial

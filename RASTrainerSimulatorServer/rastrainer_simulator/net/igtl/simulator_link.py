@@ -30,7 +30,7 @@ from rastrainer.igtl.content import (
 )
 from rastrainer.igtl.message import Message
 from rastrainer.json_records import record_to_json
-from rastrainer.protocol import DeviceName, PROTOCOL_VERSION, Rate
+from rastrainer.protocol import PROTOCOL_VERSION, DeviceName, Rate
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.steps import StepAnswers
 from rastrainer.trial.aborted_trial import AbortedTrial

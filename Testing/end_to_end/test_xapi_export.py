@@ -1,4 +1,4 @@
-"""Statements of a whole virtual study reach Ralph, a learning record store, through its crashes."""
+"""Ralph, a learning record store, accepts the exported statements of a whole virtual study."""
 
 from __future__ import annotations
 
@@ -10,28 +10,18 @@ import subprocess
 import sys
 import time
 import urllib.request
-import uuid
 from pathlib import Path
 
 import pytest
 
-from rastrainer.study.database.study import Study
-from rastrainer.study.study_data import read_study_data
-from rastrainer_simulator.cli.send_statements import Sender, SentStatements
-from rastrainer_simulator.export.xapi import statements
-from rastrainer_simulator.net.record_store import (
-    RECORD_STORE_FILE,
-    RecordStore,
-    StoreUnreachableError,
-)
-from Testing.domain.trial.trial_records import gentle_score, make_record
+from rastrainer_simulator.cli.main import main
 from Testing.free_port import free_port
 
 # Ralph has its own environment, which `make soak` makes.
 pytestmark = pytest.mark.soak
 
 RALPH = Path(sys.prefix) / "ralph"
-CREDENTIALS, HOME = "lab:secret", "https://lab.example.org"
+CREDENTIALS = "lab:secret"
 TRAINEES = 4
 # Ralph's store of files is made for one request: let it append. All else is Ralph's own.
 SERVER = """
@@ -89,17 +79,6 @@ class Ralph:
         """Send statements as any other program would; return the status."""
         return self._ask("", json.dumps(found).encode())[0]
 
-    def kept(self) -> list[dict]:
-        """Return all statements that it has."""
-        found, query = [], "?limit=100"
-        while query:
-            _, answer = self._ask(query)
-            page = json.loads(answer)
-            found += page["statements"]
-            more = page.get("more", "")
-            query = f"?{more.partition('?')[2]}" if more else ""
-        return found
-
     def _ask(self, query: str, body: bytes | None = None) -> tuple[int, bytes]:
         token = base64.b64encode(CREDENTIALS.encode()).decode()
         request = urllib.request.Request(f"{self.url}/statements{query}", body)
@@ -126,52 +105,11 @@ def ralph(tmp_path):
     store.kill()
 
 
-def test_a_repeatedly_killed_store_has_each_statement_once(ralph, study, tmp_path):
-    expected = statements(read_study_data(study), HOME)
-    assert len(expected) >= 10 * TRAINEES
-    sent = SentStatements(tmp_path / "study.db", ralph.url, HOME)
-    for count in range(5, len(expected), 9):
-        Sender(lambda c=count: expected[:c], RecordStore(ralph.url, CREDENTIALS), sent).send()
-        ralph.kill()
-        away = Sender(lambda: expected, RecordStore(ralph.url, CREDENTIALS), sent)
-        with pytest.raises(StoreUnreachableError):
-            away.send()
-        ralph.start()
-    Sender(lambda: expected, RecordStore(ralph.url, CREDENTIALS), sent).send()
-    kept = {each["id"]: each for each in ralph.kept()}
-    assert sorted(each["id"] for each in ralph.kept()) == sorted(each["id"] for each in expected)
-    for statement in expected:
-        assert kept[statement["id"]].items() >= statement.items()
-
-
-def test_ralph_answers_200_to_every_statement_and_204_to_repeats(ralph, study):
-    for statement in statements(read_study_data(study), HOME):
-        assert ralph.post([statement]) == 200
+def test_ralph_answers_200_to_every_statement_and_204_to_repeats(ralph, study, tmp_path):
+    words = ["export", str(study), "--format", "xapi", "-o", str(tmp_path / "out")]
+    assert main([*words, "--home-page", "https://lab.example.org"]) == 0
+    found = json.loads((tmp_path / "out" / "xapi" / "statements.json").read_text())
+    assert len(found) >= 10 * TRAINEES
+    assert ralph.post(found) == 200
+    for statement in found:
         assert ralph.post([statement]) == 204
-
-
-def test_trials_are_pushed_as_they_are_stored_and_wait_while_ralph_is_down(ralph, tmp_path):
-    path = tmp_path / "small.db"
-    with Study.open(path) as study:
-        study.create_trainee("T001", consent=True)
-        study.add_trial(make_record(trainee="T001"), score=gentle_score(110.0, 0.5))
-    (tmp_path / "secret").write_text(CREDENTIALS)
-    (tmp_path / "secret").chmod(0o600)
-    settings = {"store": ralph.url, "homePage": HOME, "credentials": "secret"}
-    (tmp_path / RECORD_STORE_FILE).write_text(json.dumps(settings))
-    words = ["send-statements", str(path), "--watch", "1", "--config", str(tmp_path)]
-    command = [sys.executable, "-m", "rastrainer_simulator.cli.main", *words]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as sending:
-        assert "stored" in sending.stdout.readline()
-        ralph.kill()
-        with Study.open(path) as study:
-            later = make_record(trainee="T001", trialId=str(uuid.uuid4()))
-            study.add_trial(later, score=gentle_score(90.0, 0.5))
-        assert "Nothing is lost" in sending.stdout.readline()
-        ralph.start()
-        while "stored" not in sending.stdout.readline():
-            pass
-        sending.terminate()
-    expected = {each["id"] for each in statements(read_study_data(path), HOME)}
-    kept = [each["id"] for each in ralph.kept()]
-    assert sorted(kept) == sorted(expected)
