@@ -62,8 +62,8 @@ LAYERS = {
         rastrainer_simulator.authoring, rastrainer_simulator.virtual
         rastrainer_simulator.net
         rastrainer_simulator.net.igtl, rastrainer_simulator.net.views
-        rastrainer_simulator.desktop.panels, rastrainer_simulator.replay
-        rastrainer_simulator.desktop, rastrainer_simulator.flow.tutorial
+        rastrainer_simulator.replay
+        rastrainer_simulator.flow.tutorial
         rastrainer_simulator.flow.session
         rastrainer_simulator.flow.pages
         rastrainer_simulator.flow

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from Testing.test_architecture import FILES, named_in_strings, our_imports
+from tools import command_table
 
 ROOT = Path(__file__).parents[1]
 TRACKED = [
@@ -218,3 +219,7 @@ def test_a_missing_path_would_be_detected():
     assert is_module("rastrainer")
     assert not is_module("rastrainer.nothing_there")
     assert is_module("rastrainer.__version__")
+
+
+def test_the_table_of_commands_is_made_of_their_entries():
+    assert command_table.page() == command_table.PAGE.read_text(encoding="utf-8")

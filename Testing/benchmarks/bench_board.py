@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 from playwright.sync_api import sync_playwright
 
+from rastrainer.commands import CommandName
 from rastrainer.igtl.client import Client
-from rastrainer.protocol import CommandName
 from Testing.benchmarks.recorded_seats import recorded, repeat
 from Testing.benchmarks.row import cpu_share, row
 from Testing.benchmarks.watched_loop import WatchedLoop

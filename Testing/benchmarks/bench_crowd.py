@@ -14,9 +14,10 @@ from pathlib import Path
 import aiohttp
 import numpy as np
 
+from rastrainer.commands import CommandName
 from rastrainer.igtl.content import Command, Transform
 from rastrainer.igtl.message import HEADER_BYTES, Message, pack
-from rastrainer.protocol import PROTOCOL_VERSION, CommandName
+from rastrainer.protocol import PROTOCOL_VERSION
 from Testing.benchmarks.loop_health import between, health_of, on_time
 from Testing.benchmarks.row import cpu_share, resident_mb, row
 from Testing.end_to_end.simulator_process import ViewedSimulator

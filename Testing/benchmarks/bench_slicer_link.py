@@ -12,8 +12,9 @@ from pathlib import Path
 
 from PySide6 import QtCore
 
+from rastrainer.commands import CommandName
 from rastrainer.igtl.client import Client
-from rastrainer.protocol import PROTOCOL_VERSION, CommandName
+from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.slicer.link.link_status import LinkState
 from Testing.benchmarks.row import row
 from Testing.end_to_end.simulator_process import SimulatorProcess

@@ -13,10 +13,10 @@ from pathlib import Path
 
 import numpy as np
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
 from rastrainer.igtl.client import Client
-from rastrainer.protocol import PROTOCOL_VERSION, CommandName
+from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.state import HANDS_OFF, Motion, OperatorCommand, OperatorInput
@@ -108,9 +108,9 @@ def _tour(simulation: Simulation) -> np.ndarray:
     random = np.random.default_rng(SEED)
     do(CommandName.START_TASK, task="task-3", trainee="bench", seed=SEED)
     truth = simulation.truth
-    center = truth.in_world(truth.target)
-    for label in truth.fiducials:
-        fiducial = truth.in_world(truth.fiducials[label])
+    center = truth.in_world(truth.target_ras)
+    for label in truth.fiducials_ras:
+        fiducial = truth.in_world(truth.fiducials_ras[label])
         outside = fiducial + 70.0 * (fiducial - center) / np.linalg.norm(fiducial - center)
         move_to(outside)
         move_to(fiducial)

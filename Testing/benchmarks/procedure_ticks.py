@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from rastrainer import transforms
-from rastrainer.command_arguments import check_arguments
-from rastrainer.protocol import CommandName, Phase, TouchRule
+from rastrainer.commands import CommandName, check_arguments
+from rastrainer.protocol import Phase, TouchRule
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.state import HANDS_OFF, Motion, OperatorCommand, OperatorInput
@@ -87,7 +87,7 @@ class _Operation:
         self._do(
             CommandName.START_TASK, task="task-3", trainee="bench", seed=SEED, procedure=PROCEDURE
         )
-        for _ in self._simulation.truth.fiducials:
+        for _ in self._simulation.truth.fiducials_ras:
             self._do(CommandName.CAPTURE)
         self._do(CommandName.REGISTER)
         matrix = transforms.inverse(self._simulation.truth.head_to_world)

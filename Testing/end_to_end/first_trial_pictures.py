@@ -20,7 +20,7 @@ from Testing.end_to_end.window_pictures import Photographer
 from Testing.web.place import CarriedTrainee
 
 FOLDER = Path(__file__).parents[2] / "docs" / "pictures"
-WINDOW = ("--size", "1280x720", "--quality", "low", "--picture-quality", "low")
+SIZE = (1280, 720)
 COLORS = 96
 SLIP_AT, SLIP_M = 6, 0.006
 """After so many touches one is off by this much."""
@@ -32,7 +32,7 @@ def main() -> None:
         tempfile.TemporaryDirectory() as folder,
         Lab(Path(folder), "--seed", "7", order="fixed", tutorial="required") as lab,
     ):
-        window = lab.open_window("window", *WINDOW)
+        window = lab.open_window("window", SIZE)
         photographer = Photographer(lab, window, FOLDER, COLORS)
         with Client(port=lab.simulator.port) as client:
             # It only carries the tip: the simulator is to score alone.

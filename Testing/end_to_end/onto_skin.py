@@ -6,9 +6,10 @@ import json
 
 import numpy as np
 
+from rastrainer.commands import CommandName
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.message import Message
-from rastrainer.protocol import CommandName, DeviceName, Proximity
+from rastrainer.protocol import DeviceName, Proximity
 
 SINK_MM = 1.0
 """How far below the skin the tip is sent: it stops on the skin."""

@@ -10,10 +10,11 @@ from collections.abc import Callable
 import numpy as np
 
 from rastrainer import transforms
+from rastrainer.commands import CommandName
 from rastrainer.igtl.client import Client, LinkError, Reply
 from rastrainer.igtl.content import Command
 from rastrainer.igtl.message import Message
-from rastrainer.protocol import PROTOCOL_VERSION, CommandName, DeviceName
+from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 from rastrainer.scenario.scenario import Scenario
 from Testing.end_to_end.onto_skin import lower_onto_skin
 

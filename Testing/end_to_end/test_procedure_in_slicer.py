@@ -9,7 +9,8 @@ import time
 import numpy as np
 import pytest
 
-from rastrainer.protocol import DEFAULT_HOST, PROCEDURE_PHASES, CommandName, Phase
+from rastrainer.commands import CommandName
+from rastrainer.protocol import DEFAULT_HOST, PROCEDURE_PHASES, Phase
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic.module_paths import ModulePaths
 from rastrainer.slicer.logic.module_session import ModuleSession

@@ -5,8 +5,9 @@ import time
 import pytest
 import slicer
 
+from rastrainer.commands import CommandName
 from rastrainer.igtl.client import Client
-from rastrainer.protocol import PROTOCOL_VERSION, CommandName
+from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.slicer.link.link_status import LinkState
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.slicer.host.fixtures import host, module_widget  # noqa: F401

@@ -16,7 +16,7 @@ except ImportError:
     sys.exit("Install atheris to search by coverage (Linux, Python 3.11 or newer): make soak does.")
 
 with atheris.instrument_imports(include=["rastrainer.igtl", "rastrainer.protocol"]):
-    from rastrainer.command_arguments import check_arguments, decode_json_object
+    from rastrainer.commands import check_arguments, decode_json_object
     from rastrainer.errors import InputError
     from rastrainer.igtl.content import Command
     from rastrainer.igtl.message import CONTENTS, HEADER_BYTES, MessageReader, pack, plain_crc64

@@ -2,7 +2,8 @@
 
 import pytest
 
-from rastrainer.command_arguments import COMMAND_ARGUMENTS, check_arguments
+from rastrainer import commands
+from rastrainer.commands import check_arguments
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Transform
 from rastrainer.igtl.message import Message
@@ -82,6 +83,6 @@ def test_the_same_seed_gives_the_same_attack_which_includes_every_valid_message(
 
 
 def test_every_acceptable_command_is_among_those_that_are_mutated():
-    assert COMMANDS.keys() == COMMAND_ARGUMENTS.keys()
+    assert COMMANDS.keys() == commands.COMMANDS.keys()
     for name, arguments in COMMANDS.items():
         check_arguments(name, arguments)

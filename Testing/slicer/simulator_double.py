@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from rastrainer.commands import CommandName
 from rastrainer.igtl.client import Reply
 from rastrainer.igtl.content import (
     ERROR_KEY,
@@ -22,7 +23,7 @@ from rastrainer.igtl.content import (
     Status,
 )
 from rastrainer.igtl.message import Message, MessageReader, pack
-from rastrainer.protocol import PROTOCOL_VERSION, CommandName, DeviceName
+from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from Testing.free_port import free_port

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.protocol import CommandName
+from rastrainer.commands import CommandName
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
+from rastrainer.commands import CommandName
 from rastrainer.igtl.content import String
-from rastrainer.protocol import CommandName, DeviceName
+from rastrainer.protocol import DeviceName
 from rastrainer.scenario.points import LABELS
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic, ProcedureStatus

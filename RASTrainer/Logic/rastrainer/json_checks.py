@@ -10,10 +10,13 @@ import contextlib
 import json
 import math
 import re
+import sys
 import uuid
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
-from typing import Any, TypeGuard, TypeVar
+from typing import Annotated, Any, TypeGuard, TypeVar
+
+import numpy as np
 
 from rastrainer.errors import InputError
 
@@ -205,6 +208,10 @@ def number(minimum: float, maximum: float, unit: str = "") -> Callable[[Any], fl
     return check
 
 
+Setting = Annotated[float, number(-10_000, 10_000)]
+"""No length, angle or speed is larger; with a larger one, a simulation would only never end."""
+
+
 def whole_number(minimum: int, maximum: int) -> Callable[[Any], int]:
     """Accept an integer from `minimum` to `maximum`."""
 
@@ -230,6 +237,70 @@ def numbers(count: int, limit: float, unit: str = "") -> Callable[[Any], tuple[f
             raise ValueError(sentence) from None
 
     return check
+
+
+def point(limit: float, unit: str = "mm") -> Callable[[Any], np.ndarray]:
+    """Accept three numbers within ±`limit`: (3,) float, read-only."""
+    check_numbers = numbers(3, limit, unit)
+
+    def check(value: Any) -> np.ndarray:
+        accepted_point = np.array(check_numbers(value))
+        accepted_point.setflags(write=False)
+        return accepted_point
+
+    return check
+
+
+def transform() -> Callable[[Any], np.ndarray]:
+    """Accept 16 numbers, row by row: (4, 4) float, read-only."""
+    check_numbers = numbers(16, 1e6)
+
+    def check(value: Any) -> np.ndarray:
+        matrix = np.reshape(check_numbers(value), (4, 4))
+        matrix.setflags(write=False)
+        return matrix
+
+    return check
+
+
+@dataclass(frozen=True)
+class SizeCheck:
+    """A check of how many values a list or an object has; each value needs one of its own."""
+
+    check: Callable[[Any], Any]
+
+    def __call__(self, value: Any) -> Any:
+        return self.check(value)
+
+
+def list_of(minimum: int = 0, maximum: int = sys.maxsize, what: str = "items") -> SizeCheck:
+    """Accept a list of `minimum` to `maximum` values, whatever they are."""
+
+    def check(value: Any) -> tuple[Any, ...]:
+        if not isinstance(value, (list, tuple)) or not minimum <= len(value) <= maximum:
+            count = f"{minimum} to {maximum}" if minimum else f"at most {maximum}"
+            raise ValueError("a list" if maximum == sys.maxsize else f"a list of {count} {what}")
+        return tuple(value)
+
+    return SizeCheck(check)
+
+
+def object_of(
+    maximum: int = sys.maxsize, check_name: Callable[[Any], str] | None = None
+) -> SizeCheck:
+    """Accept an object of at most `maximum` checked names, whatever their values are."""
+    accept_name = check_name or text()
+
+    def check(value: Any) -> dict[str, Any]:
+        if not isinstance(value, Mapping) or len(value) > maximum:
+            size = "" if maximum == sys.maxsize else f" of at most {maximum} names"
+            raise ValueError(f"an object{size}")
+        try:
+            return {accept_name(name): item for name, item in value.items()}
+        except ValueError as error:
+            raise ValueError(f"an object, its names {error}") from None
+
+    return SizeCheck(check)
 
 
 def one_of(*choices: str) -> Callable[[Any], str]:

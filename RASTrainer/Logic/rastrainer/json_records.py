@@ -8,29 +8,22 @@ A field's annotation holds its check, and its key is its name in camel case:
         position_mm: Annotated[tuple[float, float, float], numbers(3, WORLD_LIMIT_MM, "mm")]
         sim_time_s: Annotated[float, number(0, TIME_LIMIT_S, "s")]
 
-A plain `str` is a text of `json_checks.text()`. `bool`, enums, `Literal`, other records, `X | None`
-and `tuple[X, ...]` of these need no check; all else does. A check sees the decoded JSON; enums and
-records are made of what it accepts. Rules that concern several fields stand in `__post_init__`,
-which raises `InputError`.
+A plain `str` is a text of `json_checks.text()`. `bool`, enums, `Literal`, other records, and of
+these `X | None`, `tuple[X, ...]` and `Mapping[str, X]` need no check; all else does. A check sees
+the decoded JSON, and limits the length of lists and objects (`list_of`, `object_of`); the value is
+made of what it accepts. Rules for several fields stand in `__post_init__`, which raises
+`InputError`.
 """
 
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass, fields, is_dataclass
 from enum import Enum
 from functools import cache
-from typing import (
-    Annotated,
-    Any,
-    Literal,
-    TypeVar,
-    cast,
-    get_args,
-    get_origin,
-    get_type_hints,
-)
+from typing import Annotated, Any, Literal, TypeVar, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -39,17 +32,12 @@ from rastrainer.errors import InputError
 
 T = TypeVar("T")
 Reader = Callable[[Any, str, bool], Any]
-"""Makes a field's value of decoded JSON; it is given the place for errors, and `only_known`."""
+"""Makes a field's value of decoded JSON, its place for errors, and `only_known`."""
 
 
 @dataclass(frozen=True)
 class RecordField:
-    """One field of a record.
-
-    Attributes:
-        hint: Annotation, with checks.
-        default: Returns the value where the key is left out; None where the key is required.
-    """
+    """One field of a record; the key is required where `default` is None."""
 
     name: str
     key: str
@@ -58,33 +46,31 @@ class RecordField:
     default: Callable[[], Any] | None
 
 
-def record_from_json(kind: type[T], value: object, what: str, only_known: bool = False) -> T:
-    """Return the record that a decoded JSON object holds.
+def record_from_json(kind: type[T], value: object, what: str = "", only_known: bool = False) -> T:
+    """Return the record of a dataclass `kind` that a decoded JSON object holds.
 
     Args:
-        kind: the dataclass.
-        value: the decoded object.
-        what: begins the sentence of an error, such as "The trial record" or a file's name.
-        only_known: whether keys that the record does not have are refused, as in files that people
-            write: one that is misspelled must not be without effect. Programs of other versions
-            may send more.
+        what: begins the sentence of an error; without it, "The trial record" of a `TrialRecord`.
+        only_known: whether unknown keys are refused, as in files that people write: a misspelled
+            one must not be without effect.
     """
+    what = what or "The" + re.sub("[A-Z]", lambda each: f" {each[0].lower()}", kind.__name__)
     return _read_record(kind, value, what, f"{what}: ", only_known)
 
 
-def _read_record(kind: type[T], value: object, what: str, before: str, only_known: bool) -> T:
-    """Read a record; `before` stands before a key in the sentence of an error."""
+def _read_record(kind: type[T], value: object, what: str, before_key: str, only_known: bool) -> T:
     if not isinstance(value, Mapping):
         raise InputError(f"{what} must be a JSON object.")
     known = record_fields(cast("Any", kind))
-    unknown = sorted(str(key) for key in set(value) - {each.key for each in known})
-    if only_known and unknown:
-        keys = ", ".join(each.key for each in known)
-        raise InputError(f"{what}: there is no {json.dumps(unknown[0][:40])}; use {keys}.")
+    keys = [each.key for each in known]
+    if only_known and (unknown := sorted(str(key) for key in value if key not in keys)):
+        raise InputError(
+            f"{what}: there is no {json.dumps(unknown[0][:40])}; use {', '.join(keys)}."
+        )
     values = {}
     for each in known:
         if each.key in value:
-            values[each.name] = each.read(value[each.key], f"{before}{each.key}", only_known)
+            values[each.name] = each.read(value[each.key], f"{before_key}{each.key}", only_known)
         elif each.default is None:
             raise InputError(f"{what} needs the key {json.dumps(each.key)}.")
     return kind(**values)
@@ -134,17 +120,16 @@ def _default(each: Any) -> Callable[[], Any] | None:
 
 def _reader(hint: Any, name: str) -> Reader:
     """Return what reads values of an annotation; `name` is the field's, for developers."""
-    kind, *marks = get_args(hint) if get_origin(hint) is Annotated else (hint,)
-    checks = [mark for mark in marks if callable(mark)]
-    parts = get_args(kind)
-    is_optional = type(None) in parts
+    kind, checks = _kind_and_checks(hint)
+    is_optional = type(None) in get_args(kind)
     if is_optional:
-        (kind,) = (part for part in parts if part is not type(None))
+        kind, more = _kind_and_checks(next(x for x in get_args(kind) if x is not type(None)))
+        checks += more
     build = _builder(kind, name)
-    if build is None and not checks:
+    if build is None and all(isinstance(check, json_checks.SizeCheck) for check in checks):
         if kind not in _CHECKS:
             raise TypeError(f"{name}: {kind} needs a check.")
-        checks = [_CHECKS[kind]]
+        checks = [*checks, _CHECKS[kind]]
 
     def read(value: Any, place: str, only_known: bool) -> Any:
         if value is None and is_optional:
@@ -159,6 +144,11 @@ def _reader(hint: Any, name: str) -> Reader:
 _CHECKS: dict[Any, Callable[[Any], Any]] = {str: json_checks.text(), bool: json_checks.yes_or_no}
 
 
+def _kind_and_checks(hint: Any) -> tuple[Any, list[Callable[[Any], Any]]]:
+    kind, *marks = get_args(hint) if get_origin(hint) is Annotated else (hint,)
+    return kind, [mark for mark in marks if callable(mark)]
+
+
 def _builder(kind: Any, name: str) -> Reader | None:
     """Return what makes a value of a type; None where the accepted value is that value."""
     origin, parts = get_origin(kind), get_args(kind)
@@ -168,35 +158,38 @@ def _builder(kind: Any, name: str) -> Reader | None:
             if isinstance(value, kind)
             else _read_record(kind, value, place, f"{place}.", only_known)
         )
-    if origin is Literal:
-        choose = json_checks.one_of(*parts)
-        return lambda value, place, _: json_checks.accepted(choose, value, place)
-    if isinstance(kind, type) and issubclass(kind, Enum):
-        choose = json_checks.one_of(*(str(each.value) for each in kind))
-        return lambda value, place, _: (
-            value if isinstance(value, kind) else kind(json_checks.accepted(choose, value, place))
-        )
-    is_list = origin is tuple and len(parts) == 2 and parts[1] is ...
-    if is_list and (get_origin(parts[0]) is Annotated or _builder(parts[0], name)):
-        read_item = _reader(parts[0], name)
+    if origin is Literal or (isinstance(kind, type) and issubclass(kind, Enum)):
+        choose = json_checks.one_of(*(parts or (str(each.value) for each in kind)))
+        make = (lambda word: word) if origin is Literal else kind
+        return lambda value, place, _: make(json_checks.accepted(choose, value, place))
+    is_tuple = origin is tuple and parts[1:] == (...,)
+    if not is_tuple and origin is not Mapping:
+        return None
+    item = parts[0] if is_tuple else parts[1]
+    if not (item in _CHECKS or get_origin(item) is Annotated or _builder(item, name)):
+        return None
+    read_item = _reader(item, name)
 
-        def read_items(value: Any, place: str, only_known: bool) -> Any:
-            if not isinstance(value, (list, tuple)):
-                raise InputError(f"{place} must be a list.")
-            items = enumerate(value)
-            return tuple(read_item(item, f"{place}[{index}]", only_known) for index, item in items)
+    def read_list(value: Any, place: str, only_known: bool) -> tuple[Any, ...]:
+        items = enumerate(json_checks.accepted(json_checks.list_of(), value, place))
+        return tuple(read_item(item, f"{place}[{index}]", only_known) for index, item in items)
 
-        return read_items
-    return None
+    def read_object(value: Any, place: str, only_known: bool) -> dict[str, Any]:
+        items = json_checks.accepted(json_checks.object_of(), value, place).items()
+        return {key: read_item(item, f"{place}.{key}", only_known) for key, item in items}
+
+    return read_list if is_tuple else read_object
 
 
 def _plain(value: Any, with_defaults: bool) -> Any:
+    if value.__class__ in (float, int, str):
+        return value
     if is_dataclass(value):
         return record_to_json(value, with_defaults)
     if isinstance(value, Enum):
         return value.value
-    if isinstance(value, (np.ndarray, np.generic)):
-        return value.tolist()
+    if isinstance(value, np.ndarray):
+        return value.ravel().tolist()
     if isinstance(value, Mapping):
         return {str(key): _plain(item, with_defaults) for key, item in value.items()}
     if isinstance(value, (tuple, list)):

@@ -1,7 +1,7 @@
-"""The contract between the simulator and its clients: device names, commands, phases, limits.
+"""The contract between the simulator and its clients: device names, phases, choices, limits.
 
-Both sides import this file and `command_arguments`, so they cannot diverge. `rastrainer.igtl`
-defines the bytes.
+Both sides import this file and `commands`, so they cannot diverge. `rastrainer.igtl` defines the
+bytes.
 """
 
 from __future__ import annotations
@@ -74,12 +74,14 @@ class AbortReason(str, Enum):
     TRAINEE = "trainee"
     CLIENT = "client"
     PRACTICE_OVER = "practice over"
-    NOT_RESUMED = "not gone on with"
+    ABANDONED = "abandoned"
 
 
 COMMANDED_ABORTS = (AbortReason.TRAINEE, AbortReason.CLIENT, AbortReason.PRACTICE_OVER)
 """In the simulator's menu, by a client's command, or at the end of a trial run's time. The other
 reason is for a trial interrupted by the end of the simulator and not resumed before another."""
+NUMBER_LIMIT = 1_000_000_000
+"""Of a trial, among those of its simulator's folder."""
 MIN_ABORTED_S = 10.0
 """An aborted trial without any touch is stored if it took longer than this."""
 
@@ -194,46 +196,6 @@ class Proximity(str, Enum):
     FREE = "free"
     PROXIMITY = "proximity"
     CONTACT = "contact"
-
-
-class CommandName:
-    """Names of the commands; the last three go from the server to its clients."""
-
-    HELLO = "Hello"
-    LIST_TASKS = "ListTasks"
-    LOAD_SCENARIO = "LoadScenario"
-    START_TUTORIAL = "StartTutorial"
-    START_TASK = "StartTask"
-    JOG = "Jog"
-    MOVE_TIP_TO = "MoveTipTo"
-    CAPTURE = "Capture"
-    TRACE = "Trace"
-    UNDO = "Undo"
-    REGISTER = "Register"
-    USE_REGISTRATION = "UseRegistration"
-    ACCEPT_REGISTRATION = "AcceptRegistration"
-    REGISTER_AGAIN = "RegisterAgain"
-    ALIGN_GUIDE = "AlignGuide"
-    LOCK_GUIDE = "LockGuide"
-    FEED = "Feed"
-    RETRACT_DRILL = "RetractDrill"
-    START_INSERTION = "StartInsertion"
-    RELEASE_INSTRUMENT = "ReleaseInstrument"
-    ABORT = "Abort"
-    PAUSE = "Pause"
-    RESUME = "Resume"
-    SET_CAMERA = "SetCamera"
-    SUBMIT_REGISTRATION = "SubmitRegistration"
-    TRIAL_SCORED = "TrialScored"
-    PLAN_TARGET = "PlanTarget"
-    STUDY_STEP = "StudyStep"
-    CURRICULUM = "Curriculum"
-    GET_TRIAL = "GetTrial"
-    GET_JOURNAL = "GetJournal"
-    ACKNOWLEDGE_TRIAL = "AcknowledgeTrial"
-    TRIAL_COMPLETED = "TrialCompleted"
-    TRIAL_ABORTED = "TrialAborted"
-    STEP_ANSWERED = "StepAnswered"
 
 
 MAX_JOURNAL_BYTES = 1 << 28

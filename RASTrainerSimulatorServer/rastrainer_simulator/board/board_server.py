@@ -12,7 +12,7 @@ from typing import Any
 
 from aiohttp import hdrs, web
 
-from rastrainer.command_arguments import decode_json_object
+from rastrainer.commands import decode_json_object
 from rastrainer.errors import InputError
 from rastrainer.json_checks import accepted, one_of, text
 from rastrainer.study.database.database import StudyPlace

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from rastrainer.protocol import CommandName
+from rastrainer.commands import CommandName
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.pages.session_page import clickable_hint, slow_hint
 from rastrainer_simulator.flow.session.session import TrainingSession

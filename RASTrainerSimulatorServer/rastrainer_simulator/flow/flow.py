@@ -4,15 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rastrainer.protocol import (
-    OPEN_PHASES,
-    PROCEDURE_PHASES,
-    TRIAL_RUN,
-    CommandName,
-    GhostRule,
-    Guidance,
-    Phase,
-)
+from rastrainer.commands import CommandName
+from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, GhostRule, Guidance, Phase
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.introduction import PracticedPage, TutorialDonePage
 from rastrainer_simulator.flow.pages.procedure import (

@@ -135,7 +135,7 @@ class FlowPresenter(Presenter):
 
     def seat(self) -> Seat:
         """Return what a teacher's board shows of this seat."""
-        count = len(self._control_loop.truth.fiducials)
+        count = len(self._control_loop.truth.fiducials_ras)
         return seat_of(self._session, self.screen, self.control.holder, count)
 
     def instruct(self, order: InstructorOrder, text: str) -> str:

@@ -6,7 +6,8 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 
-from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
+from rastrainer.commands import CommandName
+from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.arm_screen import ArmScreen
 from rastrainer_simulator.flow.pages.procedure import ProcedurePage

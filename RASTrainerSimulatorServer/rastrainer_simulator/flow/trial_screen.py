@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from rastrainer.commands import CommandName
 from rastrainer.protocol import (
     FIDUCIAL_COUNT,
     MAX_TRACE_POINTS,
     MIN_TRACE_POINTS,
     PROCEDURE_PHASES,
     TRIAL_RUN,
-    CommandName,
     Guidance,
     Phase,
     StepKind,
@@ -280,5 +280,7 @@ class TrialScreen(ArmScreen):
 
 def points_in_world(truth: Truth) -> tuple[dict[str, Vector], Vector]:
     """Return the fiducials of a trial and the head's center in World, m."""
-    points = {label: in_meters(truth.in_world(point)) for label, point in truth.fiducials.items()}
-    return points, in_meters(truth.in_world(truth.target))
+    points = {
+        label: in_meters(truth.in_world(point)) for label, point in truth.fiducials_ras.items()
+    }
+    return points, in_meters(truth.in_world(truth.target_ras))

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from operator import add
 from typing import Protocol
 
-from rastrainer.command_arguments import deflection
+from rastrainer.commands import deflection
 from rastrainer_simulator.input.bindings import Bindings, Table
 from rastrainer_simulator.input.gamepads import BUTTONS
 from rastrainer_simulator.input.inputs import (

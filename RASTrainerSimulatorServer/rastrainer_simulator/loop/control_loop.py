@@ -13,9 +13,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from rastrainer.commands import COMMANDS, CommandName
 from rastrainer.errors import RASTrainerError
 from rastrainer.journal.journal_file import JournalReading, stamp
-from rastrainer.protocol import FINISHED_PHASES, OPEN_PHASES, CommandName
+from rastrainer.protocol import FINISHED_PHASES, OPEN_PHASES
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.procedure_motion import PlannedBone
@@ -45,7 +46,7 @@ from rastrainer_simulator.state import (
 )
 from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.head_pose import Truth
-from rastrainer_simulator.training.rules import ENDING_A_TRIAL, RECORDING_FAILED
+from rastrainer_simulator.training.rules import ENDING_A_TRIAL, RECORDING_FAILED, REFUSALS
 
 CATCH_UP_S = 0.1
 """How far behind the loop may fall and still make up for it tick by tick."""
@@ -59,22 +60,8 @@ TOO_MANY_STARTS = Texts().say("too many starts")
 _BEGIN_REPLACEMENT = "BeginReplacement"
 """Waits for its turn among the commands; clients cannot send it."""
 
-_OF_THE_ARCHIVE = (CommandName.ACKNOWLEDGE_TRIAL, CommandName.GET_JOURNAL)
-_OF_ANY_TRIAL = (CommandName.GET_TRIAL, *_OF_THE_ARCHIVE, *ENDING_A_TRIAL)
-_PASSING = frozenset(
-    {
-        CommandName.JOG,
-        CommandName.MOVE_TIP_TO,
-        CommandName.ALIGN_GUIDE,
-        CommandName.FEED,
-        CommandName.SET_CAMERA,
-        CommandName.PLAN_TARGET,
-        CommandName.LIST_TASKS,
-        CommandName.GET_TRIAL,
-        CommandName.GET_JOURNAL,
-    }
-)
-"""Commands that do not change the trial; all others are carried out one at a time."""
+_STATELESS_COMMANDS = {each for each in COMMANDS.values() if each.is_stateless}
+_ALLOWED_FOR_PAST_TRIALS = {each for each in COMMANDS.values() if each.is_for_past_trials}
 
 _log = logging.getLogger(__name__)
 
@@ -215,7 +202,7 @@ class ControlLoop:
     ) -> Future[Answer]:
         """Carry out a command in one of the next ticks.
 
-        `arguments` have passed `rastrainer.command_arguments.check_arguments`. The answer comes
+        `arguments` have passed `rastrainer.commands.check_arguments`. The answer comes
         when the change is on the disk.
         """
         ticket, future = self._answers.expect()
@@ -302,7 +289,7 @@ class ControlLoop:
             commands.append(OperatorCommand(RECORDING_FAILED, arguments))
         while self._arrived and len(commands) < COMMANDS_PER_TICK:
             command = self._arrived[0]
-            changes_trial = command.name not in _PASSING
+            changes_trial = command.name not in _STATELESS_COMMANDS
             if changes_trial and self._held.is_waiting:
                 break
             self._arrived.popleft()
@@ -339,10 +326,10 @@ class ControlLoop:
 
     def _is_for_the_archive(self, command: OperatorCommand) -> bool:
         """Return whether a command is about a trial whose record is written, unless it ends it."""
-        if command.name not in _OF_ANY_TRIAL:
+        if command.name not in _ALLOWED_FOR_PAST_TRIALS:
             return False
         training = self._state.training
-        if command.name in _OF_THE_ARCHIVE:
+        if command.name not in REFUSALS:
             return True
         is_present = command.arguments["trialId"] == training.trial_id
         if command.name in ENDING_A_TRIAL:

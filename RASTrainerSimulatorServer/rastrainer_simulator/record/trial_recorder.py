@@ -8,9 +8,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from rastrainer.commands import CommandName
 from rastrainer.journal.folder import UNNUMBERED, newest_journal, number_of
 from rastrainer.journal.journal_file import JournalReading, file_stamp, stamp
-from rastrainer.protocol import AbortReason, CommandName, Phase
+from rastrainer.protocol import AbortReason, Phase
 from rastrainer_simulator.record.aborted_archive import attempt_entry
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_archive import SUFFIX, ArchivedTrial, TrialArchive

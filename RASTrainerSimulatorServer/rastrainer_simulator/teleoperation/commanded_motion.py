@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 
-from rastrainer.protocol import CommandName
+from rastrainer.commands import CommandName
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import Motion, OperatorCommand
 from rastrainer_simulator.teleoperation.steering import Axes

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 
+from rastrainer.json_checks import Setting
 from rastrainer_simulator.state import Motion, OperatorInput
 from rastrainer_simulator.teleoperation.commanded_motion import (
     CommandedMotion,
@@ -32,8 +33,8 @@ class StickResponse:
         exponent: of the response curve; 1 is linear, larger is gentler near the center.
     """
 
-    dead_zone: float = 0.12
-    exponent: float = 2.0
+    dead_zone: Setting = 0.12
+    exponent: Setting = 2.0
 
     def __call__(self, deflection: tuple[float, ...]) -> tuple[float, ...]:
         """Return the share of the full speed along each axis, its length 0…1.
@@ -58,20 +59,18 @@ class TeleoperationSettings:
     """How the arm answers to the operator.
 
     Attributes:
-        response: dead zone and response curve of the sticks.
         coarse_speed: of the tip at full deflection, m/s.
         fine_speed: the same while the trigger for fine speed is held, m/s.
         skin_speed: the fastest slow motion at the skin, m/s: that the tip has reached it is seen
             late, and what it is pressed in by then counts.
         acceleration: of the tip at most, m/s²; a released stick stops it immediately.
-        steering: how the tool's direction is chosen, and how fast it turns.
     """
 
     response: StickResponse = field(default_factory=StickResponse)
-    coarse_speed: float = 0.15
-    fine_speed: float = 0.02
-    skin_speed: float = 0.003
-    acceleration: float = 2.0
+    coarse_speed: Setting = 0.15
+    fine_speed: Setting = 0.02
+    skin_speed: Setting = 0.003
+    acceleration: Setting = 2.0
     steering: SteeringSettings = field(default_factory=SteeringSettings)
 
 
@@ -99,7 +98,6 @@ class MotionRequest:
         displacement: of the tip, m, World.
         direction: of the tool, unit vector; None where it is free.
         across: the x axis of the tool's tip, unit vector; None where the tool may roll.
-        ended: how a commanded motion has just ended, None while none has.
         goal: end of the motion, m, World; None if no position is commanded.
     """
 

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
+from rastrainer.commands import CommandName
 from rastrainer.procedure.record import MAX_ATTEMPTS, MAX_TOUCHED_CHECKPOINTS
-from rastrainer.protocol import STAND_OFF_LIMIT_MM, CommandName, Phase, TouchRule
+from rastrainer.protocol import STAND_OFF_LIMIT_MM, Phase, TouchRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import EventKind, OperatorCommand, TrainingState
 from rastrainer_simulator.texts.texts import Texts
@@ -40,18 +41,6 @@ AT_EACH_STAGE: Mapping[Phase, str] = {
     Phase.INSERTING: "insert",
 }
 """What the trainee reads when the trial continues there after a pause."""
-
-
-OF_A_PROCEDURE = (
-    CommandName.USE_REGISTRATION,
-    CommandName.ACCEPT_REGISTRATION,
-    CommandName.REGISTER_AGAIN,
-    CommandName.LOCK_GUIDE,
-    CommandName.RETRACT_DRILL,
-    CommandName.START_INSERTION,
-    CommandName.RELEASE_INSTRUMENT,
-)
-"""Commands that lead a procedure from one phase to the next."""
 
 
 @dataclass(frozen=True)
@@ -93,23 +82,12 @@ class ProcedurePhases:
         self._touches = touches
         self._settings = settings
         self._texts = texts
-        self._handlers: Mapping[str, Callable[[ProcedureMoment], TrialStep | RefusedStep]] = {
-            CommandName.REGISTER: self._verify,
-            CommandName.CAPTURE: self._check_point,
-            CommandName.USE_REGISTRATION: self._use_registration,
-            CommandName.ACCEPT_REGISTRATION: self._accept,
-            CommandName.REGISTER_AGAIN: self._register_again,
-            CommandName.LOCK_GUIDE: self._lock,
-            CommandName.RETRACT_DRILL: self._retract,
-            CommandName.START_INSERTION: self._start_insertion,
-            CommandName.RELEASE_INSTRUMENT: self._release,
-        }
 
     def step(
         self, command: OperatorCommand, state: TrainingState, now: TouchMoment, elapsed: float
     ) -> TrialStep | RefusedStep:
         moment = ProcedureMoment(state, now, elapsed, command.arguments)
-        return self._handlers[command.name](moment)
+        return self.HANDLERS[command.name](self, moment)
 
     def resumed(self, state: TrainingState) -> TrialStep:
         """Return the step by which a paused procedure continues in its stage."""
@@ -297,6 +275,20 @@ class ProcedurePhases:
         onward = replace(state, procedure=replace(state.procedure, trajectory=following))
         name = procedure.trajectories[following].line.name
         return TrialStep(onward, "align next", {"name": name}, feed=NO_FEED)
+
+    HANDLERS: ClassVar[
+        Mapping[str, Callable[[ProcedurePhases, ProcedureMoment], TrialStep | RefusedStep]]
+    ] = {
+        CommandName.REGISTER: _verify,
+        CommandName.CAPTURE: _check_point,
+        CommandName.USE_REGISTRATION: _use_registration,
+        CommandName.ACCEPT_REGISTRATION: _accept,
+        CommandName.REGISTER_AGAIN: _register_again,
+        CommandName.LOCK_GUIDE: _lock,
+        CommandName.RETRACT_DRILL: _retract,
+        CommandName.START_INSERTION: _start_insertion,
+        CommandName.RELEASE_INSTRUMENT: _release,
+    }
 
 
 def _attempt(moment: ProcedureMoment) -> RegistrationAttempt:

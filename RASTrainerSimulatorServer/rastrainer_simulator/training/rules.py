@@ -6,15 +6,14 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from rastrainer.commands import AFTER_THE_TOUCHES, COMMANDS, CommandName
+from rastrainer.json_checks import Setting
 from rastrainer.motion.trajectory import RELEASED_MM
 from rastrainer.protocol import (
     FIDUCIAL_COUNT,
     FINISHED_PHASES,
     MAX_TRACE_POINTS,
     MIN_TRACE_POINTS,
-    OPEN_PHASES,
-    PROCEDURE_PHASES,
-    CommandName,
     Phase,
     Proximity,
     RegistrationMethod,
@@ -36,74 +35,9 @@ INTERRUPTED = "Interrupted"
 TRACED = "Traced"
 """Adds the point where the tip is to the stroke that is being drawn; clients cannot send it."""
 
-_AT_THE_PROCEDURE = {
-    Phase.VERIFYING: "verifying now",
-    Phase.ALIGNING: "aligning now",
-    Phase.DRILLING: "drilling now",
-    Phase.INSERTING: "inserting now",
-}
-_FINISHED = dict.fromkeys(FINISHED_PHASES, "is registered")
-_AFTER_REGISTRATION = {
-    Phase.IDLE: "no trial",
-    **dict.fromkeys(OPEN_PHASES, "not registered"),
-    **_AT_THE_PROCEDURE,
-}
-_IN_A_TRIAL = {Phase.IDLE: "no trial", **_FINISHED}
-_NOT_PAUSED = {Phase.PAUSED: "is paused"}
-_AT_THE_TOUCHES = {**_IN_A_TRIAL, **_NOT_PAUSED, **_AT_THE_PROCEDURE}
-_ARM_IS_HELD = {phase: _AT_THE_PROCEDURE[phase] for phase in (Phase.DRILLING, Phase.INSERTING)}
-
-
-def _only_in(*phases: Phase) -> dict[Phase, str]:
-    """Return the refusals of a command that belongs to some phases of a procedure."""
-    before = dict.fromkeys((Phase.RUNNING, Phase.COMPLETE), "not at the procedure")
-    elsewhere = {**_IN_A_TRIAL, **before, **_NOT_PAUSED, **_AT_THE_PROCEDURE}
-    return {phase: key for phase, key in elsewhere.items() if phase not in phases}
-
-
 REFUSALS: Mapping[str, Mapping[Phase, str]] = {
-    CommandName.LIST_TASKS: {},
-    CommandName.START_TASK: {
-        **dict.fromkeys(OPEN_PHASES, "trial is open"),
-        **dict.fromkeys(PROCEDURE_PHASES, "procedure is open"),
-    },
-    CommandName.JOG: {**_NOT_PAUSED, **_ARM_IS_HELD},
-    CommandName.MOVE_TIP_TO: {**_NOT_PAUSED, **_ARM_IS_HELD},
-    CommandName.CAPTURE: {
-        phase: key
-        for phase, key in {**_AT_THE_TOUCHES, Phase.COMPLETE: "all touched"}.items()
-        if phase is not Phase.VERIFYING
-    },
-    CommandName.TRACE: _AT_THE_TOUCHES,
-    TRACED: _AT_THE_TOUCHES,
-    CommandName.UNDO: _AT_THE_TOUCHES,
-    CommandName.REGISTER: {**_AT_THE_TOUCHES, Phase.RUNNING: "not all touched"},
-    CommandName.USE_REGISTRATION: _only_in(Phase.VERIFYING),
-    CommandName.ACCEPT_REGISTRATION: _only_in(Phase.VERIFYING),
-    CommandName.REGISTER_AGAIN: _only_in(Phase.VERIFYING),
-    CommandName.ALIGN_GUIDE: _only_in(Phase.ALIGNING),
-    CommandName.LOCK_GUIDE: _only_in(Phase.ALIGNING),
-    CommandName.FEED: _only_in(Phase.DRILLING, Phase.INSERTING),
-    CommandName.RETRACT_DRILL: _only_in(Phase.DRILLING),
-    CommandName.START_INSERTION: _only_in(Phase.DRILLING),
-    CommandName.RELEASE_INSTRUMENT: _only_in(Phase.INSERTING),
-    CommandName.ABORT: _IN_A_TRIAL,
-    CommandName.PAUSE: {
-        **_IN_A_TRIAL,
-        Phase.PAUSED: "already paused",
-        Phase.COMPLETE: "all touched",
-    },
-    CommandName.RESUME: {
-        **_IN_A_TRIAL,
-        Phase.RUNNING: "not paused",
-        Phase.COMPLETE: "all touched",
-        **_AT_THE_PROCEDURE,
-    },
-    CommandName.SET_CAMERA: {},
-    CommandName.SUBMIT_REGISTRATION: _AFTER_REGISTRATION,
-    CommandName.TRIAL_SCORED: _AFTER_REGISTRATION,
-    CommandName.PLAN_TARGET: _AFTER_REGISTRATION,
-    CommandName.GET_TRIAL: {Phase.IDLE: "no trial"},
+    **{each: each.refused for each in COMMANDS.values() if each.refused is not None},
+    TRACED: AFTER_THE_TOUCHES,
     RECORDING_FAILED: {},
     INTERRUPTED: dict.fromkeys((Phase.IDLE, *FINISHED_PHASES), "no trial"),
 }
@@ -186,10 +120,10 @@ class TrainingSettings:
         skin_tolerance: the longest distance of the tip to the skin at which it is on it, m.
     """
 
-    acceptance_radius: float = 0.010
+    acceptance_radius: Setting = 0.010
     touch_rule: TouchRule = TouchRule.ON_SKIN
-    skin_tolerance: float = 0.0005
-    landmark_radius: float = 0.020
+    skin_tolerance: Setting = 0.0005
+    landmark_radius: Setting = 0.020
 
     def radius(self, method: RegistrationMethod) -> float:
         """Return the longest distance of the tip to a point that a method has touched, m."""

@@ -6,15 +6,16 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
-from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
+from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import Event, EventKind, OperatorCommand, TrainingState
 from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training import tracing
 from rastrainer_simulator.training.feed import ProcedureSettings, recorded_feed
 from rastrainer_simulator.training.head_pose import PlacedHead, Truth
-from rastrainer_simulator.training.procedure_phases import OF_A_PROCEDURE, ProcedurePhases
+from rastrainer_simulator.training.procedure_phases import ProcedurePhases
 from rastrainer_simulator.training.replies import (
     RefusedStep,
     TrainingReply,
@@ -84,6 +85,7 @@ class Training:
         # Until when (simulated s) a refusal is shown, and the instruction that it stands for.
         self._refused_over: tuple[float, str] | None = None
         self._handlers: dict[str, Callable[[OperatorCommand, TouchMoment], TrainingReply]] = {
+            **dict.fromkeys(ProcedurePhases.HANDLERS, self._in_procedure),
             CommandName.START_TASK: self._start,
             CommandName.CAPTURE: self._capture,
             CommandName.TRACE: self._trace,
@@ -96,7 +98,6 @@ class Training:
             CommandName.SUBMIT_REGISTRATION: self._take_registration,
             CommandName.TRIAL_SCORED: self._scored,
             CommandName.GET_TRIAL: self._get_trial,
-            **dict.fromkeys(OF_A_PROCEDURE, self._in_procedure),
             RECORDING_FAILED: self._recording_failed,
             INTERRUPTED: self._interrupted,
         }

@@ -162,7 +162,7 @@ MIRRORED = [1, 0, 0, 480, 0, -1, 0, -17, 0, 0, 1, 218, 0, 0, 0, 1]
         ("provenance.license", 5, "provenance.license must be printable text"),
         ("skin", 2, "skin must be an object"),
         ("skin", {"shiftMm": -1}, "skin.shiftMm must be a number from 0 to 20"),
-        ("skin", {"shift": 1}, "skin.shift must be left out; a skin has shiftMm and indentationMm"),
+        ("skin", {"shift": 1}, "skin.shift must be left out; a skin has shiftMm, indentationMm"),
     ],
 )
 def test_an_invalid_field_is_named_with_what_it_must_be(folder, path, value, sentence):

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from rastrainer.command_arguments import check_arguments, decode_json_object
+from rastrainer.commands import CommandName, check_arguments, decode_json_object
 from rastrainer.errors import InputError
-from rastrainer.protocol import MAX_ASSIGNMENTS, MAX_GATES, AssignmentState, CommandName, GoalKind
+from rastrainer.protocol import MAX_ASSIGNMENTS, MAX_GATES, AssignmentState, GoalKind
 from rastrainer.study.curriculum.curriculum import (
     Assignment,
     Curriculum,

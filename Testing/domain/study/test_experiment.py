@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
-from rastrainer.protocol import ALL_DONE, PLAYED_METHODS, CommandName, RegistrationMethod
+from rastrainer.protocol import ALL_DONE, PLAYED_METHODS, RegistrationMethod
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.steps import (
     StepKind,

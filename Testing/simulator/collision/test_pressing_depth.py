@@ -5,9 +5,9 @@ import copy
 import numpy as np
 import pytest
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.journal.journal_file import read_journal, revealed_seed
-from rastrainer.protocol import CommandName, Proximity
+from rastrainer.protocol import Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.proximity import DEEPEST, Pressing
 from rastrainer_simulator.core.simulation import Simulation
@@ -27,7 +27,7 @@ def simulation(setup):
     simulation = Simulation(setup, 12)
     do(simulation, CommandName.START_TASK, task="task-1", trainee="P01", seed=12)
     truth = simulation.truth
-    move(simulation, truth.in_world(truth.target) + np.array([0.0, 0.0, 130.0]))
+    move(simulation, truth.in_world(truth.target_ras) + np.array([0.0, 0.0, 130.0]))
     while simulation.state.proximity is not Proximity.CONTACT:
         speed = 50 if simulation.state.clearance > 0.002 else 5
         do(simulation, CommandName.JOG, velocityMmS=[0, 0, -speed], durationS=DT)
@@ -122,7 +122,7 @@ def test_the_motion_does_not_depend_on_the_depth(setup, monkeypatch):
         simulation = Simulation(setup, 12)
         do(simulation, CommandName.START_TASK, task="task-1", trainee="P01", seed=12)
         truth = simulation.truth
-        move(simulation, truth.in_world(truth.target))
+        move(simulation, truth.in_world(truth.target_ras))
         random = np.random.default_rng(1)
         pushes = [OperatorInput(tuple(random.uniform(-1, 0.3, 3))) for _ in range(300)]
         states = [simulation.step(DT, push).state for push in pushes]

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from rastrainer.commands import CommandName
 from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.procedure.plan import read_procedure_meshes
-from rastrainer.protocol import CommandName, Phase
+from rastrainer.protocol import Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.procedure_outcome import (
     ProcedureMeasures,

@@ -7,9 +7,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rastrainer import transforms
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.protocol import CommandName, Phase
+from rastrainer.protocol import Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.state import EventKind, Motion, OperatorCommand, OperatorInput

@@ -9,9 +9,10 @@ from dataclasses import replace
 
 import pytest
 
+from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, read_journal
-from rastrainer.protocol import MIN_ABORTED_S, CommandName, Phase
+from rastrainer.protocol import MIN_ABORTED_S, Phase
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.trial.aborted_trial import AbortedTrial
@@ -261,7 +262,7 @@ def test_ending_the_simulator_and_starting_another_trial_aborts_the_first(simula
         assert server.loop.unacknowledged() == ()
         server.start()
         (record,) = wait_for_offer(server)
-        assert (record.trial_id, record.reason) == (trial_id, "not gone on with")
+        assert (record.trial_id, record.reason) == (trial_id, "abandoned")
         assert (record.phase, len(record.points), record.undone_touches) == ("running", 3, 1)
         assert record.elapsed_s == pytest.approx(elapsed, abs=0.05)
         assert server.do(CommandName.ACKNOWLEDGE_TRIAL, trialId=trial_id).ok

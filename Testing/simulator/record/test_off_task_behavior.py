@@ -4,7 +4,7 @@ import functools
 
 import pytest
 
-from rastrainer.protocol import CommandName
+from rastrainer.commands import CommandName
 from rastrainer.trial.analysis import RevealedTruth, analyze_trial
 from rastrainer.trial.scoring import LONG_PAUSE_S
 from rastrainer_simulator.core.simulation import Simulation

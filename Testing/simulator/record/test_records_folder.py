@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
-from rastrainer.protocol import CommandName
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.record.journal_writer import RecordsFolder

@@ -7,10 +7,9 @@ import subprocess
 import sys
 from dataclasses import replace
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trial_motion import trial_motion
-from rastrainer.protocol import CommandName
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record.trial_context import DisplayReport, DisplayUse
 from rastrainer_simulator.record.trial_entries import TrialEntries

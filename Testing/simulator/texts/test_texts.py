@@ -9,7 +9,7 @@ from string import Formatter
 
 import pytest
 
-from rastrainer.protocol import CommandName
+from rastrainer.commands import CommandName
 from rastrainer_simulator.flow.session.preferences import OPTIONS
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.gamepads import GAMEPAD_INPUTS

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
+from rastrainer.commands import CommandName
 from rastrainer.procedure.plan import Checkpoint, Procedure, ProcedureKind, ProcedureTrajectory
-from rastrainer.protocol import CommandName, Phase
+from rastrainer.protocol import Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import OperatorCommand
 from rastrainer_simulator.training.feed import NO_FEED, Feed, HeadAhead
@@ -73,7 +74,7 @@ class Trial:
         return self.do(CommandName.START_TASK, task=task, trainee="P01", mode="desktop", **others)
 
     def fiducial(self, label):
-        return self.place(self.training.truth.fiducials[label])
+        return self.place(self.training.truth.fiducials_ras[label])
 
     def place(self, point):
         """Return a point of the head, RAS mm, where it truly is, World, m."""

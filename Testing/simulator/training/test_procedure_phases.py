@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
+from rastrainer.commands import CommandName
+from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import EventKind
 from rastrainer_simulator.training.feed import Feed, HeadAhead

@@ -4,13 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from rastrainer.protocol import (
-    MAX_TRACE_POINTS,
-    MIN_TRACE_POINTS,
-    CommandName,
-    Phase,
-    RegistrationMethod,
-)
+from rastrainer.commands import CommandName
+from rastrainer.protocol import MAX_TRACE_POINTS, MIN_TRACE_POINTS, Phase, RegistrationMethod
 from rastrainer_simulator.state import EventKind
 from Testing.simulator.landmarked import LANDMARKS, with_landmarks
 from Testing.simulator.training.hand_driven import Trial

@@ -5,9 +5,9 @@ import itertools
 import numpy as np
 import pytest
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
-from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase, TouchRule
+from rastrainer.protocol import PROCEDURE_PHASES, Phase, TouchRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import EventKind
 from rastrainer_simulator.texts.texts import ENGLISH, Texts

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.head.mesh import outward_normal, read_head_mesh
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trajectory import Trajectory
-from rastrainer.protocol import CommandName, Proximity, TouchRule
+from rastrainer.protocol import Proximity, TouchRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.score_reference import fiducial_normals
@@ -165,9 +165,9 @@ class Pilot:
         self._simulation, self._notes = Simulation(setup, seed), _Notes()
         self._do(CommandName.START_TASK, task=task, trainee="cheat", seed=seed)
         truth = self._simulation.truth
-        self.fiducials = truth.in_world(np.array(list(truth.fiducials.values())))
+        self.fiducials = truth.in_world(np.array(list(truth.fiducials_ras.values())))
         self.normals = fiducial_normals(setup.scenario, task) @ truth.head_to_world[:3, :3].T
-        self._center = truth.in_world(truth.target)
+        self._center = truth.in_world(truth.target_ras)
         self._mesh = read_head_mesh(setup.scenario.head_mesh)
 
     @property

@@ -158,7 +158,7 @@ def play(
         errors_mm = [
             float(np.linalg.norm(MM_PER_M * np.array(touch.position) - place))
             for touch in touches
-            for place in [truth.in_world(truth.fiducials[touch.label])]
+            for place in [truth.in_world(truth.fiducials_ras[touch.label])]
         ]
         is_complete = state.training.phase is Phase.COMPLETE
         return Outcome(

@@ -13,7 +13,7 @@ from concurrent.futures import TimeoutError as NoResult
 from dataclasses import dataclass, field
 from typing import Any
 
-from rastrainer.command_arguments import decode_answer_object
+from rastrainer.commands import decode_answer_object
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.igtl.content import ERROR_KEY, STATUS_KEY, SUCCESS, Command, CommandReply
 from rastrainer.igtl.message import Message, MessageReader, pack

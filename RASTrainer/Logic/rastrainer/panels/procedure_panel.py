@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from rastrainer.commands import CommandName
 from rastrainer.number_text import fixed
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import fillTable, keepChecked, setText, setUsable
 from rastrainer.procedure.errors import TrajectoryErrors
-from rastrainer.protocol import CommandName, Phase
+from rastrainer.protocol import Phase
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic, ProcedureStatus

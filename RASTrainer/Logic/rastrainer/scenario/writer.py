@@ -24,6 +24,7 @@ from rastrainer.files.writing import make_private_folder, write_json
 from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
 from rastrainer.head.volume import HeadVolume, read_head_volume, read_volume_file, write_head_volume
 from rastrainer.json_checks import identifier_of
+from rastrainer.json_records import record_to_json
 from rastrainer.procedure.plan import NO_GO_FOLDER, procedure_json
 from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import FILE_NAME, FORMAT_VERSION, SKULL_KINDS, Camera, Scenario
@@ -141,7 +142,7 @@ def scenario_json(
             _named_point(each.name, each.position) for each in scenario.landmarks
         ]
     if not scenario.skin.is_none:
-        content["skin"] = scenario.skin.amounts
+        content["skin"] = record_to_json(scenario.skin)
     if scenario.procedures and has_skull:
         content["procedures"] = [procedure_json(each) for each in scenario.procedures]
     return content

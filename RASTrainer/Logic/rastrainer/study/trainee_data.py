@@ -8,6 +8,7 @@ from typing import Any
 
 from rastrainer.files.writing import write_json
 from rastrainer.journal.folder import SUFFIX, erase_journals
+from rastrainer.json_records import record_to_json
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
@@ -28,7 +29,7 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
         "trials": [_trial_json(trial) for trial in trials],
         "aborted_trials": [
             {
-                "record": stored.record.to_json(),
+                "record": record_to_json(stored.record),
                 "step": stored.step,
                 "repeat_reason": stored.repeat_reason,
             }
@@ -61,9 +62,9 @@ def _protocol_json(progress: StudyProgress, pseudonym: str) -> dict[str, Any] | 
 
 def _trial_json(trial: StoredTrial) -> dict[str, Any]:
     return {
-        "record": trial.record.to_json(),
+        "record": record_to_json(trial.record),
         "registrations": {kind: fit.to_json() for kind, fit in trial.registrations.items()},
-        "score": None if trial.score is None else trial.score.to_json(),
+        "score": None if trial.score is None else record_to_json(trial.score, with_defaults=True),
         "true_tre_mm": trial.true_tre_mm,
         "head_to_world": trial.head_to_world,
         "motion": trial.motion,

@@ -116,7 +116,7 @@ class TutorialDonePage(SessionPage):
         first = self.say("tutorial.mm", error=outcome.first_error_mm)
         errors = (self.say("tutorial.mm", error=error) for error in outcome.errors_mm)
         facts = (
-            Fact(self.say("tutorial-done.time"), session.duration(outcome.seconds)),
+            Fact(self.say("tutorial-done.time"), session.duration(outcome.duration_s)),
             Fact(self.say("tutorial-done.first"), first),
             Fact(self.say("tutorial-done.touches"), session.texts.listed(errors)),
         )

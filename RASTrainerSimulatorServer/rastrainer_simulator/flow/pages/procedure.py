@@ -8,9 +8,10 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+from rastrainer.commands import CommandName
 from rastrainer.json_checks import is_number
 from rastrainer.procedure.plan import MAX_TRAJECTORIES
-from rastrainer.protocol import CommandName, Phase
+from rastrainer.protocol import Phase
 from rastrainer.trial.procedure_outcome import (
     ANGLE_LIMIT_DEG,
     ENTRY_LIMIT_MM,

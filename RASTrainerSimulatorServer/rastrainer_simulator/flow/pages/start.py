@@ -22,7 +22,6 @@ from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import InputDevice
 from rastrainer_simulator.ops.instructor_pin import LONGEST_PIN, SHORTEST_PIN
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
-from rastrainer_simulator.texts.texts import LANGUAGES
 
 
 class StartPage(SessionPage):
@@ -85,18 +84,13 @@ class SettingsPage(SessionPage):
             help_ = self.say("settings.waits")
         elif is_locked:
             help_ = self.say("settings.locked")
-        elif name == "language" and set(self.session.languages) != set(LANGUAGES):
-            help_ = self.say("window.no font")
         is_enabled = not waits and not is_locked and (lock.has_pin or name not in OF_INSTRUCTORS)
         step = partial(self._step, name)
         return self.choice(name, self._value(name), step, is_enabled=is_enabled, help=help_)
 
     def _step(self, name: str, direction: int) -> None:
         """Choose another option, which takes effect at once."""
-        wanted = self.session.preferences.stepped(name, direction)
-        while wanted.language not in self.session.languages:
-            wanted = wanted.stepped("language", direction)
-        self.session.prefer(wanted)
+        self.session.prefer(self.session.preferences.stepped(name, direction))
 
     def _value(self, name: str) -> str:
         value = getattr(self.session.preferences, name)

@@ -9,8 +9,9 @@ from __future__ import annotations
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 
+from rastrainer.commands import CommandName
 from rastrainer.errors import RASTrainerError
-from rastrainer.protocol import TRIAL_RUN, AbortReason, CommandName, Phase
+from rastrainer.protocol import TRIAL_RUN, AbortReason, Phase
 from rastrainer.registration.fits import RIGID
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.touch_registration import GivenPoints, register_trial

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from rastrainer.commands import CommandName
 from rastrainer.protocol import (
     TRIAL_RUN,
-    CommandName,
     GhostRule,
     Guidance,
     RegistrationMethod,

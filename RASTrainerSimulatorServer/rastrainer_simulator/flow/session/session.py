@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals_of
 from rastrainer.procedure.geometry import BoneAhead
-from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, CommandName, Mode, RegistrationMethod
+from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Mode, RegistrationMethod
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
 from rastrainer.study.protocol.steps import StudyStep
@@ -90,7 +90,6 @@ class TrainingSession:
             else None.
         goes_on_blind: the trial that the trainee wants to go on without its picture; "" for none.
         reload: has the simulation continue with other settings, or on another head.
-        languages: those that can be chosen.
     """
 
     def __init__(
@@ -127,7 +126,6 @@ class TrainingSession:
         self.screen_sticks = ScreenSticks()
         self.layouts: dict[int, Mapping[str, str]] = {}
         self.lock = InstructorLock(services.pin)
-        self.languages = services.languages
         self.list_scenarios = services.list_scenarios
         self.is_slicer_connected = services.is_slicer_connected
         self.quit = services.quit
@@ -279,7 +277,7 @@ class TrainingSession:
 
     def fiducial(self, label: str) -> Vector:
         """Return where a fiducial of the present trial is, World, m: only after the score."""
-        return self.truly_in_world(self._control_loop.truth.fiducials[label])
+        return self.truly_in_world(self._control_loop.truth.fiducials_ras[label])
 
     def truly_in_world(self, point: np.ndarray) -> Vector:
         """Return where a point of the MRI (RAS mm) truly is, World, m: only after the score."""

@@ -13,21 +13,20 @@ from typing import Any
 
 import numpy as np
 
+from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
-from rastrainer.protocol import TRACED_METHODS, CommandName, Phase
+from rastrainer.json_records import record_from_json
+from rastrainer.protocol import TRACED_METHODS, Phase
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer_simulator.state import Answer, OperatorCommand, SimulationState
 from rastrainer_simulator.texts.texts import Texts
-from rastrainer_simulator.training.rules import refusal
+from rastrainer_simulator.training.rules import REFUSALS, refusal
 
 SubmitCommand = Callable[[str, Mapping[str, Any], str], "Future[Answer]"]
-CHECKED: Mapping[str, frozenset[str]] = {
-    CommandName.USE_REGISTRATION: frozenset({Phase.VERIFYING.value}),
-    CommandName.SUBMIT_REGISTRATION: frozenset({Phase.REGISTERED.value, Phase.SCORED.value}),
-}
-"""Commands with a registration, and the phases of its trial in which one is accepted."""
+CHECKED = (CommandName.USE_REGISTRATION, CommandName.SUBMIT_REGISTRATION)
+"""Commands with a registration."""
 TOLERANCE, TRACE_TOLERANCE = 1e-6, 1e-4
 """Of each number of a matrix (mm in its last column) and of the FRE. A trace is matched in steps,
 which enlarge a difference of 1e-11 mm in its points to 1e-6."""
@@ -65,7 +64,7 @@ class RegistrationCheck:
         found = self._submit_command(CommandName.GET_TRIAL, trial, sender).result()
         if not found.ok:
             return found
-        if found.data["phase"] not in CHECKED[name]:
+        if found.data["phase"] not in {each.value for each in Phase if each not in REFUSALS[name]}:
             return Answer(0, False, self._refusal(name, arguments))
         try:
             fit = self._fit(found.data, arguments)
@@ -81,7 +80,7 @@ class RegistrationCheck:
 
     def _fit(self, data: Mapping[str, Any], arguments: Mapping[str, Any]) -> dict[str, Any]:
         """Return the arguments that the trial's own points give."""
-        record = TrialRecord.from_json(data["record"]) if "record" in data else None
+        record = record_from_json(TrialRecord, data["record"]) if "record" in data else None
         given = GivenPoints.of_answer(data) if record is None else GivenPoints.of_record(record)
         scenario = self._find_scenario("" if record is None else record.scenario)
         registered = register_trial(given, scenario, pause=lambda: time.sleep(_REST_S))

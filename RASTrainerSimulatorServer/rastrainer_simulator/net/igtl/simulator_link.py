@@ -17,7 +17,7 @@ from functools import partial
 from typing import Any
 
 import rastrainer
-from rastrainer.command_arguments import check_arguments, decode_json_object
+from rastrainer.commands import COMMANDS, CommandName, check_arguments, decode_json_object
 from rastrainer.errors import InputError
 from rastrainer.igtl.content import (
     ERROR_KEY,
@@ -29,7 +29,8 @@ from rastrainer.igtl.content import (
     Transform,
 )
 from rastrainer.igtl.message import Message
-from rastrainer.protocol import PROTOCOL_VERSION, CommandName, DeviceName, Rate
+from rastrainer.json_records import record_to_json
+from rastrainer.protocol import PROTOCOL_VERSION, DeviceName, Rate
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.steps import StepAnswers
 from rastrainer.trial.aborted_trial import AbortedTrial
@@ -55,15 +56,6 @@ _OWN_DEVICES = frozenset(
         *DeviceName.LINK_TO_WORLD,
     }
 )
-_OF_SCORING_CLIENTS = frozenset(
-    {
-        *CHECKED,
-        CommandName.TRIAL_SCORED,
-        CommandName.GET_JOURNAL,
-        CommandName.ACKNOWLEDGE_TRIAL,
-    }
-)
-"""Commands of the clients that receive the trials, register them and score them."""
 OFFERS_AT_ONCE = 8
 """Trials in one round of offers."""
 _NUMBERS = 2**32
@@ -311,7 +303,7 @@ class SimulatorLink:
 
 def _not_for(connection: ClientConnection, name: str, arguments: Mapping[str, Any]) -> str:
     """Return why a command is not for this client; "" if it is."""
-    if name not in _OF_SCORING_CLIENTS:
+    if not COMMANDS[name].is_for_scorers:
         return ""
     if not connection.scores:
         return f"{name} is for clients that register and score: send Hello, with scores, first."
@@ -361,7 +353,7 @@ class TrialOffers:
 
     def _offer(self, records: Iterable[AbortedTrial | TrialRecord]) -> None:
         for record in records:
-            body = json.dumps(record.to_json(), allow_nan=False)
+            body = json.dumps(record_to_json(record), allow_nan=False)
             number = next(self._numbers) % _NUMBERS
             is_aborted = isinstance(record, AbortedTrial)
             name = CommandName.TRIAL_ABORTED if is_aborted else CommandName.TRIAL_COMPLETED

@@ -21,7 +21,7 @@ from pathlib import Path
 from aiohttp import hdrs, web
 from aiohttp.typedefs import Handler
 
-from rastrainer.command_arguments import decode_json_object
+from rastrainer.commands import decode_json_object
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import write_private_json

@@ -6,7 +6,7 @@ from concurrent.futures import Future
 
 import pytest
 
-from rastrainer.command_arguments import COMMAND_ARGUMENTS
+from rastrainer.commands import COMMANDS
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Command, CommandReply
 from rastrainer.igtl.message import Message, crc64, pack
@@ -64,7 +64,7 @@ def test_a_client_that_does_not_score_neither_registers_nor_scores_nor_acknowled
     assert link_server.simulated.commands == []
 
 
-@pytest.mark.parametrize("name", [n for n in COMMAND_ARGUMENTS if n not in OF_SCORING_CLIENTS])
+@pytest.mark.parametrize("name", [n for n in COMMANDS if n not in OF_SCORING_CLIENTS])
 def test_every_command_of_the_protocol_is_answered(client, name):
     arguments = ARGUMENTS.get(name, {})
     given = {key: value for key, value in arguments.items() if value is not None}
@@ -76,7 +76,7 @@ def test_simulation_gets_checked_arguments_and_the_name_of_the_client(client, li
     client.send_command("Jog", {"velocityMmS": [1, 2, 3]})
     name, arguments, sender = link_server.simulated.commands[-1]
     assert (name, sender) == ("Jog", "test")
-    assert arguments == {"velocityMmS": (1.0, 2.0, 3.0), "frame": "world", "durationS": 0.1}
+    assert arguments == {"velocityMmS": [1.0, 2.0, 3.0], "frame": "world", "durationS": 0.1}
 
 
 def test_refusal_by_the_simulation_is_returned_in_its_words(client, link_server):
@@ -103,8 +103,9 @@ def test_refusal_by_the_rules_of_a_trial_has_its_code_its_values_and_an_english_
     ("name", "arguments", "words"),
     [
         ("Fly", {}, 'The command "Fly" is unknown; known are Hello, ListTasks'),
-        ("Capture", {"point": 3}, 'Capture has no argument "point"; it takes none'),
-        ("StartTask", {"task": "task-1"}, "StartTask needs the argument trainee"),
+        ("Capture", {"point": 3}, "Capture takes no arguments"),
+        ("Trace", {"on": True, "of": 3}, 'Trace: there is no "of"; use on.'),
+        ("StartTask", {"task": "task-1"}, 'StartTask needs the key "trainee"'),
         ("Jog", {"velocityMmS": [1, 2]}, "must be a list of 3 numbers within ±500 mm/s"),
         ("Jog", {"velocityMmS": [1, 2, 1e9]}, "must be a list of 3 numbers within ±500 mm/s"),
         ("GetTrial", {"trialId": "../../etc/passwd"}, "must be the UUID of a trial"),

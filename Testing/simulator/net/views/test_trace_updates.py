@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rastrainer.protocol import CommandName
+from rastrainer.commands import CommandName
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.loop.timing import LoopStatistics
 from rastrainer_simulator.presentation.presenter import SkinPlace, TraceGuidance

@@ -11,10 +11,10 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from rastrainer.command_arguments import check_arguments
+from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
-from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, PROTOCOL_VERSION, CommandName
+from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, PROTOCOL_VERSION
 from rastrainer.slicer.link.connection import ConnectorKit, SlicerConnection
 from rastrainer.slicer.link.link_status import LinkState, LinkStatus, judgeFinding, lookingAt
 from rastrainer.slicer.link.pending_commands import Arrivals, OnReply, PendingCommands, Request

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from rastrainer.command_arguments import decode_answer_object
+from rastrainer.commands import decode_answer_object
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
 from rastrainer.protocol import DeviceName

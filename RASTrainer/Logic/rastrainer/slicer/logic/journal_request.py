@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
-from rastrainer.protocol import MAX_JOURNAL_BYTES, CommandName
+from rastrainer.protocol import MAX_JOURNAL_BYTES
 from rastrainer.slicer.translation import _
 
 End = Callable[[Exception], None]

@@ -6,8 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from rastrainer.commands import CommandName
 from rastrainer.igtl.client import Reply
-from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
+from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link

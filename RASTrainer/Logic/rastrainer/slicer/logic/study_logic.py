@@ -9,8 +9,8 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
+from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
-from rastrainer.protocol import CommandName
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.practice_watch import PracticeWatch
 from rastrainer.slicer.logic.trainee_logic import TraineeLogic

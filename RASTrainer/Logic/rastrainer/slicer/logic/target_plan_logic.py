@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from rastrainer import transforms
+from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
-from rastrainer.protocol import CommandName
 from rastrainer.registration.target_error import TargetError
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic

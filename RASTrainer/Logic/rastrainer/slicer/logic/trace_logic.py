@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from rastrainer.commands import CommandName
 from rastrainer.igtl.client import Reply
-from rastrainer.protocol import CommandName, Phase
+from rastrainer.protocol import Phase
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link

@@ -1,7 +1,4 @@
-"""What the sections of a report are made of: HTML with escaped text, and charts drawn as SVG.
-
-A chart is a sheet with shapes, and axes with round numbers; a figure of the page holds charts.
-"""
+"""Charts as SVG: a sheet with shapes, and axes with round numbers."""
 
 from __future__ import annotations
 
@@ -9,97 +6,6 @@ import html
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-
-from rastrainer.number_text import with_units
-
-MAX_KEPT_TOGETHER = 10
-"""Rows; keeping longer tables on one page could leave half a page empty."""
-
-
-@dataclass(frozen=True)
-class Cell:
-    """A table cell: text, column span, color and class."""
-
-    text: str
-    span: int = 1
-    color: str = ""
-    kind: str = ""
-
-    def html(self, tag: str, scope: str = "col") -> str:
-        """Return the cell; `scope` is that of a `th`."""
-        attributes = f' colspan="{self.span}"' if self.span > 1 else ""
-        attributes += f' class="{self.kind}"' if self.kind else ""
-        attributes += f' style="background:{self.color}"' if self.color else ""
-        if tag == "th":
-            if not self.text:
-                # A corner is no header; a screen reader would read it.
-                tag = "td"
-            else:
-                attributes += f' scope="{scope}{"group" if self.span > 1 else ""}"'
-        return f"<{tag}{attributes}>{_flowing(self.text)}</{tag}>"
-
-
-Line = list[Cell | str]
-"""A row of a table."""
-
-
-def table(
-    headers: Sequence[Sequence[Cell | str]], rows: Sequence[Sequence[Cell | str]], kind: str = ""
-) -> str:
-    """Return a table; the first cell of each row is its header.
-
-    Tables of more than `MAX_KEPT_TOGETHER` rows may break across printed pages.
-    """
-    if len(rows) > MAX_KEPT_TOGETHER:
-        kind = " ".join(filter(None, (kind, "long")))
-    head = "".join(
-        f"<tr>{''.join(_cell(cell).html('th') for cell in line)}</tr>" for line in headers
-    )
-    body = "".join(f"<tr>{_row(line)}</tr>" for line in rows)
-    return f'<table class="{kind}"><thead>{head}</thead><tbody>{body}</tbody></table>'
-
-
-def section(title: str, *parts: str) -> str:
-    return f"<section><h2>{html.escape(title)}</h2>{''.join(parts)}</section>"
-
-
-def heading(text: str) -> str:
-    """Return a heading within a section."""
-    return f"<h3>{html.escape(text)}</h3>"
-
-
-def paragraph(text: str, kind: str = "") -> str:
-    attribute = f' class="{kind}"' if kind else ""
-    return f"<p{attribute}>{_flowing(text)}</p>"
-
-
-def bullets(texts: Sequence[str]) -> str:
-    """Return a list."""
-    return f"<ul>{''.join(f'<li>{_flowing(text)}</li>' for text in texts)}</ul>"
-
-
-def figure(charts: Sequence[str], caption: str) -> str:
-    """Return charts, which are HTML already, side by side if they fit."""
-    inside = "".join(f'<div class="chart">{chart}</div>' for chart in charts)
-    kind = "charts" if len(charts) > 1 else "chart-alone"
-    return (
-        f'<figure><div class="{kind}">{inside}</div>'
-        f"<figcaption>{_flowing(caption)}</figcaption></figure>"
-    )
-
-
-def _flowing(text: str) -> str:
-    return html.escape(with_units(text))
-
-
-def _row(line: Sequence[Cell | str]) -> str:
-    first, *others = map(_cell, line)
-    return first.html("th", "row") + "".join(cell.html("td") for cell in others)
-
-
-def _cell(content: Cell | str) -> Cell:
-    return content if isinstance(content, Cell) else Cell(content)
-
 
 INK = "#1f2933"
 FAINT = "#6b7785"
@@ -117,10 +23,15 @@ def mode_color(mode: str, index: int = 0) -> str:
 class Sheet:
     """Collects shapes; positions are in px from the upper left corner."""
 
-    def __init__(self, width: float, height: float, description: str) -> None:
+    def __init__(
+        self, width: float, height: float, title: str, description: str = "", left: float = 10
+    ) -> None:
+        """Write the title above; the description, by default the title, is read to the blind."""
         self.width, self.height = width, height
-        self._description = description
+        self._description = description or title
         self._parts: list[str] = []
+        if title:
+            self.text(left, 16, title, 12.5, weight="600")
 
     def line(
         self,
@@ -132,7 +43,6 @@ class Sheet:
         width: float = 1.0,
         dash: str = "",
     ) -> None:
-        """Draw a straight line."""
         dashed = f' stroke-dasharray="{dash}"' if dash else ""
         self._parts.append(
             f'<line x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}" stroke="{color}" '
@@ -140,13 +50,8 @@ class Sheet:
         )
 
     def polyline(
-        self,
-        points: Sequence[tuple[float, float]],
-        color: str,
-        width: float = 1.5,
-        opacity: float = 1.0,
+        self, points: Sequence[tuple[float, float]], color: str, width: float, opacity: float = 1.0
     ) -> None:
-        """Draw a line through points."""
         path = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
         self._parts.append(
             f'<polyline points="{path}" fill="none" stroke="{color}" stroke-width="{width:g}" '
@@ -156,7 +61,6 @@ class Sheet:
     def rect(
         self, x: float, y: float, width: float, height: float, color: str, opacity: float = 1.0
     ) -> None:
-        """Draw a filled rectangle."""
         self._parts.append(
             f'<rect x="{x:.1f}" y="{y:.1f}" width="{max(width, 0):.1f}" '
             f'height="{max(height, 0):.1f}" fill="{color}" fill-opacity="{opacity:g}"/>'
@@ -191,7 +95,6 @@ class Sheet:
         )
 
     def svg(self) -> str:
-        """Return the sheet."""
         label = html.escape(self._description, quote=True)
         return (
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width:g} {self.height:g}" '
@@ -209,7 +112,6 @@ class Axis:
     end: float
 
     def at(self, value: float) -> float:
-        """Return the position of a value."""
         return self.start + (value - self.low) / (self.high - self.low) * (self.end - self.start)
 
     def ticks(self, count: int = 5) -> list[float]:
@@ -244,6 +146,16 @@ def number(value: float) -> str:
     return f"{value:g}".replace("-", "−")
 
 
+def x_grid(
+    sheet: Sheet, axis: Axis, top: float, bottom: float, count: int = 5, zero: str = GRID
+) -> None:
+    """Draw grid lines and numbers of a horizontal axis; `zero` is the color of the line at 0."""
+    for tick in axis.ticks(count):
+        x = axis.at(tick)
+        sheet.line(x, top, x, bottom, zero if tick == 0 else GRID)
+        sheet.text(x, bottom + 14, number(tick), 10, FAINT, "middle")
+
+
 def y_grid(sheet: Sheet, axis: Axis, left: float, right: float) -> None:
     """Draw grid lines and numbers of a vertical axis."""
     for tick in axis.ticks():
@@ -265,7 +177,6 @@ def scatter_sheet(
     for a legend.
     """
     sheet = Sheet(SCATTER_WIDTH, SCATTER_HEIGHT, title)
-    sheet.text(10, 16, title, 12.5, INK, weight="600")
     along = axis_over([0.0, farthest], SCATTER_LEFT, SCATTER_RIGHT, from_zero=True)
     up = axis_over([0.0, highest], SCATTER_BOTTOM, SCATTER_TOP, from_zero=True)
     y_grid(sheet, up, SCATTER_LEFT, SCATTER_RIGHT)
