@@ -38,8 +38,8 @@ LIMIT_S = 300.0
 """A trial ends here: the trial run lasts five minutes, and no model has longer for a task."""
 POINTS = 15
 MODELS = ("looks", "reads")
-LATE_LOOKS = 2
-"""A person at a device reacts this many looks, 0.16 s, late."""
+LATE_LOOKS = 3
+"""A person at a device reacts this many looks late: 0.24 to 0.32 s after what there is to see."""
 GREEN_MM = 0.5
 """Pressed in less than this, the tip is green on the point."""
 
@@ -145,14 +145,16 @@ def play(
     ):
         trainee.start(task)
         trainee.loop.subscribe(landings.take)
-        if isinstance(trainee.hands, TrainedMouse):
-            trainee.hands.show_sticks()
+        hands = trainee.hands
+        is_mouse = isinstance(hands, TrainedMouse)
+        if is_mouse:
+            hands.show_sticks()
         if model == "looks":
             pictures = DrawnPictures(setup, seed)
             with suppress(NotTouchedError):
-                LookingTrainee(trainee, trainee.hands, pictures, late_looks).play(limit_s)
+                LookingTrainee(trainee, hands, pictures, late_looks, is_mouse).play(limit_s)
         else:
-            ReadingTrainee(trainee, trainee.hands).play(limit_s)
+            ReadingTrainee(trainee, hands).play(limit_s)
         state, truth = trainee.state, trainee.loop.truth
         touches = state.training.touches
         errors_mm = [
