@@ -12,8 +12,9 @@ from rastrainer_simulator.state import TouchStage
 from Testing.simulator.flow.trainee import Trainee
 from Testing.simulator.virtual.drawn_pictures import DrawnPictures, Look
 
-LOOK_STEPS = 10
-"""Steps of the simulation between two looks."""
+LOOK_STEPS, LATE_LOOKS = 10, 3
+"""Steps of the simulation between two looks, and how many of these it reacts late: 0.24 to 0.32 s
+after what there is to see, as people do."""
 GAIN_PER_S = 2.5
 HOVER_M = 0.03
 """How far off the skin the tip travels."""
@@ -21,8 +22,8 @@ OVER_M = 0.01
 """Nearer than this to the position above the fiducial, the tip is lowered."""
 SLOWLY_M_S = 0.019
 """Near the skin, as a tone and the ring tell, the tip is moved in slow motion."""
-AIM_M = 0.0012
-"""The aim on the skin."""
+AIM_M, COARSE_AIM_M = 0.0012, 0.002
+"""The aim on the skin, and that of hands that push one stick at a time."""
 GO_AROUND_M = 0.03
 """Farther from the fiducial than this, what the tip approaches is not its goal."""
 LIFT_LOOKS = 15
@@ -65,7 +66,6 @@ class LookingTrainee:
         trainee: at the presenter.
         hands: what it steers with.
         pictures: what it looks at.
-        late_looks: how many looks late it reacts to what it sees.
         is_one_by_one: whether its hands push one stick at a time: it then comes down onto a
             fiducial by one of them alone, and does not follow the skin's normal.
     """
@@ -75,14 +75,14 @@ class LookingTrainee:
         trainee: Trainee,
         hands: TrainedHands,
         pictures: DrawnPictures,
-        late_looks: int = 0,
         is_one_by_one: bool = False,
     ) -> None:
         self._trainee = trainee
         self._hands = hands
         self._pictures = pictures
-        self._looks: deque[Look] = deque(maxlen=1 + late_looks)
+        self._looks: deque[Look] = deque(maxlen=1 + LATE_LOOKS)
         self._is_one_by_one = is_one_by_one
+        self._aim_m = COARSE_AIM_M if is_one_by_one else AIM_M
         self._label = ""
         self._normal = self._outward = np.array([0.0, 0.0, 1.0])
         self._is_far_away = False
@@ -252,16 +252,15 @@ class LookingTrainee:
             beside = to_fiducial + height * self._outward
             off = float(np.linalg.norm(beside))
             missed = to_fiducial - (to_fiducial @ self._normal) * self._normal
-            if look.stage is TouchStage.ON_SKIN and np.linalg.norm(missed) < AIM_M:
+            if look.stage is TouchStage.ON_SKIN and np.linalg.norm(missed) < self._aim_m:
                 self._hands.stop()
                 return True
             if look.stage not in (TouchStage.FAR, TouchStage.NEAR, None):
-                upward = 0.01
-            elif off > AIM_M + 0.3 * max(0.0, height):
-                upward = 0.0
+                velocity = GAIN_PER_S * missed + 0.01 * self._normal
             else:
-                upward = -max(0.004, min(0.05, GAIN_PER_S * height))
-            velocity = GAIN_PER_S * beside + upward * self._outward
+                is_beside = off > self._aim_m + 0.3 * max(0.0, height)
+                down = 0.0 if is_beside else max(0.004, min(0.05, GAIN_PER_S * height))
+                velocity = GAIN_PER_S * beside - down * self._outward
             if look.stage is not TouchStage.FAR:
                 velocity *= min(1.0, SLOWLY_M_S / float(np.linalg.norm(velocity)))
             self._push(look, velocity)
