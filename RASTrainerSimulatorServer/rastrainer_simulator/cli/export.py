@@ -77,26 +77,6 @@ def _export_grades(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _export_grades(arguments: argparse.Namespace) -> int:
-    with Study.open_for_reading(arguments.study) as opened:
-        found = {
-            trainee.pseudonym: grade(
-                opened.past_trials(trainee.pseudonym),
-                arguments.task,
-                arguments.mode,
-                RegistrationMethod(arguments.method),
-                arguments.rule,
-            )
-            for trainee in opened.trainees()
-        }
-    grades = {name: score for name, score in found.items() if score is not None}
-    make_empty_folder(arguments.output)
-    written = arguments.output / f"{arguments.grades}.csv"
-    write_text(written, grades_csv(grades, arguments.grades))
-    print(f"{written}: grades of {len(grades)} of {counted(len(found), 'trainee')}")
-    return 0
-
-
 def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
     folder = arguments.output / name
     if name == "bids":
@@ -125,16 +105,6 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
             write_slicer_files(stored, folder / trial.trial_id)
         return f"{len(data.trials)} trials"
     return f"{len(data.trials)} trials, {len(data.aborted)} aborted ones"
-
-
-def _home_page(value: str) -> str:
-    """Accept the address of a lab's own system, from which IRIs are made."""
-    parts = urlsplit(value)
-    # What stands before an "@", such as a password, would be in every statement.
-    is_safe = not any(sign in value for sign in "@?# ") and parts.hostname
-    if parts.scheme not in ("https", "http") or not is_safe:
-        raise argparse.ArgumentTypeError("give an address such as https://lab.example.org")
-    return value.rstrip("/")
 
 
 def _home_page(value: str) -> str:
