@@ -74,13 +74,14 @@ class FlowPresenter(Presenter):
         super().__init__()
         self._control_loop = control_loop
         self.shown = PlaybackSwitch(control_loop)
-        self.controls = Controls(bindings, self, self._may_be_taken)
+        # Another operator may take control from an idle one, unless a PIN locks it.
+        self.controls = Controls(bindings, self, lambda: not self._session.lock.is_locked)
         self._session = TrainingSession(
             control_loop, self.controls, services, preferences, self.happened
         )
         self._flow = Flow(self._session, control_loop)
         self._view = OperatedView(self._session, self.controls, control_loop, self.shown)
-        self.rumble: Callable[[float, float], None] = _nothing_vibrates
+        self.rumble: Callable[[float, float], None] = lambda _strength, _seconds: None
         self._arriving = threading.Lock()
         self._newest = control_loop.latest
         self._results: list[StepResult] = []
@@ -104,7 +105,6 @@ class FlowPresenter(Presenter):
         self._control_loop.hold_sticks(HANDS_OFF)
 
     def advance(self, dt: float) -> None:
-        """Advance by `dt` seconds."""
         # A state ahead of its events would sound the alarm of a contact twice.
         with self._arriving:
             results, self._results = self._results, []
@@ -119,27 +119,28 @@ class FlowPresenter(Presenter):
         self._settle()
         self._since_refresh += dt
         if self._is_changed or self._since_refresh >= REFRESH_S:
-            self._refresh()
+            self._is_changed = False
+            self._since_refresh = 0.0
+            screen = self._flow.screen()
+            if screen != self.screen:
+                self.screen = screen
+                self.publish(screen)
 
     def pictures(self, now: SimulationState) -> Pictures:
         return self._view.pictures(now)
 
     def ghost(self, now: SimulationState) -> tuple[np.ndarray, ...] | None:
-        """Return the pose of the ghost beside the arm; None if none is shown."""
         return None if self._flow.playback is not None else self._session.ghost.poses(now)
 
     def trace_guidance(self, now: SimulationState) -> TraceGuidance:
-        """Return how a trainee who traces the skin is guided; not at all during a replay."""
         is_replayed = self._flow.playback is not None
         return TraceGuidance() if is_replayed else self._session.places.guidance(now)
 
     def seat(self) -> Seat:
-        """Return what a teacher's board shows of this seat."""
         count = len(self._control_loop.truth.fiducials_ras)
         return seat_of(self._session, self.screen, self.control.holder, count)
 
     def instruct(self, order: InstructorOrder, text: str) -> str:
-        """Carry out a teacher's order; return why it is impossible, or ""."""
         problem = instruct(self._session, self._flow, order, text)
         self._is_changed = True
         self._settle()
@@ -184,7 +185,6 @@ class FlowPresenter(Presenter):
         self._settle()
 
     def on_layout(self, view: int, keys: Mapping[str, str]) -> None:
-        """Name the keys of a view's operator as they are written."""
         self._session.layouts[view] = keys
         self._is_changed = True
 
@@ -212,12 +212,10 @@ class FlowPresenter(Presenter):
         self._settle()
 
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
-        """Turn the view, which only the operator may do."""
         source = self._views.source(SourceKind.MOUSE, view)
         self._view.turn(source, around_deg, higher_deg, zoom)
 
     def on_press(self, view: int, control: str) -> None:
-        """Process one press of a control; an unknown name does nothing."""
         if control not in ControlName._value2member_map_:
             return
         name = ControlName(control)
@@ -229,7 +227,6 @@ class FlowPresenter(Presenter):
         self._settle()
 
     def on_item(self, view: int, name: str) -> None:
-        """Process a click on an item of the menu, or on a hint that presses a control."""
         pressed = name.removeprefix(PRESS) if name.startswith(PRESS) else ""
         control = ControlName._value2member_map_.get(pressed)
         source = self._views.hand_source(SourceKind.MOUSE, view)
@@ -286,7 +283,6 @@ class FlowPresenter(Presenter):
         return page is not None and page.input_pressed(device, name)
 
     def taken_over(self, source: Source) -> None:
-        """Another operator has taken the control."""
         name = self._session.texts.say(f"source.{source.kind.value}")
         self._session.notices.add(self._session.texts.say("control.taken", source=name))
         self._flow.taken_over()
@@ -311,12 +307,10 @@ class FlowPresenter(Presenter):
         self.controls.forget(source)
 
     def warn(self, about: str, key: str = "", **values: object) -> None:
-        """Show a warning until it is withdrawn by an empty key."""
         self._session.notices.warn(about, key, **values)
         self._is_changed = True
 
     def happened(self, what: FeedbackEvent) -> None:
-        """Play a sound and a vibration, once."""
         preferences = self._session.preferences
         volume = 0.0 if preferences.muted else preferences.volume / 100.0
         self._number += 1
@@ -324,10 +318,6 @@ class FlowPresenter(Presenter):
         if feedback.rumble > 0.0:
             self.rumble(feedback.rumble, FEEDBACK_EFFECTS[what].seconds)
         self.publish(feedback)
-
-    def _may_be_taken(self) -> bool:
-        """Return whether another operator may take control from an idle one."""
-        return not self._session.lock.is_locked
 
     def _lose_sight(self, view: int, why: str) -> None:
         """Release what is operated without being seen; `why` is the key of a sentence."""
@@ -388,15 +378,3 @@ class FlowPresenter(Presenter):
             self.control = control
             self.publish(control)
             self._is_changed = True
-
-    def _refresh(self) -> None:
-        self._is_changed = False
-        self._since_refresh = 0.0
-        screen = self._flow.screen()
-        if screen != self.screen:
-            self.screen = screen
-            self.publish(screen)
-
-
-def _nothing_vibrates(strength: float, seconds: float) -> None:
-    """Stand in for a gamepad."""

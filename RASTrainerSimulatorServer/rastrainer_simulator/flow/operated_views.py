@@ -73,12 +73,10 @@ class ViewSources:
         return self._views.pop(view, None)
 
     def hello(self, view: int) -> Hello | None:
-        """Return a view; None if it is unknown."""
         return self._views.get(view)
 
     @property
     def is_empty(self) -> bool:
-        """Whether no view has joined."""
         return not self._views
 
     @property

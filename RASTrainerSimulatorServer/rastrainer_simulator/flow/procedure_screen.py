@@ -203,7 +203,7 @@ class ProcedureScreen(ArmScreen):
     def _why_not_registered(self) -> tuple[ScreenMessage, ...]:
         """Return why the touches are not registered yet, if that will not change by itself."""
         session, say = self._session, self._session.texts.say
-        own = session.own_score
+        own = session.local_scorer
         if own is not None and own.problem:
             return (ScreenMessage(say("waiting.problem", reason=own.problem), Tone.ERROR),)
         if own is None and not session.is_slicer_connected():

@@ -19,7 +19,7 @@ def seat_of(session: TrainingSession, screen: Screen, holder: str, count: int) -
     """Return what a board shows of a seat; `count` is how many points its trial has."""
     training, curriculum = session.training, session.curriculum
     is_open = training.phase in OPEN_PHASES
-    trainee = training.trainee if is_open else session.trainee.strip()
+    trainee = training.trainee if is_open else session.trainee_id
     scores = [trial.score for trial in session.history.of(trainee) if not trial.is_aborted]
     return Seat(
         trainee=trainee,

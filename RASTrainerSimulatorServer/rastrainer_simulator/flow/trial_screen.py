@@ -90,7 +90,7 @@ class TrialScreen(ArmScreen):
         It stays when Slicer continues the study, a moment before or after it.
         """
         state = self._session.state
-        step = self._session.study.step_of(state.training.trainee)
+        step = self._session.trial_step
         is_new = step is not self._practice_step
         if step is not None and step.kind == StepKind.TRIAL_RUN and is_new:
             self._practice_step = step

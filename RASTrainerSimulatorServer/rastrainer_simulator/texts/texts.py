@@ -119,6 +119,9 @@ class Texts:
         )
 
 
+say = Texts().say
+"""Returns a sentence in English; views say it again in their language."""
+
 NO_NAMES: Mapping[str, str] = MappingProxyType({})
 
 

@@ -90,7 +90,7 @@ class TutorialPage(SessionPage):
     def _leave(self, is_skipped: bool) -> None:
         session = self.session
         if is_skipped:
-            session.tutorials.skip(session.trainee.strip())
+            session.tutorials.skip(session.trainee_id)
         session.end_tutorial()
         session.pages.show_start()
         session.pages.open(ExperimentPage(session))

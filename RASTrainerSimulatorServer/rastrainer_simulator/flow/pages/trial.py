@@ -219,7 +219,7 @@ class PracticePage(SessionPage):
 
     def content(self) -> PageContent:
         trainee = self.session.training.trainee
-        is_led = self.session.study.step_of(trainee) is not None
+        is_led = self.session.trial_step is not None
         text = self.say("practice.study" if is_led else "practice.text", trainee=trainee)
         rows = (self.button("finish", self._finish), self.button("resume"))
         return PageContent(self.say("practice.title"), (text,), rows=rows)

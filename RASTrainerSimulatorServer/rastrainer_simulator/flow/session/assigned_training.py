@@ -8,7 +8,6 @@ from dataclasses import replace
 
 from rastrainer.protocol import FREE, StepKind
 from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
-from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
 from rastrainer.study.protocol.steps import StepAnswers, StudyStep
 from rastrainer_simulator.texts.texts import Texts
 
@@ -80,22 +79,6 @@ class StudySteps:
     def _forget(self, trainee: str) -> None:
         for kept in (self._steps, self._received_at, self._answers):
             kept.pop(trainee, None)
-
-
-def step_sentence(texts: Texts, step: StudyStep, task_title: str, left: str) -> str:
-    """Return the sentence about a step; `left` is the time that a break still lasts."""
-    asked = QUESTIONNAIRES.get(step.questionnaire)
-    by = f"study.by {step.method}"
-    return texts.say(
-        f"study.{step.kind}",
-        number=step.number,
-        count=step.count,
-        task=f"{task_title} {texts.say(by)}" if by in texts else task_title,
-        mode=texts.say(f"study.{step.mode}") if step.mode else "",
-        minutes=step.minutes,
-        left=left,
-        questionnaire=step.questionnaire if asked is None else asked.title,
-    )
 
 
 Titles = Callable[[str], str]

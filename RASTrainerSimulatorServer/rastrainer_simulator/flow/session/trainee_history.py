@@ -256,15 +256,8 @@ def _own_trial(journal: Path) -> OwnTrial | None:
         if record.task == TRIAL_RUN:
             return None
         score = float(scored["score"])
-        past = PastTrial(
-            record.trial_id,
-            record.task,
-            record.mode,
-            record.completion_time_s,
-            score,
-            details["isAccurate"] is True and not beyond_limits(details),
-            method=record.method,
-        )
+        acceptable = details["isAccurate"] is True and not beyond_limits(details)
+        past = PastTrial.scored(record, score, acceptable)
         verdict = is_passed(record.task, score, details)
         return OwnTrial(past, record.scenario, record.started_utc, verdict)
     except (OSError, DamagedLineError, InputError, KeyError, TypeError, ValueError):

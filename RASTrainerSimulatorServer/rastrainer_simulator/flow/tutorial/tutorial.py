@@ -29,7 +29,6 @@ from rastrainer_simulator.flow.tutorial.steps import (
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.record.trial_context import GUIDED_TOUCHES, TutorialOutcome
 from rastrainer_simulator.state import OperatorCommand, SimulationState, TouchStage, TrainingState
-from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.training.rules import TouchMoment, touch_stage
 from rastrainer_simulator.training.training import Training, TrainingReply
@@ -61,7 +60,6 @@ class TouchPractice:
         state: SimulationState,
         arguments: dict[str, str],
         points: slice,
-        texts: Texts,
         rest: Vector | None = None,
         task: str = TRIAL_RUN,
     ) -> None:
@@ -72,7 +70,6 @@ class TouchPractice:
             state: in which it is.
             arguments: checked ones of StartTask, with `trialId`.
             points: which are touched.
-            texts: the sentences.
             rest: where the tip may still be on the skin from a touch before, World, m.
             task: of the points.
         """
@@ -80,7 +77,7 @@ class TouchPractice:
         self._settings = replace(setup.settings.training, acceptance_radius=CENTERED_M)
         self._of_trials = setup.settings.training
         scenario = _short_scenario(setup.scenario, task, state.head_to_world, points)
-        self._training = Training(scenario, 0, self._settings, texts)
+        self._training = Training(scenario, 0, self._settings)
         start = {**arguments, "task": scenario.tasks[0].name}
         self._training.handle(OperatorCommand(CommandName.START_TASK, start), _moment(state))
         self.has_points = False
@@ -195,21 +192,20 @@ class Tutorial:
         setup: SimulationSetup,
         state: SimulationState,
         arguments: dict[str, str],
-        texts: Texts,
         practiced: str = "",
     ) -> None:
         """Begin; `arguments` are checked ones of StartTask; `practiced` is a point of its task."""
         self.trainee, self.mode = arguments["trainee"], arguments["mode"]
         self.setup = setup
         trial = {**arguments, "trialId": str(uuid.uuid4())}
-        self._first = TouchPractice(setup, state, trial, slice(1), texts)
+        self._first = TouchPractice(setup, state, trial, slice(1))
         guided, rest, task = slice(1, 1 + GUIDED_TOUCHES), self._first.goal, TRIAL_RUN
         self.practiced = practiced
         if practiced:
             task, rest = arguments["task"], None
             place = setup.scenario.task(task).labels.index(practiced)
             guided = slice(place, place + 1)
-        self._guided = TouchPractice(setup, state, trial, guided, texts, rest, task)
+        self._guided = TouchPractice(setup, state, trial, guided, rest, task)
         self._guided.show_points()
         self.praised: TutorialStep | None = None
         self._praise_s = 0.0

@@ -37,7 +37,7 @@ from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.state import Answer, TrainingState
 
 SENDER = "simulator"
-OWN_SCORE = "isOwnScore"
+SCORED_BY_SIMULATOR = "scoredBySimulator"
 """The entry of a score's details that names its source."""
 RETURN_S = 5.0
 """A Slicer whose connection was lost is back after less, unless it has ended."""
@@ -70,7 +70,7 @@ def _job(training: TrainingState, is_in_study: bool) -> _Job | None:
     return _Job(training.trial_id, training.phase, len(procedure.attempts))
 
 
-class OwnScore:
+class LocalScorer:
     """Watches for a trial that no Slicer registers or scores, and does it in a thread.
 
     Attributes:
@@ -190,7 +190,7 @@ def score_alone(
     truth = record_from_json(RevealedTruth, answer, "The simulator's answer")
     scored = scored_with_journal(analysis, truth, scenario, records=records, pause=_rest)
     arguments = score_arguments(_with_progress(scored, earlier))
-    arguments["details"][OWN_SCORE] = True
+    arguments["details"][SCORED_BY_SIMULATOR] = True
     _asked(ask, CommandName.TRIAL_SCORED, arguments)
 
 
@@ -204,15 +204,7 @@ def _with_progress(analysis: TrialAnalysis, earlier: Sequence[PastTrial]) -> Tri
     record, score = analysis.record, analysis.score
     if score is None or record.task == TRIAL_RUN:
         return analysis
-    this = PastTrial(
-        record.trial_id,
-        record.task,
-        record.mode,
-        record.completion_time_s,
-        score.score,
-        score.acceptable,
-        method=record.method,
-    )
+    this = PastTrial.scored(record, score.score, score.acceptable)
     return with_progress_among(analysis, (*earlier, this), PASS_MARK)
 
 
