@@ -1,4 +1,4 @@
-"""What a trainee who drives the arm reads, and how far the tip is from its path."""
+"""Texts for a trainee who drives the arm, and the distance of the tip from its path."""
 
 from __future__ import annotations
 
@@ -51,7 +51,6 @@ class ArmScreen:
         self._refusal = ""
 
     def take(self, event: Event) -> None:
-        """Process an event."""
         if event.kind is EventKind.REJECTED:
             self._refusal = event.data["message"]
         if event.kind is EventKind.REACH:
@@ -69,7 +68,6 @@ class ArmScreen:
         return self._refusal != "" and self._state.training.instruction == self._refusal
 
     def screen(self) -> Screen:
-        """Return what is read while no menu is open."""
         return Screen(
             instruction=self.instruction(),
             warnings=self.warnings(),
@@ -79,7 +77,6 @@ class ArmScreen:
         )
 
     def instruction(self) -> ScreenMessage:
-        """Return what to do now."""
         raise NotImplementedError
 
     def status(self) -> tuple[str, ...]:
@@ -87,7 +84,6 @@ class ArmScreen:
         raise NotImplementedError
 
     def hints(self) -> tuple[Hint, ...]:
-        """Return the relevant controls."""
         raise NotImplementedError
 
     def warnings(self) -> tuple[ScreenMessage, ...]:
@@ -122,7 +118,6 @@ class ArmScreen:
             session.do(CommandName.SET_CAMERA, {"camera": camera})
 
     def _movement_hints(self) -> tuple[Hint, ...]:
-        """Return what moves the tip."""
         session = self._session
         up_and_down = session.operator.pair_label(ControlName.MOVE_UP, ControlName.MOVE_DOWN)
         return (

@@ -36,7 +36,7 @@ _FELT: Mapping[str, Tone] = {
     FeedLayer.THROUGH.value: Tone.WARNING,
     FeedLayer.BLOCKED.value: Tone.ERROR,
 }
-"""What a hand feels of the drill or the instrument, and the words for it."""
+"""Layers that a hand feels through the drill or the instrument, and their tones."""
 
 
 class ProcedureScreen(ArmScreen):
@@ -57,7 +57,6 @@ class ProcedureScreen(ArmScreen):
         )
 
     def take(self, event: Event) -> None:
-        """Process an event."""
         super().take(event)
         if event.kind is EventKind.FEED:
             self._layer = event.data["layer"]

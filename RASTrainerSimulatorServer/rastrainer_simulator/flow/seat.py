@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, Phase
+from rastrainer.protocol import OPEN_PHASES
 from rastrainer_simulator.flow.flow import Flow
 from rastrainer_simulator.flow.pages.result import ResultPage
 from rastrainer_simulator.flow.pages.trial_review import ReplayPage
@@ -44,7 +44,7 @@ def instruct(session: TrainingSession, flow: Flow, order: InstructorOrder, text:
         return ""
     if order is InstructorOrder.PAUSE:
         is_shown = flow.playback is not None
-        is_running = session.training.phase in (Phase.RUNNING, *PROCEDURE_PHASES)
+        is_running = session.training.is_running
         if not is_shown and not (is_running or session.tutorial is not None):
             return session.texts.say("instructor.nothing runs")
         flow.pause("unseen.instructor")

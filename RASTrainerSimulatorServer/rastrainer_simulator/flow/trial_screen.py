@@ -10,7 +10,6 @@ from rastrainer.protocol import (
     FIDUCIAL_COUNT,
     MAX_TRACE_POINTS,
     MIN_TRACE_POINTS,
-    PROCEDURE_PHASES,
     TRIAL_RUN,
     Guidance,
     Phase,
@@ -158,7 +157,7 @@ class TrialScreen(ArmScreen):
         """Open the menu; a trial that runs is paused, and the menu opens when it is."""
         session = self._session
         phase = session.training.phase
-        if phase in (Phase.RUNNING, *PROCEDURE_PHASES):
+        if session.training.is_running:
             session.do(CommandName.PAUSE)
         else:
             page = TrialPage if phase is Phase.COMPLETE else StartPage
@@ -261,7 +260,7 @@ class TrialScreen(ArmScreen):
         session = self._session
         if session.training.task != TRIAL_RUN:
             return session.duration(session.state.completion_time)
-        # What is rounded up must not be a whole second and a float's last digit.
+        # Rounding first: an error in a float's last digit must not add a second.
         left = math.ceil(max(0.0, round(self._practice_s - session.state.elapsed, 6)))
         return session.texts.say("status.left", time=session.duration(left))
 

@@ -334,7 +334,7 @@ class Training:
             return TrainingReply(True)
         kept, feed = found[0], found[1] or now.feed
         sentence = say("not recorded", reason=command.arguments["reason"])
-        if kept.phase in (Phase.RUNNING, *PROCEDURE_PHASES):
+        if kept.is_running:
             self._clock.pause(now.sim_time)
             kept = paused(kept)
         if kept.phase is Phase.IDLE:

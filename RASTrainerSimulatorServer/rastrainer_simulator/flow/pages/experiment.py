@@ -44,9 +44,9 @@ LONGEST_ID = 32
 _TYPES = (SourceKind.KEYBOARD, SourceKind.MOUSE)
 _CLICKS = (SourceKind.MOUSE,)
 _HEAD = "head "
-"""No scenario's name has a space: no head is taken for the way back."""
+"""No scenario's name has a space: no head is mistaken for "back"."""
 _ASSIGNMENT = "assignment "
-"""No assignment's name has a space: none is taken for the way back."""
+"""No assignment's name has a space: none is mistaken for "back"."""
 
 
 class ExperimentPage(SessionPage):

@@ -36,7 +36,7 @@ class IntroductionPage(SessionPage):
 
     def content(self) -> PageContent:
         key, alone = f"introduction.text.{self._sheet}", ".alone"
-        # 3D Slicer is spoken of only where it is connected.
+        # Mention 3D Slicer only if it is connected.
         if not self.session.is_slicer_connected() and f"{key}{alone}" in self.session.texts:
             key += alone
         place = self.say("introduction.sheet", sheet=self._sheet, sheets=SHEETS)

@@ -202,7 +202,7 @@ class ProcedureLinesPage(ErrorsPage):
     name = "procedure-lines"
 
     def screen(self) -> Screen:
-        """Return the lines; the score has revealed where the head truly is."""
+        """Return the lines at the true pose of the head, which the score has revealed."""
         session = self.session
         lines = _lines(session) if session.training.result is not None else ()
         return replace(super().screen(), errors=lines, is_head_clear=True)

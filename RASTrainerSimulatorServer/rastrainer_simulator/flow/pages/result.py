@@ -1,4 +1,4 @@
-"""What comes after the registration: waiting for the score, and the result."""
+"""The pages after the registration: waiting for the score, and the result."""
 
 from __future__ import annotations
 
@@ -178,7 +178,6 @@ class ResultPage(FinishedPage):
         self._leave(failed if self._is_passed is False else self._following())
 
     def closed(self) -> None:
-        """Stop loading the trial."""
         if self._loading is not None:
             self._loading.cancel()
 

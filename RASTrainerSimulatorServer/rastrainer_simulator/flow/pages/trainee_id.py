@@ -1,4 +1,4 @@
-"""Who trains: an ID entered by buttons or clicks, and the questionnaires that a study asks."""
+"""The trainee's ID, entered by buttons or clicks, and the questionnaires of a study."""
 
 from __future__ import annotations
 

@@ -80,7 +80,7 @@ class MatchPage(SessionPage):
     """Shows what is known of a match; the trial is registered only when it is accepted."""
 
     name = "match"
-    # Someone who presses twice should not accept what they have not read.
+    # A double press must not accept a match that was not read.
     first = "draw"
 
     def __init__(self, session: TrainingSession, looked: Future[MatchReport]) -> None:

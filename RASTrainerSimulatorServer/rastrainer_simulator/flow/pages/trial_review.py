@@ -118,11 +118,10 @@ class ReplayPage(SessionPage):
         self._player: Player | None = None
 
     def content(self) -> PageContent:
-        """Return what is read while the trial is being loaded."""
         return PageContent(self.say("replay.loading"), rows=(self.button("back"),))
 
     def screen(self) -> Screen | None:
-        """Return what is read while the trial is played; with the plan, where it was seen."""
+        """Return the screen of the playback, with the plan of a procedure if it was visible."""
         if self._player is None or self.playback is None:
             return None
         session = self.session

@@ -35,7 +35,7 @@ def start_task(session: TrainingSession, task: str) -> None:
 def procedure_of(session: TrainingSession, task: str) -> str:
     """Return the name of the procedure that follows the touches of a task; "" for none.
 
-    A study says which; else it is the one that the trainee has chosen. The trial run has none.
+    A study decides, else the trainee; the trial run has none.
     """
     step = session.step
     if step is not None:
@@ -47,8 +47,7 @@ def procedure_of(session: TrainingSession, task: str) -> str:
 def registration_method(session: TrainingSession, task: str) -> RegistrationMethod:
     """Return the method by which a trial of a task is registered.
 
-    A study says which; else it is what the trainee has chosen, if the head allows that. In the
-    trial run it is fiducials.
+    A study decides, else the trainee if the head allows it; the trial run is by fiducials.
     """
     step = session.step
     if step is not None:
@@ -127,7 +126,7 @@ def assignment_obstacle(session: TrainingSession, each: AssignmentMessage) -> st
 
 
 def _missing_before(session: TrainingSession, task: str, is_assigned: bool) -> str:
-    """Return what has to be done first outside of a study; for assignments, their gates decide."""
+    """Return the task to do first, outside of a study; assignments have their own gates."""
     if session.preferences.order == "any":
         return ""
     if task == TRIAL_RUN:

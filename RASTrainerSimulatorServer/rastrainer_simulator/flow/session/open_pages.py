@@ -1,4 +1,4 @@
-"""What a page is, which pages are open one over the other, and which row has the focus."""
+"""Pages of rows, the stack of open pages, and the row that has the focus."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class PageRow:
     """One line of a page, and what it does.
 
     Attributes:
-        item: what is shown of it.
+        item: as views show it.
         accept: is called when a button is pressed, a text is chosen, or a choice accepted.
         step: moves a choice to its next (1) or previous (−1) option.
         write: is called with the new value of a text.
@@ -76,7 +76,7 @@ class Page:
         raise NotImplementedError
 
     def menu(self) -> Menu:
-        """Return what is shown, without a focus."""
+        """Return the menu without a focus."""
         shown = self.content()
         return Menu(
             self.name,
@@ -103,7 +103,7 @@ class Page:
         return dataclasses.replace(row, step=step)
 
     def screen(self) -> Screen | None:
-        """Return what is read in place of a menu; None where the menu is."""
+        """Return a screen without a menu; None if the page has a menu."""
         return None
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:  # noqa: ARG002
@@ -178,7 +178,7 @@ class OpenPages:
         self.open(page)
 
     def menu(self) -> Menu | None:
-        """Return what is shown, with the focus."""
+        """Return the menu with its focus."""
         page = self.top
         if page is None:
             return None

@@ -31,7 +31,7 @@ class OperatorDevice:
         texts: name the inputs in the chosen language.
         mode: "desktop" or "hmd".
         has_screen_sticks: whether views draw sticks for a mouse.
-        layouts: what is written on the keys of each view, by their W3C codes.
+        layouts: labels of the keys of each view, by their W3C codes.
     """
 
     controls: Controls

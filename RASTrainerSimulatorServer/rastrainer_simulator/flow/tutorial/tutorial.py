@@ -21,7 +21,6 @@ from rastrainer_simulator.flow.tutorial.steps import (
     MEASURES,
     OF_PRACTICE,
     WITH_POINTS,
-    StepMeasure,
     TutorialObservation,
     TutorialStep,
     steps_for,
@@ -211,7 +210,8 @@ class Tutorial:
         self._praise_s = 0.0
         self.use(SourceKind.KEYBOARD)
         self._done: list[TutorialStep] = []
-        self._measure: StepMeasure | None = None
+        self._amount = 0.0
+        self._first_seen: TutorialObservation | None = None
         self._before: TutorialObservation | None = None
         self._seconds: dict[str, float] = {}
         self._first_error_mm = 0.0
@@ -249,9 +249,10 @@ class Tutorial:
     @property
     def amount(self) -> tuple[float, float]:
         """How much of the step is done, and how much there is to do."""
-        if self._measure is None:
+        if self.step is None or self._first_seen is None:
             return 0.0, 1.0
-        return min(self._measure.done, self._measure.goal), self._measure.goal
+        goal = MEASURES[self.step].goal
+        return min(self._amount, goal), goal
 
     @property
     def has_learned_view(self) -> bool:
@@ -283,13 +284,18 @@ class Tutorial:
             return None
         if step in WITH_POINTS and not self._first.has_points:
             self._first.show_points()
-        self._measure = self._measure or MEASURES[step]()
+        first = self._first_seen or before
+        if first.yaw_deg is None and before.yaw_deg is not None:
+            # The headset's controllers have only now been used.
+            first = before
+        self._first_seen = first
         self._seconds[step.value] = self._seconds.get(step.value, 0.0) + dt
-        self._measure.take(before, now)
-        if not self._measure.is_complete:
+        measure = MEASURES[step]
+        self._amount = measure.done(self._amount, first, before, now)
+        if self._amount < measure.goal:
             return None
         self._done.append(step)
-        self._measure = None
+        self._amount, self._first_seen = 0.0, None
         self.praised, self._praise_s = step, PRAISE_S
         return step
 
