@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from rastrainer.commands import CommandName
 from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, GhostRule, Guidance, Phase
-from rastrainer_simulator.flow.pages.experiment import ExperimentPage
+from rastrainer_simulator.flow.pages.experiment import open_experiment
 from rastrainer_simulator.flow.pages.introduction import PracticedPage, TutorialDonePage
 from rastrainer_simulator.flow.pages.procedure import (
     ProcedureErrorsPage,
@@ -223,8 +223,7 @@ class Flow:
         self._tutorial_screen.advance(dt)
         if tutorial.is_done:
             outcome = session.end_tutorial()
-            session.pages.show_start()
-            session.pages.open(ExperimentPage(session))
+            open_experiment(session)
             if outcome is not None:
                 page = PracticedPage if tutorial.practiced else TutorialDonePage
                 session.pages.open(page(session, outcome), ignore_input_briefly=True)
@@ -253,8 +252,7 @@ class Flow:
             session.pages.show(ResultPage(session), ignore_input_briefly=True)
         elif before[1] in OPEN_PHASES or isinstance(session.pages.top, RESULT_PAGES):
             # Another simulation may follow a trial while other pages are open: they stay.
-            session.pages.show_start()
-            session.pages.open(ExperimentPage(session), ignore_input_briefly=was_working)
+            open_experiment(session, ignore_input_briefly=was_working)
 
     def _note_trial(self, previous_id: str) -> None:
         """Note a new trial, and a trial run whose points are all touched."""

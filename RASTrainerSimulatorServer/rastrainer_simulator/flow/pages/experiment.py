@@ -249,6 +249,14 @@ class ExperimentPage(SessionPage):
             self.session.complain(str(error))
 
 
+def open_experiment(
+    session: TrainingSession, first: str = "", ignore_input_briefly: bool = False
+) -> None:
+    """Open the experiment menu over the start page; `first` is the row with the focus."""
+    session.pages.show_start()
+    session.pages.open(ExperimentPage(session, first), ignore_input_briefly)
+
+
 class ScenarioPage(SessionPage):
     """Lists the scenarios; one that cannot be used says why."""
 

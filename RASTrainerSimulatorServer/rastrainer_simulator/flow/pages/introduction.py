@@ -6,7 +6,7 @@ from functools import partial
 
 from rastrainer.protocol import TRIAL_RUN, TutorialRule
 from rastrainer_simulator.flow.pages.controls import ControlsPage
-from rastrainer_simulator.flow.pages.experiment import ExperimentPage
+from rastrainer_simulator.flow.pages.experiment import open_experiment
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.trial_review import error_tone
 from rastrainer_simulator.flow.session.chosen_trial import (
@@ -92,8 +92,7 @@ class TutorialPage(SessionPage):
         if is_skipped:
             session.tutorials.skip(session.trainee_id)
         session.end_tutorial()
-        session.pages.show_start()
-        session.pages.open(ExperimentPage(session))
+        open_experiment(session)
 
     def pressed(self, control: ControlName) -> bool:
         """The control that pauses also resumes."""

@@ -17,7 +17,7 @@ from rastrainer.trial.scoring import (
     LIMIT_MM,
 )
 from rastrainer.trial.trial_feedback import MAX_SHORT
-from rastrainer_simulator.flow.pages.experiment import ExperimentPage
+from rastrainer_simulator.flow.pages.experiment import open_experiment
 from rastrainer_simulator.flow.pages.procedure import (
     ProcedureErrorsPage,
     procedure_details,
@@ -67,21 +67,16 @@ class FinishedPage(SessionPage):
         again = self.say("result.again", task=session.task_title(task))
         rows = []
         if following or best is not None:
-            leave = partial(self._leave, following)
+            leave = partial(open_experiment, session, following)
             rows.append(self.button("next", leave, self.say("result.next", task=title)))
         if self.session.trial_step is None:
-            rows.append(self.button("again", partial(self._leave, task), again))
-        menu = partial(self._leave, "")
+            rows.append(self.button("again", partial(open_experiment, session, task), again))
+        menu = partial(open_experiment, session)
         return (*rows, self.button("menu", menu, self.say("result.menu")))
 
     def back(self) -> None:
         """Go to the next task."""
-        self._leave(self._following())
-
-    def _leave(self, first: str) -> None:
-        """Go to the experiment menu, where a task has the focus."""
-        self.session.pages.show_start()
-        self.session.pages.open(ExperimentPage(self.session, first=first))
+        open_experiment(self.session, self._following())
 
     def _following(self) -> str:
         """Return the task that comes next; "" for none, or where a curriculum says what does."""
@@ -175,7 +170,8 @@ class ResultPage(FinishedPage):
     def back(self) -> None:
         """Go to the next task, or to this one again where it is not passed."""
         failed = self.session.training.task
-        self._leave(failed if self._is_passed is False else self._following())
+        first = failed if self._is_passed is False else self._following()
+        open_experiment(self.session, first)
 
     def closed(self) -> None:
         if self._loading is not None:

@@ -116,16 +116,13 @@ class StepMeasure:
 def _moved(right: float = 0.0, forward: float = 0.0, up: float = 0.0) -> StepMeasure:
     """Measure how far the tip has moved in one direction, mm, since it last moved the other way."""
 
-    def done(
-        done: float,
-        _first: TutorialObservation,
-        before: TutorialObservation,
-        now: TutorialObservation,
-    ) -> float:
+    def along(before: TutorialObservation, now: TutorialObservation) -> float:
         way = now.axes.to_world((right, forward, up))
-        return max(0.0, done + MM_PER_M * dot(subtract(now.tip, before.tip), way))
+        return MM_PER_M * dot(subtract(now.tip, before.tip), way)
 
-    return StepMeasure(MOVE_MM, done)
+    return StepMeasure(
+        MOVE_MM, lambda done, _first, before, now: max(0.0, done + along(before, now))
+    )
 
 
 def _moved_slowly(
