@@ -61,7 +61,7 @@ def keep_menus(trainee: CarriedTrainee, photographer: Photographer) -> None:
 
 def keep_tutorial(trainee: CarriedTrainee, photographer: Photographer) -> None:
     trainee.choose("tutorial")
-    trainee.until(lambda: "30 mm" in trainee.view.screen.instruction.text, "the first step")
+    trainee.until(lambda: "30\N{NO-BREAK SPACE}mm" in trainee.view.screen.instruction.text, "the first step")
     photographer.keep("first-trial-04-tutorial")
     trainee.press("menu", lambda: trainee.menu_name == "tutorial", "the tutorial's menu")
     trainee.choose("leave")

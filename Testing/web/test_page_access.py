@@ -329,7 +329,8 @@ def test_a_scrolled_list_shows_the_item_in_focus_and_its_help(told_page, served,
 
 TORN = """() => [...document.querySelectorAll("#menu dd")].flatMap((value) => {
   const text = value.firstChild.data;
-  return [...text.matchAll(/\\d\\s(?:mm|s|%)|(?:m[aá]x\\.|最大)\\s\\d|\\d+[.,]?\\d*[)）]/gu)].filter(({ index, 0: found }) => {
+  const whole = /\\d\\s(?:mm|s|%)|(?:m[aá]x\\.|最大)\\s\\d|\\d+[.,]?\\d*[)）]/gu;
+  return [...text.matchAll(whole)].filter(({ index, 0: found }) => {
     const range = document.createRange();
     range.setStart(value.firstChild, index);
     range.setEnd(value.firstChild, index + found.length);
