@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.igtl.client import Client
+from rastrainer.number_text import with_units
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.transforms import MM_PER_M
 from Testing.end_to_end.hands import KeyHands
@@ -61,7 +62,8 @@ def keep_menus(trainee: CarriedTrainee, photographer: Photographer) -> None:
 
 def keep_tutorial(trainee: CarriedTrainee, photographer: Photographer) -> None:
     trainee.choose("tutorial")
-    trainee.until(lambda: "30 mm" in trainee.view.screen.instruction.text, "the first step")
+    first = with_units("30 mm")
+    trainee.until(lambda: first in trainee.view.screen.instruction.text, "the first step")
     photographer.keep("first-trial-04-tutorial")
     trainee.press("menu", lambda: trainee.menu_name == "tutorial", "the tutorial's menu")
     trainee.choose("leave")

@@ -78,13 +78,13 @@ def test_a_jog_presses_by_its_velocity_times_its_duration(simulation):
 
 
 def test_a_stick_held_down_presses_to_the_limit_and_no_farther(simulation):
-    depths = [simulation.step(DT, DOWN).state.depth for _ in range(1000)]
+    depths = [simulation.step(DT, DOWN).state.depth for _ in range(3000)]
     assert depths == sorted(depths)
     assert depths[-1] == DEEPEST
 
 
 def test_lifting_reduces_the_depth_and_the_end_of_contact_reports_the_maximum(simulation):
-    for _ in range(80):
+    for _ in range(240):
         simulation.step(DT, DOWN)
     rest(simulation, 1)
     deepest = simulation.state.depth

@@ -335,7 +335,7 @@ def test_several_commands_in_one_tick_are_each_answered_in_order(trial):
 
 def test_a_simulation_continues_from_anothers_tick_time_revision_and_camera(setup):
     simulation = Simulation(setup, 1)
-    simulation.restart_from(StartingPoint(tick=1000, sim_time=4.0, revision=7, camera="far"))
+    simulation.restart_from(StartingPoint(tick=1000, sim_time_s=4.0, revision=7, camera="far"))
     state = simulation.step(DT, HANDS_OFF).state
     assert (state.tick, state.sim_time, state.camera) == (1001, 4.0 + DT, "far")
     assert state.training.revision == 7
