@@ -87,7 +87,6 @@ class ArmScreen:
         raise NotImplementedError
 
     def warnings(self) -> tuple[ScreenMessage, ...]:
-        """Return the warnings about the arm's position."""
         say = self._session.texts.say
         warnings = []
         state = self._state

@@ -95,7 +95,6 @@ class FlowPresenter(Presenter):
         self._unsubscribe = control_loop.subscribe(self._take_tick)
 
     def close(self) -> None:
-        """Release the sticks and the control loop."""
         self._unsubscribe()
         self._flow.close()
         self._session.view.close()
@@ -152,7 +151,6 @@ class FlowPresenter(Presenter):
         return self._session.places.guidance(self._control_loop.latest).covered_mm > 0.0
 
     def start_tutorial(self, trainee: str, mode: str) -> Answer:
-        """Open the tutorial for a trainee whose trial run Slicer wants to start, if it is first."""
         answer = self._flow.start_tutorial(trainee, mode)
         self._is_changed = True
         self._settle()
@@ -240,7 +238,6 @@ class FlowPresenter(Presenter):
         self._settle()
 
     def on_text(self, view: int, name: str, value: str) -> None:
-        """Process the new text of a text item."""
         if self.controls.allows(self._views.hand_source(SourceKind.KEYBOARD, view)):
             self._session.pages.write(name, value)
             self._is_changed = True

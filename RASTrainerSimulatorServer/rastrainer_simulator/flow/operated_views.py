@@ -157,7 +157,6 @@ class OperatedView:
         return self._session.view.pictures(now, self._shown.setup.scenario.cameras)
 
     def turn(self, source: Source, around_deg: float, higher_deg: float, zoom: float) -> None:
-        """Turn the view, which only the operator may do."""
         if self._controls.is_operator(source):
             shown = self._shown
             camera = shown.setup.scenario.cameras[shown.latest.camera]

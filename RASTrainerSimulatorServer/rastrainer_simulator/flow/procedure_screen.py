@@ -148,7 +148,6 @@ class ProcedureScreen(ArmScreen):
         return plan_marks(procedure, session.planned_bone(procedure.name))
 
     def _ruler(self) -> DepthRuler | None:
-        """Return the scale of depths while something is fed."""
         procedure = self._procedure
         if procedure.stage not in FED or procedure.present is None:
             return None

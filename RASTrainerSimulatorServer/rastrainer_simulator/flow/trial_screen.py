@@ -117,7 +117,6 @@ class TrialScreen(ArmScreen):
         self.guidance = guidance_of(self._session)
 
     def pressed(self, control: ControlName) -> None:
-        """Carry out a control while the arm is driven."""
         session = self._session
         phase = session.training.phase
         if control is ControlName.CAMERA:

@@ -190,7 +190,6 @@ class TutorialScreen(ArmScreen):
         return tuple(facts)
 
     def hints(self) -> tuple[Hint, ...]:
-        """Return the controls of the step, and the one for the menu."""
         session, step = self._session, self._tutorial.step
         say = session.texts.say
         if step is None:

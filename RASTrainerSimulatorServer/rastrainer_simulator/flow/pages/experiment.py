@@ -190,7 +190,6 @@ class ExperimentPage(SessionPage):
         self.session.pages.focus(self._next_task())
 
     def _own_trials(self) -> Iterator[PageRow]:
-        """Yield the button of the trainee's own trials; none before the first."""
         count = len(self.session.history.own(self.session.trainee_id))
         if count:
             yield self.button("trials", self.open_page(OwnTrialsPage), value=str(count))
@@ -237,7 +236,6 @@ class ExperimentPage(SessionPage):
         return session.outcome_of(name) in outcomes and not obstacle(session, name)
 
     def _answer(self) -> Iterator[PageRow]:
-        """Yield the button of the questionnaire that the study asks next."""
         step = self.session.step
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
             yield self.button("answer", partial(self._open_questionnaire, step))
@@ -341,7 +339,6 @@ class AssignmentsPage(SessionPage):
         )
 
     def _begin(self, each: AssignmentMessage) -> None:
-        """Begin a trial of an assignment."""
         session = self.session
         session.mode = each.mode or session.mode
         session.method, session.procedure = method_of(each.method), each.procedure

@@ -49,7 +49,6 @@ class IntroductionPage(SessionPage):
         return PageContent(title, (self.say(key), place), rows=rows)
 
     def back(self) -> None:
-        """Go back a sheet."""
         if self._sheet == 1:
             self.session.pages.close()
         else:

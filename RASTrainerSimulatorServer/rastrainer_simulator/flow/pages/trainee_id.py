@@ -115,7 +115,6 @@ class QuestionnairePage(SessionPage):
     name = "questionnaire"
 
     def __init__(self, session: TrainingSession, step: StudyStep) -> None:
-        """Show the questionnaire of a step."""
         super().__init__(session)
         self._step = step
         self._questionnaire = find_questionnaire(step.questionnaire)

@@ -184,7 +184,6 @@ class PreparingPage(SessionPage):
         return PageContent(self.say("preparing.title"), said, rows=rows)
 
     def back(self) -> None:
-        """Open the trial's menu."""
         self.session.pages.replace(TrialPage(self.session))
 
     def advance(self, dt: float) -> None:  # noqa: ARG002

@@ -89,7 +89,6 @@ def error_arrow(fiducial: Vector, touch: Vector) -> ErrorArrow:
 
 
 def error_tone(error_mm: float) -> Tone:
-    """Return how good a touch is."""
     tone = Tone.ERROR if error_mm >= POOR_MM else Tone.WARNING
     return Tone.GOOD if error_mm <= GOOD_MM else tone
 
@@ -180,7 +179,6 @@ class ReplayPage(SessionPage):
             self.session.view.want_best()
 
     def _feel(self, result: StepResult) -> None:
-        """Play the recorded sounds and vibrations again."""
         for event in result.events:
             felt = feedback_event(event, result.state.touch)
             if felt is not None:

@@ -32,7 +32,6 @@ class StudySteps:
         self._answers: dict[str, StepAnswers] = {}
 
     def take(self, step: StudyStep) -> None:
-        """Store a step that Slicer has sent."""
         name = step.trainee
         answers = self._answers.get(name)
         if answers is not None and not answers.belong_to(step):
@@ -45,7 +44,6 @@ class StudySteps:
             self._forget(next(iter(self._steps)))
 
     def step_of(self, trainee: str) -> StudyStep | None:
-        """Return what comes next for a trainee; None for one who practices freely."""
         return self._steps.get(trainee)
 
     def break_left_s(self, trainee: str) -> float:
@@ -96,7 +94,6 @@ class Curricula:
         self._messages: dict[str, CurriculumMessage] = {}
 
     def take(self, curriculum: CurriculumMessage) -> None:
-        """Store the standing of a trainee that Slicer has sent."""
         self._messages.pop(curriculum.trainee, None)
         if curriculum.assignments:
             self._messages[curriculum.trainee] = curriculum
@@ -108,7 +105,6 @@ class Curricula:
         self._messages.clear()
 
     def of(self, trainee: str) -> CurriculumMessage | None:
-        """Return the standing of a trainee; None without a curriculum."""
         return self._messages.get(trainee)
 
 
@@ -134,7 +130,6 @@ class AssignmentTexts:
         self._procedure_title = procedure_title
 
     def title(self, each: AssignmentMessage) -> str:
-        """Return the title of an assignment."""
         by = f"study.by {each.method}"
         words = [self._task_title(each.task)]
         words += [self._say(by)] if by in self._texts else []
@@ -166,7 +161,6 @@ class AssignmentTexts:
         return self._say(key, done=each.done, needed=each.needed)
 
     def goal(self, each: AssignmentMessage) -> str:
-        """Return when an assignment is reached."""
         if not each.mark:
             return self._say("assignments.no mark")
         if each.is_by_competence:

@@ -23,7 +23,6 @@ FIRST_ID = "trainee-1"
 
 
 def start_task(session: TrainingSession, task: str) -> None:
-    """Start a trial of a task for the trainee, in the chosen mode."""
     start = {"task": task, "trainee": session.trainee_id, "mode": session.mode}
     method = registration_method(session, task).value
     chosen = {"procedure": procedure_of(session, task), "method": method}
@@ -200,7 +199,6 @@ def skippable(session: TrainingSession) -> str:
 
 
 def skip(session: TrainingSession) -> None:
-    """Skip the tutorial or, after that, the trial run."""
     trainee, what = session.trainee_id, skippable(session)
     if what == "tutorial":
         session.tutorials.skip(trainee)

@@ -152,7 +152,6 @@ class OpenPages:
             self.open(page, ignore_input_briefly)
 
     def advance(self, dt: float) -> None:
-        """Advance the page that is shown by `dt` seconds."""
         self._grace_s -= dt
         if self.top is not None:
             self.top.advance(dt)
@@ -173,12 +172,10 @@ class OpenPages:
             self._open.pop().closed()
 
     def replace(self, page: Page) -> None:
-        """Show a page in place of the one that is shown."""
         self.close()
         self.open(page)
 
     def menu(self) -> Menu | None:
-        """Return the menu with its focus."""
         page = self.top
         if page is None:
             return None
@@ -186,7 +183,6 @@ class OpenPages:
         return dataclasses.replace(menu, focus=self._focused(menu))
 
     def pressed(self, control: ControlName) -> None:
-        """Process a control of the menus."""
         page = self.top
         if page is None or self._grace_s > 0.0 or page.pressed(control):
             return
@@ -226,7 +222,6 @@ class OpenPages:
                 row.accept()
 
     def write(self, name: str, value: str) -> None:
-        """Put a value into a text."""
         row = self._row(name)
         if row is not None and row.item.kind is ItemKind.TEXT:
             self._focus[-1] = name

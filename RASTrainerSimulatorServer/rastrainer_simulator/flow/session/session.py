@@ -283,7 +283,6 @@ class TrainingSession:
         return load_trial(found[0], self._control_loop.setup)
 
     def note_done(self) -> None:
-        """Count the present trial's task as done."""
         self.progress.note(self.training.trainee, self.scenario.name, self.training.task)
 
     def outcome_of(self, task: str) -> str:
@@ -334,7 +333,6 @@ class TrainingSession:
         return self.texts.say(key, share=100.0 * share)
 
     def step_sentence(self, step: StudyStep) -> str:
-        """Return the sentence about a step of a study."""
         asked = QUESTIONNAIRES.get(step.questionnaire)
         task, by = self.task_title(step.task), f"study.by {step.method}"
         return self.texts.say(

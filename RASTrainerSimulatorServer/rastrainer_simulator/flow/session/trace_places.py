@@ -48,16 +48,13 @@ class TracePlaces:
         self._since_s = 0.0
 
     def begin(self, trial_id: str, setup: SimulationSetup, truth: Truth) -> None:
-        """Guide through a trial from now on."""
         self.forget()
         self._trial = trial_id, setup, truth
 
     def forget(self) -> None:
-        """Stop guiding."""
         self._trial = self._asked = self._found = self._place = None
 
     def close(self) -> None:
-        """End the thread."""
         self.forget()
         self._worker.shutdown(wait=False)
 
@@ -78,7 +75,6 @@ class TracePlaces:
         self._found = self._worker.submit(self._find, *self._trial[1:], trace)
 
     def guidance(self, state: SimulationState) -> TraceGuidance:
-        """Return how a trainee is guided in a state."""
         training = state.training
         is_traced = training.trace is not None and training.next_point is None
         if self._trial is None or training.trial_id != self._trial[0] or not is_traced:

@@ -84,7 +84,6 @@ class TouchPractice:
 
     @property
     def truth(self) -> Truth:
-        """Where the head and the points are."""
         return self._training.truth
 
     @property
@@ -102,7 +101,6 @@ class TouchPractice:
         self._shown = self._present()
 
     def touch(self, state: SimulationState) -> TrainingReply:
-        """Record a touch, or refuse it."""
         return self._handle(CommandName.CAPTURE, state)
 
     def undo(self, state: SimulationState) -> TrainingReply:
@@ -300,14 +298,12 @@ class Tutorial:
         return step
 
     def touch(self, state: SimulationState) -> TrainingReply:
-        """Record a touch, or refuse it."""
         reply = self.practice.touch(state)
         if reply.ok and self.practice is self._first and TutorialStep.TOUCH not in self._done:
             (self._first_error_mm,) = self._first.errors_mm()
         return reply
 
     def outcome(self, device: SourceKind) -> TutorialOutcome:
-        """Return the outcome, once all steps are done."""
         return TutorialOutcome(
             trainee=self.trainee,
             device=device.value,
