@@ -17,7 +17,6 @@ from rastrainer_simulator.flow.session.chosen_trial import (
 )
 from rastrainer_simulator.flow.session.open_pages import PageContent
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.screen import Fact
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 
@@ -68,6 +67,7 @@ class TutorialPage(SessionPage):
     """Continues the tutorial, restarts it or leaves it."""
 
     name = "tutorial"
+    pause_goes_back = True
 
     def content(self) -> PageContent:
         session = self.session
@@ -92,12 +92,6 @@ class TutorialPage(SessionPage):
             session.tutorials.skip(session.trainee_id)
         session.end_tutorial()
         open_experiment(session)
-
-    def pressed(self, control: ControlName) -> bool:
-        """The control that pauses also resumes."""
-        if control is ControlName.PAUSE:
-            self.back()
-        return control is ControlName.PAUSE
 
 
 class TutorialDonePage(SessionPage):

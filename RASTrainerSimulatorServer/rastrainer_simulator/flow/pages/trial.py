@@ -20,7 +20,6 @@ from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.start import SettingsPage
 from rastrainer_simulator.flow.session.open_pages import PageContent
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.presentation.screen import Fact, Tone
 from rastrainer_simulator.state import TrainingState
@@ -122,6 +121,7 @@ class TrialPage(SessionPage):
     """The menu during a trial, which is paused while it is open."""
 
     name = "trial"
+    pause_goes_back = True
 
     def content(self) -> PageContent:
         training = self.session.training
@@ -159,12 +159,6 @@ class TrialPage(SessionPage):
         else:
             looked = look_at_match(session.training, session.scenario)
             session.pages.open(MatchPage(session, looked))
-
-    def pressed(self, control: ControlName) -> bool:
-        """The control that pauses also resumes."""
-        if control is ControlName.PAUSE:
-            self.back()
-        return control is ControlName.PAUSE
 
 
 class PreparingPage(SessionPage):

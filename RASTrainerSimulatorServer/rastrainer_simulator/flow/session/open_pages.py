@@ -58,11 +58,13 @@ class Page:
         name: of the menu.
         first: name of the row that has the focus at first; "" is the first that can be chosen.
         is_private: whether its rows are only for the views of who operates.
+        pause_goes_back: whether the control that pauses, which opened the page, also closes it.
     """
 
     name: ClassVar[str] = ""
     first: str = ""
     is_private: ClassVar[bool] = False
+    pause_goes_back: ClassVar[bool] = False
 
     def content(self) -> PageContent:
         raise NotImplementedError
@@ -192,6 +194,8 @@ class OpenPages:
             self._step(_STEPS[control])
         elif control is ControlName.ACCEPT:
             self.choose(self._focused(page.menu()))
+        elif control is ControlName.PAUSE and page.pause_goes_back:
+            page.back()
         elif control in (ControlName.BACK, ControlName.MENU):
             self._happened(FeedbackEvent.ACCEPT)
             page.back()
