@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from rastrainer.protocol import FREE, StepKind
@@ -106,18 +106,6 @@ class Curricula:
 
     def of(self, trainee: str) -> CurriculumMessage | None:
         return self._messages.get(trainee)
-
-
-def newly_reached(
-    before: CurriculumMessage | None, now: CurriculumMessage | None
-) -> Iterator[AssignmentMessage]:
-    """Yield the assignments that a trainee has reached since Slicer's previous message."""
-    if before is None or now is None or before is now or before.trainee != now.trainee:
-        return
-    for each in now.assignments:
-        earlier = before.find(each.name)
-        if each.is_reached and earlier is not None and not earlier.is_reached:
-            yield each
 
 
 class AssignmentTexts:

@@ -20,7 +20,6 @@ from rastrainer.study.protocol.steps import StudyStep
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.flow.session.assigned_training import (
     AssignmentTexts,
-    newly_reached,
 )
 from rastrainer_simulator.flow.session.local_scorer import LocalScorer
 from rastrainer_simulator.flow.session.open_pages import OpenPages
@@ -353,11 +352,16 @@ class TrainingSession:
 
     def _note_reached(self) -> None:
         """Announce the assignment that the trainee has reached since Slicer's last message."""
-        before, self._noted = self._noted, self.curriculum
-        for each in newly_reached(before, self._noted):
-            title = self.assignment_texts.title(each)
-            said = self.texts.say("assignments.just reached", assignment=title)
-            self.notices.add(said, Tone.GOOD, REACHED_S)
+        before, now = self._noted, self.curriculum
+        self._noted = now
+        if before is None or now is None or before.trainee != now.trainee:
+            return
+        for each in now.assignments:
+            earlier = before.find(each.name)
+            if each.is_reached and earlier is not None and not earlier.is_reached:
+                title = self.assignment_texts.title(each)
+                said = self.texts.say("assignments.just reached", assignment=title)
+                self.notices.add(said, Tone.GOOD, REACHED_S)
 
     def _save(self, write: Callable[[], None]) -> None:
         try:
