@@ -164,9 +164,9 @@ class ArmScreen:
 
 
 FARTHEST = 0.045
-"""Distance beside the path up to which the tip is on it, m."""
+"""Largest distance from the path at which the tip is on it, m."""
 BACK_WITHIN = 0.03
-"""Distance beside the path below which it is on it again, m."""
+"""Distance from the path at which the tip is on it again, m."""
 ABOVE_LEAST = 0.35
 """Share of the largest component from which another one is worth a word."""
 
@@ -186,7 +186,7 @@ class PathArc:
     end: Vector
 
     def beside(self, tip: Vector) -> float:
-        """Return how far the tip is beside the path, along the head, in m."""
+        """Return the distance of the tip from the path, along the head, in m."""
         out = subtract(tip, self.center)
         first, last, here = (unit(subtract(p, self.center)) for p in (self.start, self.end, tip))
         return length(out) * _angle_to_arc(here, first, last)

@@ -1,4 +1,4 @@
-"""From the start menu to the result: which screen follows from what happens (paper, figure 4)."""
+"""The order of the screens from the start menu to the result (paper, figure 4)."""
 
 from __future__ import annotations
 
@@ -43,8 +43,8 @@ INTERRUPTED = ("interrupted", "interrupted procedure")
 class Flow:
     """Follows the trial with the pages, and the trainee's presses with commands.
 
-    The trial's phase decides what is open, no matter who changed it: a trial that Slicer starts,
-    pauses or aborts leads to the same screen as one of the trainee's.
+    The trial's phase decides which page is open, no matter who changed it: a trial that Slicer
+    starts, pauses or aborts leads to the same screen as one of the trainee's.
     """
 
     def __init__(self, session: TrainingSession, control_loop: ControlLoop) -> None:

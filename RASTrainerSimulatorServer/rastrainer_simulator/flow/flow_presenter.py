@@ -49,7 +49,7 @@ REFRESH_S = 0.1
 """How often a screen is rebuilt though nothing was pressed: its clock, distances and axes."""
 
 _IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlName.BACK}
-"""What a view's own buttons mean while a menu is open: those of a headset have no bindings."""
+"""Meanings of a view's own buttons while a menu is open: a headset's buttons have no bindings."""
 
 
 class FlowPresenter(Presenter):
@@ -147,7 +147,7 @@ class FlowPresenter(Presenter):
 
     @property
     def is_tracing_guided(self) -> bool:
-        """Whether a trainee who traces the skin now is shown what is covered, and what is next."""
+        """Whether a trainee who traces the skin now sees the covered area and the next place."""
         return self._session.places.guidance(self._control_loop.latest).covered_mm > 0.0
 
     def start_tutorial(self, trainee: str, mode: str) -> Answer:
@@ -243,7 +243,7 @@ class FlowPresenter(Presenter):
             self._is_changed = True
 
     def on_frames(self, view: int, frames: Frames) -> None:
-        """Process how smoothly a view draws; that of the trainee's view is recorded."""
+        """Process how smoothly a view draws; the journal notes it of the trainee's view."""
         self._views.hear(view, True)
         hello = self._views.hello(view)
         if hello is None or view != self._views.watched(self.controls.holder):
@@ -254,7 +254,7 @@ class FlowPresenter(Presenter):
         self._control_loop.note_display(report)
 
     def on_picture(self, view: int, task: str, share: float) -> None:
-        """Note how much of its picture a view has: a task waits for that of the trainee's view."""
+        """Note how much of its picture a view has: a task waits for the trainee's view."""
         self._pictures.take(view, task, share)
 
     def on_visibility(self, view: int, is_visible: bool) -> None:
@@ -317,7 +317,7 @@ class FlowPresenter(Presenter):
         self.publish(feedback)
 
     def _lose_sight(self, view: int, why: str) -> None:
-        """Release what is operated without being seen; `why` is the key of a sentence."""
+        """Pause and release control if no one can see the trial; `why` is the key of a sentence."""
         if view == self._views.watched(self.controls.holder):
             self._flow.pause(why)
         for kind in SourceKind:
@@ -328,7 +328,7 @@ class FlowPresenter(Presenter):
         session, view = self._session, self._views.watched(self.controls.holder)
         if view is None and not self._views.is_empty:
             return
-        # What is shown of the newest state follows only when it has been processed.
+        # The views show the newest state only when it has been processed.
         is_replayed = self._flow.playback is not None
         shown = self.shown.latest if is_replayed else self._flow.shown(newest)
         training = shown.training
@@ -359,7 +359,7 @@ class FlowPresenter(Presenter):
         return True
 
     def _settle(self) -> None:
-        """Pass on what follows at once: what is shown, the situation, the sticks, the control."""
+        """Pass on the shown state, the situation, the sticks and the holder of control."""
         self.shown.show(self._flow.playback)
         self.shown.alter = None if self._session.tutorial is None else self._flow.shown
         self.controls.enter(self._flow.situation)

@@ -1,4 +1,4 @@
-"""What the trainee reads from the registration to the placed instrument, and the controls."""
+"""Texts and controls from the registration to the placed instrument."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class ProcedureScreen(ArmScreen):
         return ScreenMessage(text, Tone.WARNING if self._is_refused else Tone.GOOD)
 
     def warnings(self) -> tuple[ScreenMessage, ...]:
-        """Return the warnings, and what is felt of the drill or the instrument."""
+        """Return the warnings, and the layer that drill or instrument feels."""
         session, say = self._session, self._session.texts.say
         training = session.training
         if training.phase is Phase.VERIFYING and self._procedure.registration is None:
@@ -131,7 +131,7 @@ class ProcedureScreen(ArmScreen):
         return (*self._stick_hints(phase), *self._control_hints(names), *on_screen)
 
     def screen(self) -> Screen:
-        """Return what is read; from the alignment on, the trainee looks into the head."""
+        """From the alignment on, the trainee looks into the head."""
         is_head_clear = self._procedure.present is not None
         shown = super().screen()
         return replace(
@@ -163,7 +163,7 @@ class ProcedureScreen(ArmScreen):
         return procedure
 
     def _figures(self) -> tuple[str, ...]:
-        """Return the position of the guide or of what is in it, by the registration."""
+        """Return the position of the guide, the drill or the instrument, by the registration."""
         state, say = self._session.state, self._session.texts.say
         alignment, ruler = state.alignment, self._ruler()
         if ruler is not None:
@@ -183,7 +183,7 @@ class ProcedureScreen(ArmScreen):
         )
 
     def _stick_hints(self, phase: Phase) -> tuple[Hint, ...]:
-        """Return what the sticks do; in a headset what is not drawn in the hands."""
+        """Return the functions of the sticks; in a headset only those not drawn in the hands."""
         session, say = self._session, self._session.texts.say
         up_and_down = session.operator.pair_label(ControlName.MOVE_DOWN, ControlName.MOVE_UP)
         if phase in FED:

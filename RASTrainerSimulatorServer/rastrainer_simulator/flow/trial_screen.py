@@ -1,4 +1,4 @@
-"""What the trainee reads while driving the arm."""
+"""Texts and controls while the trainee drives the arm."""
 
 from __future__ import annotations
 

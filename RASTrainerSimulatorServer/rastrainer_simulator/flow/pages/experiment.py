@@ -1,6 +1,6 @@
 """The experiment menu: who trains, in which mode, on which head, and which task.
 
-With it the lists that it opens: of heads, and of the assignments of a trainee's curriculum.
+It opens the lists of heads, and of the assignments of a trainee's curriculum.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ _ASSIGNMENT = "assignment "
 
 
 class ExperimentPage(SessionPage):
-    """Begins trials; a task waits for the one before it unless the instructor says otherwise."""
+    """Begins trials; each task waits for the previous task unless the instructor says otherwise."""
 
     name = "experiment"
 
@@ -102,7 +102,7 @@ class ExperimentPage(SessionPage):
             yield self.button("clicked", self.open_page(ClickedIdPage, self._write_id))
 
     def _write_id(self, value: str) -> None:
-        """Set the trainee's ID; what is typed at first replaces the usual one."""
+        """Set the trainee's ID; the first typed character replaces the usual ID."""
         if value != self._usual_id:
             typed = value.removeprefix(self._usual_id)
             is_deleted = bool(self._usual_id) and value == self._usual_id[:-1]
@@ -124,7 +124,7 @@ class ExperimentPage(SessionPage):
         return ScoreTrend(self.say("experiment.scores", scores=shown), scores, mark)
 
     def _method(self) -> Iterator[PageRow]:
-        """Yield the choice of what is registered; none where the head has no landmarks."""
+        """Yield the choice of the method of registration; none if the head has no landmarks."""
         session, step = self.session, self.session.step
         methods, offered = playable_methods(session.scenario), offered_method(session)
 
@@ -213,7 +213,7 @@ class ExperimentPage(SessionPage):
 
         One that is not passed is to be done again, outside of a study.
 
-        With the focus there, a stray key does not change the ID of a known trainee.
+        Then a stray key does not change the ID of a known trainee.
         """
         step = self.session.step
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
@@ -256,7 +256,7 @@ def open_experiment(
 
 
 class ScenarioPage(SessionPage):
-    """Lists the scenarios; one that cannot be used says why."""
+    """Lists the scenarios, and why some cannot be used."""
 
     name = "scenario"
 
@@ -303,7 +303,7 @@ class ScenarioPage(SessionPage):
 
 
 class AssignmentsPage(SessionPage):
-    """Lists the assignments, the one to practice next in focus; each begins its trial."""
+    """Lists the assignments; the next to practice has the focus, and each begins its trial."""
 
     name = "assignments"
 

@@ -1,4 +1,4 @@
-"""Introducing a trainee: sheets of text, the menu over the tutorial, and what comes after it."""
+"""Introducing a trainee: sheets of text, the menu during the tutorial, and the pages after it."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ from rastrainer_simulator.state import TrialResult
 from rastrainer_simulator.trial_state import PlannedLine
 
 STAND_OFF_MM = 30.0
-"""Of the guide's tip before the entry where the robot aligns it: near, and clear of the skin."""
+"""Distance of the guide's tip from the entry when the robot aligns it: near, but off the skin."""
 _COMMANDS: Mapping[str, str] = {
     "accept": CommandName.ACCEPT_REGISTRATION,
     "again": CommandName.REGISTER_AGAIN,
@@ -58,7 +58,7 @@ _ITEMS: Mapping[Phase, tuple[str, ...]] = {
 
 
 class ProcedurePage(SessionPage):
-    """What can be done in the present phase besides moving the tool."""
+    """Actions of the present phase besides moving the tool."""
 
     name = "procedure"
 

@@ -48,11 +48,11 @@ _MEASURED = (
     ("result.contact path", "contactPathMm", CONTACT_PATH_LIMIT_MM, "result.millimeters of"),
     ("result.depth", "pressingDepthMm", DEPTH_LIMIT_MM, "result.mm of"),
 )
-"""What is scored: its label, its member of the score's details, its limit, and its text."""
+"""Scored measures: label, member of the score's details, limit, and text."""
 _ONLY_IF_BEYOND = ("contactPathMm",)
 _HELPFUL = ("worst", "practice", "again", "errors", "replay", "procedure", "next", "menu")
 _ONWARD = ("next", "procedure", "errors", "worst", "replay", "again", "menu")
-"""The order of what is offered: first what helps after a failure, else what comes next."""
+"""Orders of the rows: after a failure help comes first, else the next task."""
 
 
 class FinishedPage(SessionPage):
@@ -280,12 +280,12 @@ def _sentences(texts: Texts, result: TrialResult, name: str, most: int) -> list[
 
 
 def _worded(texts: Texts, said: Any) -> str:
-    """Return a text as it is, and what has a key here in the trainee's language; "" for others."""
+    """Return a text as it is, a sentence with a known key in the trainee's language, else ""."""
     if not isinstance(said, dict):
         return said if isinstance(said, str) and said.isprintable() else ""
     key, values = f"feedback.{said.get('key')}", said.get("values")
     if key in texts and isinstance(values, dict):
-        # What does not fit the sentence, as that of another version, is said in English.
+        # Values that do not fit the sentence: say it in English.
         with contextlib.suppress(KeyError, ValueError, TypeError):
             return texts.say(key, **{name: _value(texts, value) for name, value in values.items()})
     text = said.get("text")

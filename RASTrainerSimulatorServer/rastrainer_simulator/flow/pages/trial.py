@@ -60,7 +60,7 @@ def look_at_match(training: TrainingState, scenario: Scenario) -> Future[MatchRe
 
 
 def match_report(training: TrainingState, scenario: Scenario) -> MatchReport:
-    """Return what is shown of the match of a trial's trace."""
+    """Return the figures of the match of a trial's trace."""
     answer = {"task": training.task, "method": training.method.value, **given(training)}
     registered = register_trial(GivenPoints.of_answer(answer), scenario)
     match, error = registered.match, registered.target_errors[RIGID]
@@ -76,7 +76,7 @@ def match_report(training: TrainingState, scenario: Scenario) -> MatchReport:
 
 
 class MatchPage(SessionPage):
-    """Shows what is known of a match; the trial is registered only when it is accepted."""
+    """Shows the figures of a match; the trial is registered only when it is accepted."""
 
     name = "match"
     # A double press must not accept a match that was not read.

@@ -101,7 +101,7 @@ class ReplayPage(SessionPage):
     """Waits for the recorded trial, and replays it for the operator.
 
     Attributes:
-        playback: what is played; None while it is being loaded.
+        playback: None while the trial is being loaded.
     """
 
     name = "replay"
@@ -147,7 +147,7 @@ class ReplayPage(SessionPage):
         return True
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """Process what has no function in menus: the worst touch, and the camera as in a trial."""
+        """Process inputs without a function in menus: the worst touch, and the camera."""
         bindings = self.session.bindings
         if self._player is None or bindings.control(device, name, ControlContext.MENU) is not None:
             return False

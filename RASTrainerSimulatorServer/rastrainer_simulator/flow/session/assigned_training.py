@@ -15,7 +15,7 @@ MAX_TRAINEES = 1000
 """Trainees whose steps and curricula are remembered; the oldest is forgotten first."""
 
 PLAYED, ANSWERED = "played", "answered"
-"""In place of a step's kind: it was done here, and Slicer will send what comes next."""
+"""In place of a step's kind: the step is done here, and Slicer will send the next."""
 
 
 class StudySteps:

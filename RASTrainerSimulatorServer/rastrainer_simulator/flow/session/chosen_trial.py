@@ -1,4 +1,4 @@
-"""A trial as the study requires or the trainee has chosen it, and what has to come before it."""
+"""A trial as the study requires or the trainee has chosen it, and what it waits for."""
 
 from __future__ import annotations
 
@@ -69,9 +69,9 @@ def guidance_of(session: TrainingSession) -> Guidance:
 
 
 def begin_ghost(session: TrainingSession, head_to_world: np.ndarray) -> None:
-    """Begin to load the ghost of the present trial; in a study only where its protocol has one.
+    """Begin to load the ghost of the present trial; in a study only if its protocol has one.
 
-    HeadToWorld is that of the trial, (4, 4) float, mm.
+    HeadToWorld of the trial is (4, 4) float, mm.
     """
     training, step = session.training, session.trial_step
     choice = session.preferences.ghost if step is None else step.ghost

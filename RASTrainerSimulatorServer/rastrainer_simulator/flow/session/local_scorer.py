@@ -1,8 +1,8 @@
 """The simulator's own registration and score of a trial where no Slicer is connected.
 
 It is computed as Slicer computes it and submitted as Slicer submits it: the registration first,
-which makes it final; then the truth is known; then the score. Whoever registers the trial later
-finds the same registration, or is refused.
+which makes it final; then the truth is known; then the score. A client that registers the
+trial later finds the same registration, or is refused.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ class _Job(NamedTuple):
 
 
 def _job(training: TrainingState, is_in_study: bool) -> _Job | None:
-    """Return what has to be done for a trial, or None if nothing is to be done here."""
+    """Return the job for a trial, or None if there is nothing to do."""
     procedure = training.procedure
     if training.phase is Phase.REGISTERED and not is_in_study:
         return _Job(training.trial_id, training.phase, 0)
@@ -200,7 +200,7 @@ def _asked(ask: Ask, command: str, arguments: Mapping[str, Any]) -> Mapping[str,
 
 
 def _with_progress(analysis: TrialAnalysis, earlier: Sequence[PastTrial]) -> TrialAnalysis:
-    """Return the analysis of a scored trial with its place after the trainee's earlier ones."""
+    """Return the analysis of a scored trial with the trainee's progress."""
     record, score = analysis.record, analysis.score
     if score is None or record.task == TRIAL_RUN:
         return analysis

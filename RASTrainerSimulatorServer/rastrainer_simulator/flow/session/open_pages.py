@@ -24,7 +24,7 @@ _MOVES = {ControlName.UP: -1, ControlName.DOWN: 1}
 
 @dataclass(frozen=True)
 class PageRow:
-    """One line of a page, and what it does.
+    """A line of a page with its actions.
 
     Attributes:
         item: as views show it.
@@ -41,7 +41,7 @@ class PageRow:
 
 @dataclass(frozen=True)
 class PageContent:
-    """What a page shows, in the order of `Menu`."""
+    """The content of a page, in the order of `Menu`."""
 
     title: str
     paragraphs: Sequence[str] = ()
@@ -52,7 +52,7 @@ class PageContent:
 
 
 class Page:
-    """What is shown, and what its rows do.
+    """A page of text, facts and rows.
 
     Attributes:
         name: of the menu.

@@ -72,7 +72,7 @@ class SimulationReload:
         return is_ours or self._control_loop.is_being_replaced
 
     def request(self, present: SimulationSettings, wanted: SimulationSettings) -> None:
-        """Continue with settings other than the present ones, once they have stayed unchanged."""
+        """Continue with other settings, once they have stayed unchanged for a while."""
         is_needed = wanted != present or self._answer is not None
         self._wanted = wanted if is_needed else None
         self._begins_in_s = SET_UP_AFTER_S

@@ -1,4 +1,4 @@
-"""What all pages share: who trains, what is chosen, and what the simulator can do for them."""
+"""The state that all pages share: the trainee, the choices, and the simulator's services."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ from rastrainer_simulator.viewpoint.view_control import Orbit
 REACHED_S = 20.0
 """How long a reached assignment is shown: it comes while the result is read."""
 TUTORIAL_VIEW = Orbit(zoom=1.7)
-"""From farther away than a trial: the tip is seen where it starts, above the head."""
+"""Farther away than in a trial: the tip starts above the head and must be visible."""
 
 
 class TrainingSession:
@@ -136,7 +136,7 @@ class TrainingSession:
 
     @property
     def step(self) -> StudyStep | None:
-        """What a study asks of the trainee next; None if there is no study."""
+        """The next step of the trainee's study; None without a study."""
         return self.study.step_of(self.trainee_id)
 
     @property
@@ -186,7 +186,7 @@ class TrainingSession:
 
     @property
     def next_assignment(self) -> AssignmentMessage | None:
-        """The assignment to practice next; None where no open one is left, or no curriculum."""
+        """The assignment to practice next; None if all are reached, or without a curriculum."""
         curriculum = self.curriculum
         return None if curriculum is None else curriculum.find(curriculum.next)
 

@@ -23,7 +23,7 @@ from rastrainer_simulator.trial_state import TraceState
 from rastrainer_simulator.vectors import Vector, add, in_meters, scale, subtract, unit, vector
 
 LOOK_S = 0.25
-"""Between two searches; one takes about 10 ms."""
+"""Time between two searches; a search takes about 10 ms."""
 EYE_M = 0.45
 """Distance of the viewpoint from the next place."""
 
@@ -82,14 +82,14 @@ class TracePlaces:
         return TraceGuidance(COVERED_MM, self._place)
 
     def in_world(self) -> Vector | None:
-        """Return the next place in World, m; None where there is none."""
+        """Return the next place in World, m; None if there is none."""
         if self._trial is None or self._place is None:
             return None
         place = self._trial[2].in_world(np.array(self._place.position))
         return in_meters(place)
 
     def eye(self, camera: Camera) -> Vector | None:
-        """Return from where the next place is seen well, World, m; None where there is none.
+        """Return a viewpoint on the next place, World, m; None if there is no next place.
 
         It is between the skin's normal, along which the tool hides the tip, and the camera.
         """

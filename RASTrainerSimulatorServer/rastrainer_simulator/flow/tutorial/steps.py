@@ -1,4 +1,4 @@
-"""The steps of the tutorial: one control each, and what has to happen for a step to be done."""
+"""The steps of the tutorial, each about one control, and how much of a step is done."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ OF_PRACTICE = (TutorialStep.AGAIN,)
 
 
 def steps_for(device: SourceKind, mode: str) -> tuple[TutorialStep, ...]:
-    """Return the steps for what is held, in the display mode of that name, in order.
+    """Return the steps for a device in a display mode, in order.
 
     In a headset the trainee looks around by turning the head, and only the controllers' sticks
     follow the eyes.
@@ -105,8 +105,8 @@ class StepMeasure:
 
     Attributes:
         goal: 1 for a condition.
-        done: returns the amount after an observation; it is given the amount before, the first
-            observation of the step, the one before and the newest.
+        done: returns the amount after an observation; it is given the amount before, and the first,
+            the previous and the newest observation of the step.
     """
 
     goal: float

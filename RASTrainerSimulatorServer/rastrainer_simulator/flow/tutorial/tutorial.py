@@ -119,7 +119,7 @@ class TouchPractice:
     def shown(self, state: SimulationState) -> SimulationState:
         """Return a state of the simulation as the views show it; called in any thread."""
         training, goal = self._shown
-        # What stops the arm is not in the state; that it is stopped is.
+        # The state says that the arm is stopped, but not by which obstacle.
         obstacle = state.touch.value if state.touch is TouchStage.ARM else ""
         stage = touch_stage(
             _moment(state), state.proximity, obstacle, training, goal, self._of_trials
@@ -131,7 +131,7 @@ class TouchPractice:
         return replace(state, training=training, touch=stage)
 
     def off_center_mm(self, state: SimulationState) -> float | None:
-        """Return how far from the next point a tip is on the skin beside its center, else None."""
+        """Return how far from a point's center the tip is on the skin, mm; None elsewhere."""
         goal, tip = self._training.goal, _tip(state)
         if goal is None or state.tip_clearance > self._settings.skin_tolerance:
             return None
@@ -216,7 +216,7 @@ class Tutorial:
 
     @property
     def practice(self) -> TouchPractice:
-        """The touches: one to begin with, then the guided ones at other points."""
+        """The present practice: first a single point, then the guided points."""
         is_guided = self.step in (TutorialStep.GUIDED, *OF_PRACTICE, None)
         return self._guided if is_guided else self._first
 
