@@ -99,7 +99,7 @@ def _simulated(arguments: argparse.Namespace, scenario: Scenario, notes: list[st
     notes.append(
         f"Simulated: skin shift {arguments.skin_shift:g} mm RMS, indentation "
         f"{arguments.indentation:g} mm; error of a point, mm: "
-        + ", ".join(f"{method.value} {PUBLISHED_NOISE[method].point_mm:g}" for method in possible)
+        + ", ".join(f"{method.value} {PUBLISHED_NOISE[method]:g}" for method in possible)
         + "."
     )
     seeds = range(arguments.seed, arguments.seed + arguments.trials)

@@ -13,9 +13,9 @@ from rastrainer_simulator.vectors import (
     Vector,
     add,
     angle,
-    carried_along,
     cross,
     length,
+    parallel_transport,
     reject,
     rotated,
     scale,
@@ -184,7 +184,7 @@ class ToolSteering:
         if self._settings.choice is not ToolDirection.POSE:
             return None
         before, held = self._frame or (direction, across)
-        self._frame = (wanted, carried_along(held, before, wanted))
+        self._frame = (wanted, parallel_transport(held, before, wanted))
         return self._frame[1]
 
     def turn_to(self, direction: Vector, goal: Vector, dt: float) -> Vector:

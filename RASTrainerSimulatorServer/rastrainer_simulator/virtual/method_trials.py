@@ -35,7 +35,7 @@ from rastrainer.registration.warnings import RegistrationWarning
 from rastrainer.scenario.scenario import Scenario, task_by_method
 from rastrainer.trial.score_reference import region_of
 from rastrainer.trial.touch_registration import LEAST_ALONG_SURFACE, GivenPoints, normals_at
-from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE, MethodNoise, RangeCamera
+from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE, RangeCamera
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,7 +185,7 @@ class MethodStudy:
     task: str
     shift_mm: float = 0.0
     indentation_mm: float = 0.0
-    noise: Mapping[RegistrationMethod, MethodNoise] = field(default_factory=lambda: PUBLISHED_NOISE)
+    noise: Mapping[RegistrationMethod, float] = field(default_factory=lambda: PUBLISHED_NOISE)
     starts: int = STARTS
 
     @cached_property
@@ -228,7 +228,7 @@ class MethodStudy:
         """The range camera, where the close-up view is."""
         to_head = transforms.inverse(self.scenario.head_to_world)
         eye = transforms.apply(to_head, self.scenario.cameras["close-up"].position)
-        return RangeCamera(eye, self.noise[RegistrationMethod.SCAN].point_mm)
+        return RangeCamera(eye, self.noise[RegistrationMethod.SCAN])
 
     @cached_property
     def seen(self) -> np.ndarray:
@@ -293,10 +293,10 @@ class MethodStudy:
         rows = random.choice(self.reached, TRACE_POINTS)
         normals = self.mesh.vertex_normals[rows]
         drawn = shift.touched(self.mesh.vertices[rows], normals, self.mesh)
-        noise = random.normal(0.0, self.noise[method].point_mm, (len(rows), 1))
+        noise = random.normal(0.0, self.noise[method], (len(rows), 1))
         return MethodPoints(method, touched, fixed, None, drawn + noise * normals + tip)
 
     def _found(
         self, points: np.ndarray, method: RegistrationMethod, random: Generator
     ) -> np.ndarray:
-        return points + random.normal(0.0, self.noise[method].point_mm / np.sqrt(3), points.shape)
+        return points + random.normal(0.0, self.noise[method] / np.sqrt(3), points.shape)
