@@ -20,17 +20,8 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.tidy_csv import csv_text
 from rastrainer.trial.touch_registration import GivenPoints
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli.options import (
-    JSON,
-    Command,
-    json_text,
-    number,
-    option,
-    output,
-    path,
-    study,
-    text_table,
-)
+from rastrainer_simulator.cli import arg
+from rastrainer_simulator.cli.options import Command, json_text, text_table
 from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE
 from rastrainer_simulator.virtual.method_trials import (
     MethodResult,
@@ -206,20 +197,20 @@ COMMANDS = (
         "register the same trials by every method and compare residual, expected and true TRE",
         run,
         (
-            study(nargs="?"),
-            path("--scenario", "DIR", "default: Colin27"),
-            option("--task", help="of simulated trials; default: the scenario's last one"),
-            number("--trials", 20, "number of simulated trials"),
-            number("--seed", 0, "of the first"),
-            number(
+            arg.study(nargs="?"),
+            arg.path("--scenario", "DIR", "default: Colin27"),
+            arg.option("--task", help="of simulated trials; default: the scenario's last one"),
+            arg.number("--trials", 20, "number of simulated trials"),
+            arg.number("--seed", 0, "of the first"),
+            arg.number(
                 "--skin-shift",
                 0.0,
                 "between imaging and operation, RMS; default: none",
                 metavar="MM",
             ),
-            number("--indentation", 0.0, "of the skin under the tip", metavar="MM"),
-            output("write CSV, JSON, text and a picture"),
-            JSON,
+            arg.number("--indentation", 0.0, "of the skin under the tip", metavar="MM"),
+            arg.output("write CSV, arg.JSON, text and a picture"),
+            arg.JSON,
         ),
         "Without STUDY, trials are simulated on the scenario, with the noise of "
         "docs/registration-methods.md. With it, its played trials are registered by every method "

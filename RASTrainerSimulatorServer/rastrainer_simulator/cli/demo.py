@@ -15,7 +15,7 @@ import json
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -34,7 +34,8 @@ from rastrainer.trial.ctps import CTPS_WARNING
 from rastrainer.trial.procedure_outcome import procedure_outcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli.options import Command, number, path
+from rastrainer_simulator.cli import arg
+from rastrainer_simulator.cli.options import Command
 from rastrainer_simulator.core.setup import DEFAULT_SCENARIO
 
 TASKS = (TRIAL_RUN, "task-1")
@@ -78,7 +79,8 @@ def play_demo(output: Path, seed: int, speed: float) -> None:
     for trial in trials:
         print("\n" + trial_summary(trial, scenario.task(trial["task"]).title))
     print("\n" + procedure_summary(record, scenario, head_to_world))
-    print(f"\nWritten to {output} in {time.monotonic() - started:.0f} s: {_listing(output)}.")
+    written = ", ".join(sorted(path.name for path in output.iterdir()))
+    print(f"\nWritten to {output} in {time.monotonic() - started:.0f} s: {written}.")
 
 
 def check_slicers_side() -> None:
@@ -148,6 +150,9 @@ def _play(
     """Play the tasks; return the states at their last touches, and the record with a procedure."""
     from rastrainer_simulator.virtual.scripted_trial import play_procedure, play_trial, send_hello
 
+    def tell(done: str) -> None:
+        print(f"  {done}", flush=True)
+
     states, records = [], []
     with Client(DEFAULT_HOST, port) as client:
         send_hello(client, "scripted trainee")
@@ -164,12 +169,8 @@ def _play(
             states.append(trial.last_state)
             if procedure:
                 print(scenario.procedure(procedure).title, flush=True)
-                records.append(play_procedure(client, scenario, trial.trial_id, _tell))
+                records.append(play_procedure(client, scenario, trial.trial_id, tell))
     return states, records[-1]
-
-
-def _tell(done: str) -> None:
-    print(f"  {done}", flush=True)
 
 
 class _Bar:
@@ -250,18 +251,16 @@ def _write_points(output: Path, scenario: Scenario, record: TrialRecord) -> None
         write_text(output / name, "\n".join(["label,x,y,z", *rows, ""]))
 
 
-def _listing(folder: Path) -> str:
-    return ", ".join(sorted(path.name for path in folder.iterdir()))
-
-
 def trial_summary(trial: Mapping[str, Any], title: str) -> str:
     """Return a summary of one trial for people; `trial` is a line of results.jsonl."""
     truth, target = trial["truth"], trial["target"]["name"]
-    rigid = trial["fits"]["rigid"]
+    rigid, score, ctps = trial["fits"]["rigid"], trial["score"], trial["ctps"]
+    quick, exact = score["time_desirability"], score["accuracy_desirability"]
     low, high = rigid["tre_interval_mm"]
     where = (
         "below" if truth["true_tre_mm"] < low else "above" if truth["true_tre_mm"] > high else "in"
     )
+    longest = max(rigid["residuals_mm"])
     undone, refused = trial["undone_touches"], trial["rejected_touches"]
     lines = [
         f"{title}, {trial['trainee']}, {trial['mode']}",
@@ -275,9 +274,15 @@ def trial_summary(trial: Mapping[str, Any], title: str) -> str:
         ),
         f"    {INTERVAL_NOTE}",
         _line(f"True TRE, {target}", truth["true_tre_mm"], f"mm, {where} that interval"),
-        *_scores(trial["score"], trial["ctps"]),
+        _line("Score", score["score"], f"of 100: time {quick:.2f}, accuracy {exact:.2f}"),
+        _line("CTPS as in the paper's tables", ctps["published"], "against the paper's cohort"),
+        _line("CTPS by the paper's equation 3", ctps["equation_3"], "half of it"),
+        f"    {CTPS_WARNING}",
         "  Residual of each fiducial, rigid (mm)",
-        *_residuals(trial["labels"], rigid["residuals_mm"]),
+        *(
+            f"    {label:>3}  {residual:5.2f}  {'▇' * max(1, round(20 * residual / longest))}"
+            for label, residual in zip(trial["labels"], rigid["residuals_mm"], strict=True)
+        ),
     ]
     lines += [f"  Warning: {warning['message']}" for warning in rigid["warnings"]]
     return "\n".join(lines)
@@ -309,32 +314,15 @@ def _line(name: str, value: float, unit_and_remark: str) -> str:
     return f"  {name:<34} {value:8.2f} {unit_and_remark}"
 
 
-def _scores(score: Mapping[str, Any], ctps: Mapping[str, Any]) -> list[str]:
-    time, accuracy = score["time_desirability"], score["accuracy_desirability"]
-    return [
-        _line("Score", score["score"], f"of 100: time {time:.2f}, accuracy {accuracy:.2f}"),
-        _line("CTPS as in the paper's tables", ctps["published"], "against the paper's cohort"),
-        _line("CTPS by the paper's equation 3", ctps["equation_3"], "half of it"),
-        f"    {CTPS_WARNING}",
-    ]
-
-
-def _residuals(labels: Sequence[str], residuals_mm: Sequence[float]) -> list[str]:
-    longest = max(residuals_mm)
-    bars = ["▇" * max(1, round(20 * residual / longest)) for residual in residuals_mm]
-    rows = zip(labels, residuals_mm, bars, strict=True)
-    return [f"    {label:>3}  {residual:5.2f}  {bar}" for label, residual, bar in rows]
-
-
 COMMANDS = (
     Command(
         "demo",
         "play two trials with a virtual trainee and show the results",
         run,
         (
-            path("--output", "DIR", "folder to write into", default=Path("rastrainer-demo")),
-            number("--seed", 2026, "of the trainee and the head's pose"),
-            number("--speed", 10.0, "simulated seconds a second"),
+            arg.path("--output", "DIR", "folder to write into", default=Path("rastrainer-demo")),
+            arg.number("--seed", 2026, "of the trainee and the head's pose"),
+            arg.number("--speed", 10.0, "simulated seconds a second"),
         ),
     ),
 )

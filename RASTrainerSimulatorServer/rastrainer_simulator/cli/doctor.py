@@ -20,7 +20,8 @@ from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DEFAULT_VIEW_PORT
 from rastrainer.python_environment import python_command
 from rastrainer_simulator.assets import page_folder
-from rastrainer_simulator.cli.options import RECORDS, Command, flag, number, path
+from rastrainer_simulator.cli import arg
+from rastrainer_simulator.cli.options import Command
 from rastrainer_simulator.input.gamepads import NoGamepadsError, start_sdl
 from rastrainer_simulator.net.listener import listening_socket
 from rastrainer_simulator.ops.processes import has_display
@@ -250,11 +251,11 @@ COMMANDS = (
         "check this computer, and suggest remedies for problems",
         run,
         (
-            number("--port", DEFAULT_PORT, "of OpenIGTLink"),
-            number("--view-port", DEFAULT_VIEW_PORT, "of the views"),
-            RECORDS,
-            path("--config", "DIR", "of your settings"),
-            flag("--json", "print the findings as JSON"),
+            arg.number("--port", DEFAULT_PORT, "of OpenIGTLink"),
+            arg.number("--view-port", DEFAULT_VIEW_PORT, "of the views"),
+            arg.RECORDS,
+            arg.path("--config", "DIR", "of your settings"),
+            arg.flag("--json", "print the findings as JSON"),
         ),
         "Exit status: 0 without problems (warnings leave something out), 1 with one.",
     ),

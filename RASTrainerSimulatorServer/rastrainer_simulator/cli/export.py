@@ -24,16 +24,8 @@ from rastrainer.study.tidy_csv import (
     touches_csv,
     trials_csv,
 )
-from rastrainer_simulator.cli.options import (
-    CONFIG,
-    INCOMPLETE,
-    Command,
-    option,
-    output,
-    path,
-    read_known_study,
-    study,
-)
+from rastrainer_simulator.cli import arg
+from rastrainer_simulator.cli.options import Command, read_known_study
 from rastrainer_simulator.export.trial_files import write_motion_bids, write_slicer_files
 from rastrainer_simulator.export.xapi import HOME_PAGE, statements_text
 from rastrainer_simulator.net.record_store import home_page_url, read_record_store_settings
@@ -106,19 +98,19 @@ COMMANDS = (
         "export a study: tidy CSV, Motion-BIDS, xAPI, Slicer's files",
         run,
         (
-            study(),
-            output("an empty folder", required=True),
-            option(
+            arg.study(),
+            arg.output("an empty folder", required=True),
+            arg.option(
                 "--format", action="append", choices=FORMATS, help="may be repeated; default: all"
             ),
-            path("--records", "DIR", "the simulator's journals, for Motion-BIDS"),
-            option(
+            arg.path("--records", "DIR", "the simulator's journals, for Motion-BIDS"),
+            arg.option(
                 "--home-page",
                 metavar="URL",
                 help=f"of the lab's system, for xAPI (default: as set, or {HOME_PAGE})",
             ),
-            CONFIG,
-            INCOMPLETE,
+            arg.CONFIG,
+            arg.INCOMPLETE,
         ),
         "Write a study into an empty folder, a folder a format. Trainees appear by their "
         "pseudonyms, and only those who consented to research.",

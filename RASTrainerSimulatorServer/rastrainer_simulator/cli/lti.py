@@ -12,16 +12,8 @@ from typing import TYPE_CHECKING
 from rastrainer.errors import InputError
 from rastrainer.files.reading import failure_reason, printable_name
 from rastrainer.protocol import DEFAULT_HOST
-from rastrainer_simulator.cli.options import (
-    CONFIG,
-    Command,
-    announce,
-    check_ports,
-    flag,
-    number,
-    path,
-    study,
-)
+from rastrainer_simulator.cli import arg
+from rastrainer_simulator.cli.options import Command, announce, check_ports
 
 if TYPE_CHECKING:
     from rastrainer_simulator.lti.settings import LtiSettings, ToolKey
@@ -114,20 +106,20 @@ COMMANDS = (
         "let a course of a learning platform launch RASTrainer, and return grades (LTI 1.3)",
         run,
         (
-            study(nargs="?"),
-            flag("--show", "print what the platform's administrator enters"),
-            number("--port", DEFAULT_LTI_PORT, "to listen on, 0 for any free one"),
-            flag(
+            arg.study(nargs="?"),
+            arg.flag("--show", "print what the platform's administrator enters"),
+            arg.number("--port", DEFAULT_LTI_PORT, "to listen on, 0 for any free one"),
+            arg.flag(
                 "--lan",
                 "listen in the network, by TLS (default: on this computer only, for a reverse "
                 "proxy)",
             ),
-            path(
+            arg.path(
                 "--certificate",
                 "FILE",
                 "PEM with private key and chain, for --lan (default: one made on this computer)",
             ),
-            CONFIG,
+            arg.CONFIG,
         ),
         "Serves launches by LTI 1.3 until Ctrl-C: a learner of a course becomes a trainee of the "
         "study, under a pseudonym, and their scores become grades of the course. Nothing but these "

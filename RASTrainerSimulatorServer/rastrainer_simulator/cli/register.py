@@ -25,15 +25,8 @@ from rastrainer.registration.registration import Registration, register
 from rastrainer.registration.surface_error import knowledge_of, surface_target_error
 from rastrainer.registration.surface_match import SurfaceMatch, match_surface
 from rastrainer.registration.target_error import INTERVAL_NOTE, TargetError, target_error
-from rastrainer_simulator.cli.options import (
-    JSON,
-    Command,
-    json_text,
-    one_of,
-    option,
-    path,
-    text_table,
-)
+from rastrainer_simulator.cli import arg
+from rastrainer_simulator.cli.options import Command, json_text, text_table
 
 FRE_NOTE = (
     "FRE is the error at the fiducials; it does not predict the error at a target in a single case."
@@ -108,7 +101,7 @@ def register_files(
 def registration_json(
     registration: Registration, error: TargetError | None, stated: StatedErrors | None = None
 ) -> dict[str, Any]:
-    """Return a registration as a JSON object; `expected_tre` is None if it is unknown."""
+    """Return a registration as a arg.JSON object; `expected_tre` is None if it is unknown."""
     weights = registration.weights
     return {
         "type": registration.kind,
@@ -235,7 +228,7 @@ def match_files(
 
 
 def match_json(match: SurfaceMatch, error: TargetError) -> dict[str, Any]:
-    """Return a match as a JSON object."""
+    """Return a match as a arg.JSON object."""
     return {
         "type": "surface",
         "matrix": match.matrix.tolist(),
@@ -283,10 +276,10 @@ COMMANDS = (
         "register moving points to fixed points",
         run,
         (
-            option("moving", metavar="MOVING", help="the points to be mapped"),
-            option("fixed", metavar="FIXED", help="the points to map them to"),
-            option("--type", choices=KINDS, default=RIGID, help="of the transform"),
-            option(
+            arg.option("moving", metavar="MOVING", help="the points to be mapped"),
+            arg.option("fixed", metavar="FIXED", help="the points to map them to"),
+            arg.option("--type", choices=KINDS, default=RIGID, help="of the transform"),
+            arg.option(
                 "--target",
                 nargs=3,
                 type=float,
@@ -294,15 +287,15 @@ COMMANDS = (
                 help="point in the fixed space (mm) whose error is estimated; default: the "
                 "centroid",
             ),
-            one_of(
-                option(
+            arg.one_of(
+                arg.option(
                     "--fle",
                     metavar="FILE.csv",
                     help="weight each point by 1/FLE² (rigid only): a CSV file with the header "
                     "label,fle, the RMS localization error of each point in mm; may be MOVING "
                     "itself with that column",
                 ),
-                option(
+                arg.option(
                     "--weights",
                     metavar="FILE.csv",
                     help="weight the points (rigid only): a CSV file with the header label,weight; "
@@ -310,13 +303,13 @@ COMMANDS = (
                     "residuals",
                 ),
             ),
-            option(
+            arg.option(
                 "--surface",
                 metavar="TRACE",
                 help="points drawn over the skin, in the frame of MOVING: CSV, .mrk.json or .ply",
             ),
-            path("--head", "HEAD.ply", "the head's mesh for --surface, RAS mm"),
-            JSON,
+            arg.path("--head", "HEAD.ply", "the head's mesh for --surface, RAS mm"),
+            arg.JSON,
         ),
         "Register two files of points: CSV with the header label,x,y,z (mm), or Slicer's "
         ".mrk.json, .fcsv or exported table. Points are paired by label, or by order where the "

@@ -17,7 +17,8 @@ from rastrainer.json_checks import accepted
 from rastrainer.number_text import counted
 from rastrainer.study.database.database import path_beside_study
 from rastrainer.study.study_data import read_study_data
-from rastrainer_simulator.cli.options import Command, option, path, study
+from rastrainer_simulator.cli import arg
+from rastrainer_simulator.cli.options import Command
 from rastrainer_simulator.export.xapi import statements
 from rastrainer_simulator.net.record_store import (
     BATCH,
@@ -183,21 +184,21 @@ COMMANDS = (
         "send a study's trials to a learning record store (xAPI)",
         run,
         (
-            study(),
-            option("--store", metavar="URL", help="of its xAPI endpoint (default: as set)"),
-            option(
+            arg.study(),
+            arg.option("--store", metavar="URL", help="of its xAPI endpoint (default: as set)"),
+            arg.option(
                 "--home-page",
                 metavar="URL",
                 help="of the lab's system; it makes pseudonyms and tasks unique (default: as set)",
             ),
-            path("--credentials", "FILE", "that only you can read"),
-            option(
+            arg.path("--credentials", "FILE", "that only you can read"),
+            arg.option(
                 "--watch",
                 type=float,
                 metavar="S",
                 help="keep sending new trials, looking for them every S seconds, until Ctrl-C",
             ),
-            path(
+            arg.path(
                 "--config",
                 "DIR",
                 f"folder of your settings, in which {RECORD_STORE_FILE} may set the others",

@@ -12,19 +12,8 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DEFAULT_VIEW_PORT
-from rastrainer_simulator.cli.options import (
-    CONFIG,
-    RECORDS,
-    Command,
-    announce,
-    check_ports,
-    flag,
-    number,
-    option,
-    path,
-    path_of_user,
-    switch,
-)
+from rastrainer_simulator.cli import arg
+from rastrainer_simulator.cli.options import Command, announce, check_ports
 from rastrainer_simulator.ops.log_files import keep_logs
 from rastrainer_simulator.ops.processes import VIEW_KEY_VARIABLE, has_display
 from rastrainer_simulator.ops.system_paths import log_folder
@@ -146,45 +135,49 @@ COMMANDS = (
         "run the simulator, which Slicer and the views connect to",
         run_simulator,
         (
-            option("--host", default=DEFAULT_HOST, help="address to listen on"),
-            number("--port", DEFAULT_PORT, "port to listen on, 0 for any free one"),
-            option("--connect", metavar="HOST:PORT", help="connect to a listening Slicer instead"),
-            option(
+            arg.option("--host", default=DEFAULT_HOST, help="address to listen on"),
+            arg.number("--port", DEFAULT_PORT, "port to listen on, 0 for any free one"),
+            arg.option(
+                "--connect", metavar="HOST:PORT", help="connect to a listening Slicer instead"
+            ),
+            arg.option(
                 "--view-port",
                 type=int,
                 help="port for the desktop window and the browser, 0 for any free one (default: "
                 f"{DEFAULT_VIEW_PORT}, or any free one where that is taken)",
             ),
-            flag(
+            arg.flag(
                 "--lan",
                 "serve browsers and headsets in the local network, too, by https with a "
                 "certificate made on this computer",
             ),
-            flag("--no-views", "serve OpenIGTLink only, no window and no browser"),
-            number("--speed", 1.0, "simulated seconds a second"),
-            option(
+            arg.flag("--no-views", "serve OpenIGTLink only, no window and no browser"),
+            arg.number("--speed", 1.0, "simulated seconds a second"),
+            arg.option(
                 "--seed",
                 type=int,
                 help="of the heads' poses, for tests: no study counts such trials (default: none; "
                 "the poses cannot be predicted)",
             ),
-            RECORDS,
-            path("--scenario", "DIR", "a scenario of your own (default: Colin27)"),
-            path("--robot-meshes", "DIR", "the robot's official meshes"),
-            flag("--desktop", "open the trainee's window; the simulator ends when it is closed"),
-            switch("--gamepad", "read the gamepads of this computer"),
-            CONFIG,
-            switch(
+            arg.RECORDS,
+            arg.path("--scenario", "DIR", "a scenario of your own (default: Colin27)"),
+            arg.path("--robot-meshes", "DIR", "the robot's official meshes"),
+            arg.flag(
+                "--desktop", "open the trainee's window; the simulator ends when it is closed"
+            ),
+            arg.switch("--gamepad", "read the gamepads of this computer"),
+            arg.CONFIG,
+            arg.switch(
                 "--resume",
                 "resume the newest trial where it was interrupted; it is paused until it is "
                 "resumed or aborted",
             ),
-            switch(
+            arg.switch(
                 "--own-score",
                 "score a trial outside of a study in the simulator where no Slicer is connected "
                 "when it ends",
             ),
-            path(
+            arg.path(
                 "--log-folder",
                 "DIR",
                 "folder of the logs (default: the usual, or logs in that of --config)",
@@ -197,36 +190,36 @@ COMMANDS = (
         "open the desktop window of a running simulator",
         run_window,
         (
-            option(
+            arg.option(
                 "--connect",
                 metavar="URL",
                 default=DEFAULT_URL,
                 help="where the simulator serves views",
             ),
-            option("--code", help="the pairing code that the simulator shows"),
-            option("--size", metavar="WxH", help="of the window, in pixels"),
-            flag("--fullscreen", "fill the display"),
-            option(
+            arg.option("--code", help="the pairing code that the simulator shows"),
+            arg.option("--size", metavar="WxH", help="of the window, in pixels"),
+            arg.flag("--fullscreen", "fill the display"),
+            arg.option(
                 "--quality",
                 choices=("auto", "high", "medium", "low"),
                 default="auto",
                 help="light and shadows (default: what the machine can afford)",
             ),
-            option(
+            arg.option(
                 "--pictures",
-                type=path_of_user,
+                type=arg.path_of_user,
                 metavar="DIR",
                 default="~/RASTrainer/pictures",
                 help="folder of the pictures that F12 keeps",
             ),
-            option(
+            arg.option(
                 "--picture-quality",
                 choices=("high", "medium", "low"),
                 default="high",
                 help="light and shadows of these pictures",
             ),
-            path("--log-folder", "DIR", "folder of the logs (default: the usual)"),
-            option("--frame-log", type=Path, help=argparse.SUPPRESS),
+            arg.path("--log-folder", "DIR", "folder of the logs (default: the usual)"),
+            arg.option("--frame-log", type=Path, help=argparse.SUPPRESS),
         ),
         "Shows the robot, the head and the menus of a simulator that is running, and sends it the "
         "user's input. F11: full screen; F12: save a picture. Not for clinical use.",
