@@ -209,7 +209,7 @@ COMMANDS = (
                 metavar="MM",
             ),
             arg.number("--indentation", 0.0, "of the skin under the tip", metavar="MM"),
-            arg.output("write CSV, arg.JSON, text and a picture"),
+            arg.output("write CSV, JSON, text and a picture"),
             arg.JSON,
         ),
         "Without STUDY, trials are simulated on the scenario, with the noise of "

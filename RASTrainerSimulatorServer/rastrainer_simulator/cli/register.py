@@ -101,7 +101,7 @@ def register_files(
 def registration_json(
     registration: Registration, error: TargetError | None, stated: StatedErrors | None = None
 ) -> dict[str, Any]:
-    """Return a registration as a arg.JSON object; `expected_tre` is None if it is unknown."""
+    """Return a registration as a JSON object; `expected_tre` is None if it is unknown."""
     weights = registration.weights
     return {
         "type": registration.kind,
@@ -228,7 +228,7 @@ def match_files(
 
 
 def match_json(match: SurfaceMatch, error: TargetError) -> dict[str, Any]:
-    """Return a match as a arg.JSON object."""
+    """Return a match as a JSON object."""
     return {
         "type": "surface",
         "matrix": match.matrix.tolist(),

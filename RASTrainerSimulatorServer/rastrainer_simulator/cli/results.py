@@ -36,7 +36,7 @@ def score(arguments: argparse.Namespace) -> int:
 
 
 def _scores_json(scores: CohortScores) -> dict[str, Any]:
-    """Return the scores of one mode as a arg.JSON object; undefined values are None."""
+    """Return the scores of one mode as a JSON object; undefined values are None."""
     names = ("overall", "equation_3_overall", "tasks", "subjects", "sd_population", "sd_sample")
     return {
         **{name: getattr(scores, name) for name in (*names, "pearson_r", "r_squared")},
