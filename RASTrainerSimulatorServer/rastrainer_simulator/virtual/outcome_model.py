@@ -215,7 +215,9 @@ def rejection_rates(
     drawn = [draw_outcomes(model, trainees, modes, random, orders) for _ in range(studies)]
     times, errors = (np.array(values) for values in zip(*drawn, strict=True))
     outcomes = (times, errors, model_scores(model, times, errors))
-    delays = _delays(trainees, modes, orders)
+    periods = [float(own.index(modes[1]) - own.index(modes[0])) for own in orders or [modes]]
+    # By how many periods each trainee does the second mode later.
+    delays = np.array(periods) if is_separable(np.array(periods)) else None
     fits, differences = [], []
     for values in outcomes:
         own = np.diff(values.mean(axis=-1))[..., 0]
@@ -248,12 +250,3 @@ def rejection_rates(
             )
         )
     return tuple(found)
-
-
-def _delays(
-    trainees: int, modes: Sequence[str], orders: Sequence[Sequence[str]] | None
-) -> np.ndarray | None:
-    """Return by how many periods each trainee does the second mode later; None if not separable."""
-    orders = orders or [tuple(modes)] * trainees
-    delays = np.array([float(own.index(modes[1]) - own.index(modes[0])) for own in orders])
-    return delays if is_separable(delays) else None

@@ -13,7 +13,7 @@ import numpy as np
 
 from rastrainer.command_arguments import check_arguments
 from rastrainer.errors import RASTrainerError
-from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.head.mesh import read_head_mesh
 from rastrainer.journal.folder import SUFFIX
 from rastrainer.journal.journal_file import file_stamp, iso
 from rastrainer.procedure.record import ProcedureRecord, UsedRegistration
@@ -110,7 +110,12 @@ def play_virtual_trial(
     }
 
     def step(action: Action | None, own: Mapping[str, Any] = NOTHING) -> StepResult:
-        before, operator_input = simulation.state, _input(action, own)
+        before, operator_input = simulation.state, HANDS_OFF
+        if action is not None:
+            name, arguments = action
+            # `own` are arguments that no client may send.
+            command = OperatorCommand(name, {**check_arguments(name, arguments), **own})
+            operator_input = OperatorInput(commands=(command,))
         result = simulation.step(dt, operator_input)
         if on_step is not None:
             on_step(simulation, before, operator_input, result)
@@ -135,16 +140,6 @@ def play_virtual_trial(
         fiducials_mm=task.fiducials,
         head_to_world=head_to_world,
         completion_time_s=touches[-1].elapsed,
-    )
-
-
-def _input(action: Action | None, own: Mapping[str, Any]) -> OperatorInput:
-    """Return an action as the operator's input; `own` are arguments that no client may send."""
-    if action is None:
-        return HANDS_OFF
-    name, arguments = action
-    return OperatorInput(
-        commands=(OperatorCommand(name, {**check_arguments(name, arguments), **own}),)
     )
 
 
@@ -302,10 +297,8 @@ def _write_journal(folder: Path, entries: list[dict[str, Any]], started: datetim
     partial.replace(folder / name)
 
 
-@functools.lru_cache(maxsize=1)
-def _skull(path: Path) -> HeadMesh:
-    """Return the skull of this process's scenario, which is read once."""
-    return read_head_mesh(path)
+_skull = functools.lru_cache(maxsize=1)(read_head_mesh)
+"""Returns the skull of this process's scenario, which is read once."""
 
 
 @functools.lru_cache(maxsize=1)

@@ -192,7 +192,9 @@ class ScriptedTrainee:
         remaining = self._path[0] - observation.tip_mm
         gave_up = is_aim and observation.sim_time_s > self._gives_up_at_s
         if is_aim:
-            is_there = observation.is_in_contact and self._is_over_aim(remaining)
+            # At any height over the aim.
+            beside_mm = np.linalg.norm(self._along_skin(remaining))
+            is_there = observation.is_in_contact and bool(beside_mm < self._skill.settled_mm)
             remaining = remaining - PRESS_MM * self._outward_at_aim
         else:
             is_there = bool(np.linalg.norm(remaining) < 8.0)
@@ -206,10 +208,6 @@ class ScriptedTrainee:
         # In contact the hand stops pushing: it only corrects along the skin.
         eases_off = is_aim and observation.is_in_contact
         return _jog(self._along_skin(velocity) if eases_off else velocity)
-
-    def _is_over_aim(self, remaining: np.ndarray) -> bool:
-        """Return whether the tip is close enough to the aim, at any height."""
-        return bool(np.linalg.norm(self._along_skin(remaining)) < self._skill.settled_mm)
 
     def _along_skin(self, displacement: np.ndarray) -> np.ndarray:
         return displacement - self._outward_at_aim * float(displacement @ self._outward_at_aim)

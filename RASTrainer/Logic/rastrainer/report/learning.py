@@ -83,7 +83,7 @@ def learning(data: StudyData) -> str:
             "Thin: each trainee. Thick: the means of all or, where getting better is shown, the "
             "curve that is fitted to them.",
         ),
-        *([page.table([HEADER], rows, "wide"), page.paragraph(WORDS, "small")] if rows else []),
+        *([page.table([HEADER], rows, "wide"), page.note(WORDS)] if rows else []),
         page.bullets(sentences),
         page.paragraph(_limits(data)),
     )

@@ -73,6 +73,14 @@ def paragraph(words: str, kind: str = "") -> str:
     return f"<p{attribute}>{_flowing(words)}</p>"
 
 
+def note(words: str) -> str:
+    return paragraph(words, "small")
+
+
+def warning(words: str) -> str:
+    return paragraph(words, "warning")
+
+
 def bullets(texts: Sequence[str]) -> str:
     return f"<ul>{''.join(f'<li>{_flowing(each)}</li>' for each in texts)}</ul>" if texts else ""
 

@@ -58,12 +58,11 @@ def started_trials(data: StudyData) -> str:
         parts.append(page.table([STARTED_HEADER], _started_rows(data, scored)))
         failed = sum(stored.record.counts_as_failed for stored in scored)
         parts.append(
-            page.paragraph(
+            page.note(
                 "Tasks of trainees who aborted none are left out of the table. An aborted trial "
                 f"with a touch ({failed} of {len(scored)}) counts as not passed in the pass mark's "
                 "LC-CUSUM; it has no score and no time for anything else here, so that what "
-                "follows is about the finished trials.",
-                "small",
+                "follows is about the finished trials."
             )
         )
     if runs:
@@ -73,16 +72,21 @@ def started_trials(data: StudyData) -> str:
                 "being registered, as is usual; none counts."
             )
         )
-    parts += [page.paragraph(sentence, "warning") for sentence in _missing(data)]
-    if repeats := _repeats(scored):
+    parts += [page.warning(sentence) for sentence in _missing(data)]
+    repeats = [
+        f"{stored.record.trainee}, {stored.step}, aborted with {len(stored.record.points)} points "
+        f"touched ({stored.record.reason}): {stored.repeat_reason}"
+        for stored in scored
+        if stored.repeat_reason
+    ]
+    if repeats:
         parts += [page.heading("Steps of the protocol that were repeated"), page.bullets(repeats)]
     silent = sum(not stored.repeat_reason for stored in scored)
     if data.protocol is not None and silent:
         parts.append(
-            page.paragraph(
+            page.note(
                 f"For {counted(silent, 'aborted trial')} no reason of a repeat is stored: the "
-                "step was not repeated, was skipped, or its repeat had arrived before.",
-                "small",
+                "step was not repeated, was skipped, or its repeat had arrived before."
             )
         )
     return page.section("Started trials", *parts)
@@ -135,15 +139,6 @@ def _counts(finished: int, early: int, late: int) -> list[str]:
     return [str(finished + early + late), str(finished), str(early), str(late)]
 
 
-def _repeats(aborted: list[StoredAbortedTrial]) -> list[str]:
-    return [
-        f"{stored.record.trainee}, {stored.step}, aborted with {len(stored.record.points)} points "
-        f"touched ({stored.record.reason}): {stored.repeat_reason}"
-        for stored in aborted
-        if stored.repeat_reason
-    ]
-
-
 HEADER = [
     *("mode", "trials", "passed", "trainees competent", "shown at trial (median)"),
     *("aborted trials among them", "without a score among them"),
@@ -156,7 +151,7 @@ def passing(data: StudyData) -> str:
         return ""
     mark = pass_mark_of(data.protocol, compared_method(data))
     if mark is None:
-        return page.section("Pass mark", page.paragraph(_no_mark(data), "warning"))
+        return page.section("Pass mark", page.warning(_no_mark(data)))
     found = {mode: _failures(data, mode, mark) for mode in data.modes}
     found = {mode: failures for mode, failures in found.items() if failures}
     competence = {
@@ -172,7 +167,7 @@ def passing(data: StudyData) -> str:
             [_chart(data, mode, charts) for mode, charts in competence.items()],
             "LC-CUSUM of every trainee; thick: the limit at which competence is shown.",
         ),
-        page.paragraph(_words(data, mark), "small"),
+        page.note(_words(data, mark)),
     )
 
 

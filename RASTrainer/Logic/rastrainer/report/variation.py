@@ -160,7 +160,7 @@ def _sources(found: StudyVariation, modes: list[str]) -> list[str]:
             page.Cell(share_text(found.lapses), span=2),
         ],
     ]
-    return [page.table([HEADER], rows, "wide"), page.paragraph(_words(found), "small")]
+    return [page.table([HEADER], rows, "wide"), page.note(_words(found))]
 
 
 def _view_biases(biases: dict[str, ViewBias]) -> list[str]:
@@ -174,7 +174,7 @@ def _view_biases(biases: dict[str, ViewBias]) -> list[str]:
     return [
         page.heading("Bias of the views"),
         page.table([BIAS_HEADER], rows),
-        page.paragraph(BIAS_WORDS, "small"),
+        page.note(BIAS_WORDS),
     ]
 
 
