@@ -44,7 +44,7 @@ def switch(name: str, help_text: str) -> Argument:
 
 
 def group(title: str, *options: Argument) -> Argument:
-    """Return options that the help shows below a title of their own."""
+    """Return options that the help shows below a title."""
 
     def add(parser: argparse.ArgumentParser) -> None:
         added = parser.add_argument_group(title)

@@ -32,7 +32,7 @@ from rastrainer_simulator.virtual.method_trials import (
 )
 
 Found = Mapping[RegistrationMethod, Sequence[tuple[str, MethodResult]]]
-"""By method, the trials' names and their results."""
+"""The trials' names and results, by method."""
 HEADER = (
     *("Method", "trials", "residual (mm)", "expected TRE (mm)", "interval (mm)"),
     *("true TRE (mm)", "interval holds it"),

@@ -40,7 +40,7 @@ from rastrainer_simulator.core.setup import DEFAULT_SCENARIO
 
 TASKS = (TRIAL_RUN, "task-1")
 PROCEDURES = {"task-1": "dbs"}
-"""What follows the touches of a task."""
+"""The procedure after the touches of a task."""
 TRAINEE = "virtual-01"
 TOUCHES, FIDUCIALS = "touches.csv", "fiducials.csv"
 BAR_WIDTH = 30

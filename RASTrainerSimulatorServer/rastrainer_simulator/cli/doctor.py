@@ -28,9 +28,9 @@ from rastrainer_simulator.ops.processes import has_display
 from rastrainer_simulator.ops.system_paths import config_folder, log_folder
 
 OK, WARNING, PROBLEM = "ok", "warning", "problem"
-"""With a warning a feature is missing, with a problem training is impossible."""
+"""A warning means that a feature is missing, a problem that training is impossible."""
 Answers = Iterator[tuple[str, str]]
-"""Verdicts, and what was found, a sentence each."""
+"""Verdicts, each with a sentence about the finding."""
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -54,7 +54,7 @@ NEEDED = ("aiohttp", "numpy", "psycopg", "pygame-ce", "python-fcl", "trustme", "
 FASTER = () if sys.platform == "win32" else ("fastcrc", "pin")
 MODULES = {"pin": "pinocchio", "pygame-ce": "pygame", "python-fcl": "fcl"}
 MODULES |= {"vtk": "vtkmodules.vtkCommonCore"}
-"""What is imported of a package, where it has another name."""
+"""Modules whose names differ from their packages."""
 
 
 def check_python(_arguments: argparse.Namespace) -> Answers:

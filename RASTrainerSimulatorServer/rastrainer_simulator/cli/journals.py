@@ -37,7 +37,7 @@ def _verify(path: Path, study: Study | None = None) -> int:
 
 
 def _differs(reading: JournalReading, study: Study) -> str:
-    """Return how a journal is not the one that a study's trial came from; "" if it is."""
+    """Return how a journal differs from the journal of a study's trial; "" if it does not."""
     try:
         record = study.trial(str(reading.header.get("trialId"))).record
     except InputError:

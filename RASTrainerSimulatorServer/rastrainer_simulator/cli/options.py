@@ -1,4 +1,4 @@
-"""What a command is: its name, its arguments, its function; and what several commands do."""
+"""Commands, and functions that several of them share."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Command:
     """A command of `rastrainer`, or an action of one.
 
     Attributes:
-        run: Returns the exit status; None where one of the `actions` is run.
+        run: Returns the exit status; None if one of the `actions` is run.
         description: Above the arguments in the command's own help.
     """
 

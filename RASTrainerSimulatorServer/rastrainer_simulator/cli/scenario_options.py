@@ -81,7 +81,7 @@ OPTIONS = (
     ),
     arg.flag("--check", "only check whether set-up, plan and placed fiducials can be used"),
 )
-"""What a new scenario is made with; `options_of` reads them."""
+"""The options of a new scenario, read by `options_of`."""
 
 
 def procedure_option(what: str) -> arg.Argument:

@@ -99,7 +99,7 @@ class ChosenAxes:
 
 
 class ToolDirection(str, Enum):
-    """Who decides the tool's direction.
+    """The ways to choose the tool's direction.
 
     FREE: the inverse kinematics alone, as in the paper: only the tip's position is followed.
     CLEAR: the same, but near the head the tool leans no farther from the surface normal than
@@ -217,7 +217,7 @@ class ToolSteering:
         return self._held
 
     def _leaned(self, dt: float, direction: Vector, surface: NearestSurface) -> Vector | None:
-        """Return the direction turned toward the normal, None where it may stay."""
+        """Return the direction turned toward the normal, None if it may stay."""
         settings = self._settings
         if settings.choice not in (ToolDirection.CLEAR, ToolDirection.NORMAL):
             return None

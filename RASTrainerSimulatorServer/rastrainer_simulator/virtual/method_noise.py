@@ -19,7 +19,7 @@ from rastrainer.registration.surface_checks import LEAST_POINTS
 
 _MARGIN = 1e-9
 SPACING_MM = 8.0
-"""Between points of a scan that faces the camera."""
+"""Distance between points of skin that faces the camera."""
 
 
 PUBLISHED_NOISE: Mapping[RegistrationMethod, float] = MappingProxyType(

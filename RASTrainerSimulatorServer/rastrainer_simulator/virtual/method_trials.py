@@ -45,7 +45,7 @@ class MethodPoints:
     Attributes:
         moving_mm: (n, 3) float, World, touched points; those of a surface match give its start.
         fixed_mm: (n, 3) float, RAS, where they belong.
-        normals: (n, 3) float, of the skin there, RAS; None where the error has no direction.
+        normals: (n, 3) float, of the skin there, RAS; None if the error has no direction.
         cloud_mm: (k, 3) float, World, traced or scanned points; empty of touches alone.
     """
 
@@ -64,7 +64,7 @@ class MethodResult:
         points: number of points whose residuals count.
         residual_mm: their root mean square, mm. It does not show the error.
         matrix: (4, 4) float, World→RAS, mm.
-        true_mm: (m,) float, the true target error; None where the truth is unknown.
+        true_mm: (m,) float, the true target error; None if the truth is unknown.
     """
 
     method: RegistrationMethod
@@ -147,8 +147,8 @@ def points_of_trial(given: GivenPoints, scenario: Scenario) -> tuple[MethodPoint
 def mean_of(results: Sequence[MethodResult]) -> tuple[float, float, float | None, float | None]:
     """Return residual, expected and true error, and the share of intervals that hold the truth.
 
-    The first three are root mean squares over trials and targets, mm; the last two are None where
-    the truth is unknown.
+    The first three are root mean squares over trials and targets, mm; the last two are None if the
+    truth is unknown.
     """
     residual = _rms([one.residual_mm for one in results])
     expected = _rms([error.expected_mm for one in results for error in one.errors])
@@ -173,7 +173,7 @@ METHODS = tuple(PUBLISHED_NOISE)
 
 @dataclass(frozen=True, eq=False)
 class MethodStudy:
-    """What the virtual trials have in common.
+    """The common settings of virtual trials.
 
     Attributes:
         task: whose fiducials are touched.
@@ -271,7 +271,7 @@ class MethodStudy:
     def _points(
         self, method: RegistrationMethod, shift: SkinShift, random: Generator, tip: np.ndarray
     ) -> MethodPoints:
-        """Return what is touched, traced or scanned, before the head is posed: all in RAS."""
+        """Return touched, traced or scanned points before the head is posed: all in RAS."""
         if method is RegistrationMethod.BONE_SCREWS:
             touched = self._found(self.screws, method, random) + tip
             return MethodPoints(method, touched, self.screws)

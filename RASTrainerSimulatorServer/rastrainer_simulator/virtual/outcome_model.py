@@ -2,8 +2,8 @@
 
 Completion time and registration error of a trial are drawn from the distributions that the theory
 gives: times log-normal about task, trainee, mode and practice; errors as the FRE of fifteen points
-whose localization error depends on task, trainee and mode (FRE² = FLE²·(1 − 2/N)·χ²/dof). What is
-estimated from such data can be compared with what was put in. It is not the simulator: hands, arm
+whose localization error depends on task, trainee and mode (FRE² = FLE²·(1 − 2/N)·χ²/dof).
+Estimates from such data can be compared with the true values. It is not the simulator: hands, arm
 and head play no part.
 
 Practice is the power law (Newell and Rosenbloom 1981); a hurried trial is the less exact one, as
@@ -178,7 +178,7 @@ def _practice(model: OutcomeModel, numbers: np.ndarray) -> tuple[np.ndarray, np.
 
 @dataclass(frozen=True)
 class RejectionRates:
-    """Of one outcome over many studies: false positives without a true effect, power with one.
+    """Rates for one outcome over many studies: false positives without an effect, else power.
 
     Attributes:
         t_test: Share with p < .05 by the t-test, with the period where the orders allow it.
@@ -216,7 +216,7 @@ def rejection_rates(
     times, errors = (np.array(values) for values in zip(*drawn, strict=True))
     outcomes = (times, errors, model_scores(model, times, errors))
     periods = [float(own.index(modes[1]) - own.index(modes[0])) for own in orders or [modes]]
-    # By how many periods each trainee does the second mode later.
+    # Periods between the modes of each trainee.
     delays = np.array(periods) if is_separable(np.array(periods)) else None
     fits, differences = [], []
     for values in outcomes:

@@ -156,7 +156,7 @@ def _observation(state: SimulationState) -> Observation:
 
 STEP_S = 0.05
 PROCEDURE_STREAM = 21
-"""Of chance, beside that of the touches."""
+"""Random stream of procedures; touches have their own."""
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ PRESS_MM = 1.5
 """How far below the skin the last aim is: the touch of the tip should be felt."""
 
 LOWEST_DIP = np.radians(5.0)
-"""By how much the path around the head's center may be lower than both of its ends."""
+"""The path around the head's center may be lower than both of its ends by this angle."""
 
 DECISION_PERIOD_S = 0.05
 JOG_DURATION_S = 0.1
@@ -42,7 +42,7 @@ class Skill:
     Attributes:
         gain_per_s: how briskly the remaining distance is closed.
         aim_sd_mm: standard deviation of the aim on the skin, along each of its two directions.
-        settled_mm: how far beside its aim the tip may be for a touch.
+        settled_mm: largest distance of the tip from its aim for a touch.
         tremor_mm_s: standard deviation of the hand's unwanted velocity, along each axis.
         overshoot: how far the first aim goes past the fiducial, as a share of the distance.
         dwell_s: how long the tip is held still before a touch.
@@ -66,7 +66,7 @@ class Skill:
 
 @dataclass(frozen=True)
 class Observation:
-    """What the trainee sees.
+    """The view of the trainee.
 
     Attributes:
         is_in_contact: whether the tool is shown to touch the head.

@@ -38,7 +38,7 @@ MISSED_BONE_MM = 20.0
 """How far the drill goes past the entry where it meets no bone."""
 MAX_CHECKPOINTS = 3
 TIME_SD = 0.15
-"""Of the logarithm of the times of aligning, drilling and inserting."""
+"""Standard deviation of the logarithm of the times of aligning, drilling and inserting."""
 
 
 @dataclass(frozen=True)

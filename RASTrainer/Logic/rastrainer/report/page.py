@@ -1,4 +1,4 @@
-"""What the sections of a report are made of: HTML with escaped text."""
+"""The elements of a report as HTML; their text is escaped."""
 
 from __future__ import annotations
 

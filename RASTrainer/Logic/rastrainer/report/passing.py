@@ -93,7 +93,7 @@ def started_trials(data: StudyData) -> str:
 
 
 def _missing(data: StudyData) -> list[str]:
-    """Return what is said about trials without a score, and about those that never arrived."""
+    """Return sentences about trials without a score and trials that never arrived."""
     unscored = _unscored(data.trials)
     sentences = []
     if unscored:

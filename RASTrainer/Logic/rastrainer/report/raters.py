@@ -23,7 +23,7 @@ from rastrainer.study.ratings import FORMS, HIGHEST, LOWEST, Rating, RatingForm
 from rastrainer.study.study_data import StudyData
 
 _WORDS = ((0.5, "poor"), (0.75, "moderate"), (0.9, "good"), (float("inf"), "excellent"))
-"""Below which ICC reliability is called so (Koo and Li 2016)."""
+"""Names of reliability, each with the ICC below which it holds (Koo and Li 2016)."""
 TOTALS: page.Line = ["Form", "n", "Raters", "ICC(2,1) [95 %]", "ICC(2,k) [95 %]", "Mean totals"]
 DOMAINS: page.Line = ["Domain", "n", "Raters", "κ [95 %]", "Same mark", "Mean marks"]
 SCORES: page.Line = ["Rating", "n", "Pearson r [95 %]", "Spearman ρ"]

@@ -45,7 +45,7 @@ from rastrainer.trial.scoring import (
 )
 
 FEW_SUBJECTS = 20
-"""Below this many subjects the limits are stated without being asked for."""
+"""The limits are always stated for fewer subjects."""
 
 
 def limits(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:

@@ -70,7 +70,7 @@ def study_variation(data: StudyData) -> StudyVariation | None:
 
 @dataclass(frozen=True)
 class ViewBias:
-    """By how much a view displaces the target, beyond what the residuals say.
+    """The displacement of the target by a view that the residuals do not show.
 
     Attributes:
         squared: Of the displacement, mm²; below 0 by chance where it is about 0.
