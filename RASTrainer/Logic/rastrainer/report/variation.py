@@ -139,13 +139,19 @@ def _sources(found: StudyVariation, modes: list[str]) -> list[str]:
     trials, trainees = counted(found.trials, "trial"), counted(found.trainees, "trainee")
     practice = "Practice: exponent b, the m-th trial of all in proportion to m⁻ᵇ"
     speed = "Speed and accuracy: exponent k, RMSE in proportion to time⁻ᵏ"
+    against_first: list[page.Line] = [
+        [
+            f"{mode_title(mode)} against {mode_title(modes[0])}",
+            trainees,
+            _factor(time),
+            _factor(error),
+        ]
+        for mode, time, error in zip(modes[1:], found.time.modes, found.error.modes, strict=True)
+    ]
     rows: list[page.Line] = [
         [practice, trials, *(_exponent(one.learning) for one in both)],
         [speed, trials, "–", _exponent(found.trade_off)],
-        *(
-            [f"{mode_title(mode)} against {mode_title(modes[0])}", trainees, *map(_factor, both)]
-            for mode, *both in zip(modes[1:], found.time.modes, found.error.modes, strict=True)
-        ),
+        *against_first,
         ["Between trainees (SD)", trainees, *(_sd(one.trainee_variance) for one in both)],
         ["Trainee × mode (SD)", trainees, *(_sd(one.interaction_variance) for one in both)],
         ["From trial to trial (SD)", trials, *(_sd(one.trial_variance) for one in both)],
