@@ -58,8 +58,7 @@ MODULES |= {"vtk": "vtkmodules.vtkCommonCore"}
 
 
 def check_python(_arguments: argparse.Namespace) -> Answers:
-    verdict = OK if sys.version_info >= (3, 10) else PROBLEM
-    yield verdict, f"Python {platform.python_version()} at {sys.executable}."
+    yield OK, f"Python {platform.python_version()} at {sys.executable}."
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     loaded = []
     for package in (*NEEDED, *FASTER):
@@ -154,34 +153,38 @@ def check_ports(arguments: argparse.Namespace) -> Answers:
 
 EXTENSION = "SlicerOpenIGTLink"
 PLACES = {
-    "linux": ("~", "~/Applications", "~/Downloads", "/opt", "/usr/local"),
-    "win32": ("$LOCALAPPDATA", "$ProgramData", "$ProgramFiles"),
-    "darwin": ("/Applications", "~/Applications"),
+    "linux": "~:~/Applications:~/Downloads:/opt:/usr/local",
+    "darwin": "/Applications:~/Applications",
+    "win32": "$LOCALAPPDATA;$ProgramData;$ProgramFiles",
 }
 """Where Slicer usually is; on Windows perhaps in a folder of its publisher."""
 
 
+def _folders(names: str) -> list[Path]:
+    # Unlike Path's, this leaves ~ as it is where there is no home folder.
+    split = names.split(os.pathsep)
+    return [Path(os.path.expandvars(os.path.expanduser(name))) for name in split]  # noqa: PTH111
+
+
 def check_slicer(_arguments: argparse.Namespace) -> Answers:
-    """Look for Slicer and its extension."""
     slicers = list(_slicers())
     if not slicers:
         yield WARNING, "3D Slicer is not found; nothing is wrong where it runs elsewhere."
         return
     for folder in slicers:
         version = re.search(r"Slicer[- ](\d+)\.(\d+)", str(folder))
-        is_old = version is not None and tuple(map(int, version.groups())) < (5, 10)
-        age = " is older than the module was made for" if is_old else ""
-        yield WARNING if is_old else OK, f"3D Slicer in {folder}{age}."
-    users = _folder("$APPDATA" if sys.platform == "win32" else "~/.config")
+        if version is None or tuple(map(int, version.groups())) >= (5, 10):
+            yield OK, f"3D Slicer is in {folder}."
+        else:
+            yield WARNING, f"3D Slicer in {folder} is older than the module was made for."
+    (users,) = _folders("$APPDATA" if sys.platform == "win32" else "~/.config")
     bases = [users / "slicer.org", users / "NA-MIC"]
     bases += [base for each in slicers for base in (each / "slicer.org", each / "Extensions", each)]
     found = [path for base in bases for path in base.glob(f"Extensions-*/{EXTENSION}")]
-    yield (OK, f"{EXTENSION} is in {found[0]}.") if found else (WARNING, f"{EXTENSION} is missing.")
-
-
-def _folder(name: str) -> Path:
-    # Unlike Path's, this leaves ~ as it is where there is no home folder.
-    return Path(os.path.expandvars(os.path.expanduser(name)))  # noqa: PTH111
+    if found:
+        yield OK, f"{EXTENSION} is in {found[0]}."
+    else:
+        yield WARNING, f"{EXTENSION} is missing: install it in Slicer's Extensions Manager."
 
 
 def _slicers() -> Iterator[Path]:
@@ -189,9 +192,9 @@ def _slicers() -> Iterator[Path]:
     named, on_path = os.environ.get("SLICER_HOME"), shutil.which("Slicer")
     candidates = [Path(named)] if named else []
     candidates += [Path(on_path).resolve().parent] if on_path else []
-    for place in PLACES.get(sys.platform, ()):
+    for place in _folders(PLACES.get(sys.platform, "~")):
         for pattern in ("Slicer*", "slicer.org/Slicer*", "NA-MIC/Slicer*"):
-            candidates += sorted(_folder(place).glob(pattern))
+            candidates += sorted(place.glob(pattern))
     program = {"win32": "Slicer.exe", "darwin": "MacOS/Slicer"}.get(sys.platform, "Slicer")
     for candidate in dict.fromkeys(candidates):
         folder = candidate / "Contents" if candidate.suffix == ".app" else candidate
@@ -220,13 +223,9 @@ def check_disk(arguments: argparse.Namespace) -> Answers:
         yield verdict, f"{what}: {folder} can be written to; {free_mb:,.0f} MB are free."
 
 
+PIP = f"{sys.executable} -m pip install"
 CHECKS = (
-    (
-        "python",
-        check_python,
-        "Install Python 3.10 or newer, and what is missing: "
-        f"{sys.executable} -m pip install --force-reinstall PACKAGE",
-    ),
+    ("python", check_python, f"Install the package again: {PIP} --force-reinstall PACKAGE"),
     ("graphics", check_graphics, "Use a desktop session and the graphics card's driver."),
     ("browser", check_page, "Build it: make page"),
     (
@@ -239,8 +238,7 @@ CHECKS = (
     (
         "slicer",
         check_slicer,
-        "Get 3D Slicer 5.10 or newer from https://download.slicer.org (or set SLICER_HOME to its "
-        f"folder), and {EXTENSION} in its Extensions Manager.",
+        "Get Slicer 5.10 or newer from download.slicer.org, or set SLICER_HOME.",
     ),
     ("disk", check_disk, "Free some space there and allow writing, or choose another folder."),
 )
