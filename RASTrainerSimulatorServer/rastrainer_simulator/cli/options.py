@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, is_dataclass
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError
@@ -68,8 +68,17 @@ def announce(program: str, what: str) -> None:
 
 
 def json_text(value: Any) -> str:
-    """Return a value as JSON; `ValueError` where a number is not finite."""
-    return json.dumps(value, allow_nan=False, indent=1)
+    """Return a value as JSON, arrays and dataclasses, too; `ValueError` for an infinite number."""
+    return json.dumps(value, allow_nan=False, indent=1, default=_plain)
+
+
+def _plain(value: Any) -> Any:
+    return asdict(value) if is_dataclass(value) else value.tolist()
+
+
+def picked(value: object, *names: str) -> dict[str, Any]:
+    """Return attributes of a value by their names."""
+    return {name: getattr(value, name) for name in names}
 
 
 def aligned(lines: Sequence[Sequence[str]], left: int) -> list[str]:

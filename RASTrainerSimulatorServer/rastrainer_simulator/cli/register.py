@@ -26,7 +26,7 @@ from rastrainer.registration.surface_error import knowledge_of, surface_target_e
 from rastrainer.registration.surface_match import SurfaceMatch, match_surface
 from rastrainer.registration.target_error import INTERVAL_NOTE, TargetError, target_error
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Command, json_text, text_table
+from rastrainer_simulator.cli.options import Command, json_text, picked, text_table
 
 FRE_NOTE = (
     "FRE is the error at the fiducials; it does not predict the error at a target in a single case."
@@ -48,13 +48,13 @@ class StatedErrors:
     Attributes:
         fle_mm: (n,) float, RMS length of each point's error.
         localization: The same as covariances.
-        misfit: Probability of residuals as large as the present ones.
+        misfit_probability: Probability of residuals as large as the present ones.
     """
 
     fle_mm: np.ndarray
     localization: LocalizationError
     expected_fre_mm: float
-    misfit: float
+    misfit_probability: float
 
     @classmethod
     def of(cls, registration: Registration, fle_mm: np.ndarray) -> StatedErrors:
@@ -102,24 +102,14 @@ def registration_json(
     registration: Registration, error: TargetError | None, stated: StatedErrors | None = None
 ) -> dict[str, Any]:
     """Return a registration as a JSON object; `expected_tre` is None if it is unknown."""
-    weights = registration.weights
+    given = None
+    if stated is not None:
+        given = picked(stated, "fle_mm", "expected_fre_mm", "misfit_probability")
+    names = ("fre_mm", "matrix", "labels", "residuals_mm", "residual_vectors_mm", "warnings")
     return {
         "type": registration.kind,
-        "fre_mm": registration.fre_mm,
-        "matrix": registration.matrix.tolist(),
-        "labels": list(registration.labels),
-        "residuals_mm": registration.residuals_mm.tolist(),
-        "residual_vectors_mm": registration.residual_vectors_mm.tolist(),
-        "warnings": [warning.to_json() for warning in registration.warnings],
-        "weights": None if weights is None else weights.tolist(),
-        "weighted_fre_mm": registration.weighted_fre_mm,
-        "stated": None
-        if stated is None
-        else {
-            "fle_mm": stated.fle_mm.tolist(),
-            "expected_fre_mm": stated.expected_fre_mm,
-            "misfit_probability": stated.misfit,
-        },
+        **picked(registration, *names, "weights", "weighted_fre_mm"),
+        "stated": given,
         "expected_tre": None if error is None else {**asdict(error), "note": INTERVAL_NOTE},
     }
 
@@ -144,7 +134,7 @@ def registration_text(
     lines += [FRE_NOTE, "", "Moving to fixed (mm)", *_matrix_lines(registration.matrix)]
     lines += ["", _residual_table(registration, stated)]
     warnings = [warning.message for warning in registration.warnings]
-    if stated is not None and stated.misfit < MISFIT_LEVEL:
+    if stated is not None and stated.misfit_probability < MISFIT_LEVEL:
         warnings.append(
             "The residuals are larger than the stated FLE allow; the expected TRE, which is "
             "computed from these, is too small."
@@ -229,20 +219,13 @@ def match_files(
 
 def match_json(match: SurfaceMatch, error: TargetError) -> dict[str, Any]:
     """Return a match as a JSON object."""
+    names = ("rms_mm", "inlier_share", "converged", "starts", "best_starts", "spread_mm")
     return {
         "type": "surface",
-        "matrix": match.matrix.tolist(),
         "points": len(match.residuals_mm),
-        "rms_mm": match.rms_mm,
-        "inlier_share": match.inlier_share,
-        "converged": match.converged,
-        "starts": match.starts,
-        "best_starts": match.best_starts,
-        "spread_mm": match.spread_mm,
         "slide_mm": match.slide.distance_mm,
         "slide_place": match.slide.place,
-        "residuals_mm": match.residuals_mm.tolist(),
-        "warnings": [warning.to_json() for warning in match.warnings],
+        **picked(match, "matrix", *names, "residuals_mm", "warnings"),
         "expected_tre": {**asdict(error), "note": RESIDUAL_NOTE},
     }
 

@@ -15,7 +15,13 @@ from rastrainer.trial.ctps import (
     trials_by_mode,
 )
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Command, json_text, read_known_study, text_table
+from rastrainer_simulator.cli.options import (
+    Command,
+    json_text,
+    picked,
+    read_known_study,
+    text_table,
+)
 
 
 def score(arguments: argparse.Namespace) -> int:
@@ -39,7 +45,7 @@ def _scores_json(scores: CohortScores) -> dict[str, Any]:
     """Return the scores of one mode as a JSON object; undefined values are None."""
     names = ("overall", "equation_3_overall", "tasks", "subjects", "sd_population", "sd_sample")
     return {
-        **{name: getattr(scores, name) for name in (*names, "pearson_r", "r_squared")},
+        **picked(scores, *names, "pearson_r", "r_squared"),
         "mean_ct": scores.reference.mean_ct_s,
         "best_rmse": scores.reference.best_rmse_mm,
         "trials": len(scores.trials),
