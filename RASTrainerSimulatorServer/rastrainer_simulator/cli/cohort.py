@@ -15,7 +15,7 @@ from rastrainer.study.protocol.study_protocol import StudyProtocol, read_study_p
 from rastrainer.trial.score_reference import score_reference
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Command, text_table
+from rastrainer_simulator.cli.options import Subcommand, text_table
 from rastrainer_simulator.virtual.outcome_model import OutcomeModel, rejection_rates
 from rastrainer_simulator.virtual.population import ModeEffect, Population
 from rastrainer_simulator.virtual.scripted_trainee import Skill
@@ -197,7 +197,7 @@ ENGINE = arg.group(
     arg.path("--scenario", "DIR", "whose head and tasks are used (default: Colin27)"),
 )
 COMMANDS = (
-    Command(
+    Subcommand(
         "simulate-cohort",
         "simulate a study of virtual trainees whose parameters you set",
         run,

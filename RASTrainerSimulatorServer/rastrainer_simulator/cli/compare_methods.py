@@ -21,7 +21,7 @@ from rastrainer.study.tidy_csv import csv_text
 from rastrainer.trial.touch_registration import GivenPoints
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Command, json_text, text_table
+from rastrainer_simulator.cli.options import Subcommand, json_text, text_table
 from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE
 from rastrainer_simulator.virtual.method_trials import (
     MethodResult,
@@ -192,7 +192,7 @@ def picture(found: Found) -> str:
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "compare-methods",
         "register the same trials by every method and compare residual, expected and true TRE",
         run,

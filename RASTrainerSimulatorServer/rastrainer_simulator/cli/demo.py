@@ -35,7 +35,7 @@ from rastrainer.trial.procedure_outcome import procedure_outcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Command
+from rastrainer_simulator.cli.options import Subcommand
 from rastrainer_simulator.core.setup import DEFAULT_SCENARIO
 
 TASKS = (TRIAL_RUN, "task-1")
@@ -315,7 +315,7 @@ def _line(name: str, value: float, unit_and_remark: str) -> str:
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "demo",
         "play two trials with a virtual trainee and show the results",
         run,

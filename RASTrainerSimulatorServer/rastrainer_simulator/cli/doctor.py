@@ -21,7 +21,7 @@ from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DEFAULT_VIEW_PORT
 from rastrainer.python_environment import python_command
 from rastrainer_simulator.assets import page_folder
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Command
+from rastrainer_simulator.cli.options import Subcommand
 from rastrainer_simulator.input.gamepads import NoGamepadsError, start_sdl
 from rastrainer_simulator.net.listener import listening_socket
 from rastrainer_simulator.ops.processes import has_display
@@ -244,7 +244,7 @@ CHECKS = (
 )
 """Title, test and remedy of each check."""
 COMMANDS = (
-    Command(
+    Subcommand(
         "doctor",
         "check this computer, and suggest remedies for problems",
         run,

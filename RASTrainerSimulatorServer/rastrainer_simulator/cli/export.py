@@ -25,7 +25,7 @@ from rastrainer.study.tidy_csv import (
     trials_csv,
 )
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Command, read_known_study
+from rastrainer_simulator.cli.options import Subcommand, read_known_study
 from rastrainer_simulator.export.trial_files import write_motion_bids, write_slicer_files
 from rastrainer_simulator.export.xapi import HOME_PAGE, statements_text
 from rastrainer_simulator.net.record_store import home_page_url, read_record_store_settings
@@ -93,7 +93,7 @@ def _stored(data: StudyData, place: StudyPlace) -> Iterator[tuple[TrialRow, Stor
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "export",
         "export a study: tidy CSV, Motion-BIDS, xAPI, Slicer's files",
         run,

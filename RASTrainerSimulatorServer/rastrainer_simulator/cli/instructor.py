@@ -13,7 +13,7 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer.study.database.database import StudyPlace
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Command, announce, check_ports
+from rastrainer_simulator.cli.options import Subcommand, announce, check_ports
 from rastrainer_simulator.ops.instructor_pin import PIN_WORDS, InstructorPin
 from rastrainer_simulator.ops.system_paths import config_folder
 
@@ -75,7 +75,7 @@ def _asked() -> str:
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "board",
         "watch several simulators in one page of live tiles",
         serve_board,
@@ -94,7 +94,7 @@ COMMANDS = (
         "study, also where every trainee stands in the curriculum. The seats' addresses and keys "
         "stay on this computer.",
     ),
-    Command(
+    Subcommand(
         "instructor-pin",
         "set the PIN that instructors need at this seat",
         set_pin,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Command, json_text, text_table
+from rastrainer_simulator.cli.options import Subcommand, json_text, text_table
 
 if TYPE_CHECKING:
     from rastrainer.study.database.study import Study
@@ -68,7 +68,7 @@ def measure(arguments: argparse.Namespace) -> int:
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "verify",
         "check whether journals of trials are intact, cut short or altered",
         verify,
@@ -82,7 +82,7 @@ COMMANDS = (
         "another, 2 one not a journal. Whether a trial was played as its journal says is found by "
         "`rastrainer replay --verify`.",
     ),
-    Command(
+    Subcommand(
         "measure",
         "compute the motion metrics of a trial from its journal",
         measure,

@@ -13,7 +13,7 @@ from rastrainer.errors import InputError
 from rastrainer.files.reading import failure_reason, printable_name
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Command, announce, check_ports
+from rastrainer_simulator.cli.options import Subcommand, announce, check_ports
 
 if TYPE_CHECKING:
     from rastrainer_simulator.lti.settings import LtiSettings, ToolKey
@@ -101,7 +101,7 @@ def _tls(certificate: Path | None, config: Path) -> ssl.SSLContext:
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "lti",
         "let a course of a learning platform launch RASTrainer, and return grades (LTI 1.3)",
         run,

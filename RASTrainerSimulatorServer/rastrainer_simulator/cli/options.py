@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Command:
+class Subcommand:
     """A command of `rastrainer`, or an action of one.
 
     Attributes:
@@ -29,7 +29,7 @@ class Command:
     run: Callable[[argparse.Namespace], int] | None = None
     arguments: Sequence[Argument] = ()
     description: str | None = None
-    actions: Sequence[Command] = ()
+    actions: Sequence[Subcommand] = ()
 
     def add_to(self, subparsers: argparse._SubParsersAction) -> None:
         parser = subparsers.add_parser(self.name, help=self.help, description=self.description)

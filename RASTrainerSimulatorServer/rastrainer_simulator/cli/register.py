@@ -26,7 +26,7 @@ from rastrainer.registration.surface_error import knowledge_of, surface_target_e
 from rastrainer.registration.surface_match import SurfaceMatch, match_surface
 from rastrainer.registration.target_error import INTERVAL_NOTE, TargetError, target_error
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Command, json_text, picked, text_table
+from rastrainer_simulator.cli.options import Subcommand, json_text, picked, text_table
 
 FRE_NOTE = (
     "FRE is the error at the fiducials; it does not predict the error at a target in a single case."
@@ -254,7 +254,7 @@ def match_text(match: SurfaceMatch, error: TargetError) -> str:
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "register",
         "register moving points to fixed points",
         run,

@@ -13,7 +13,7 @@ from rastrainer.journal.journal_file import read_journal
 from rastrainer.study.database.study import Study
 from rastrainer.study.ratings import FORMS, RatingStore, find_form
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Command, announce, check_ports
+from rastrainer_simulator.cli.options import Subcommand, announce, check_ports
 
 REPLAYS = 20
 
@@ -86,7 +86,7 @@ PLAYBACK = (
     arg.switch("--window", "open the window"),
 )
 COMMANDS = (
-    Command(
+    Subcommand(
         "replay",
         "show a recorded trial, or simulate it again and compare it bit by bit",
         replay,
@@ -103,7 +103,7 @@ COMMANDS = (
         "Shows the trial in the window and to every view; Escape ends it. Exit status: 0 shown, or "
         "equal to the last bit; 1 something differs; 2 not replayable.",
     ),
-    Command(
+    Subcommand(
         "rate",
         "mark replays of a study's trials on GEARS and OSATS forms, blinded",
         rate,

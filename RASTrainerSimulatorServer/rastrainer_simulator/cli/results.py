@@ -16,7 +16,7 @@ from rastrainer.trial.ctps import (
 )
 from rastrainer_simulator.cli import arg
 from rastrainer_simulator.cli.options import (
-    Command,
+    Subcommand,
     json_text,
     picked,
     read_known_study,
@@ -120,7 +120,7 @@ def _mean_ct(help_text: str) -> arg.Argument:
 
 CSV_HEADER = "mode,subject,task,ct,rmse"
 COMMANDS = (
-    Command(
+    Subcommand(
         "score",
         "score the trials of a study as the paper does (CTPS)",
         score,
@@ -136,7 +136,7 @@ COMMANDS = (
         f"Score the trials of a CSV file with the header {CSV_HEADER} (s and mm) with CTPS, "
         "separately for each mode.",
     ),
-    Command(
+    Subcommand(
         "report",
         "write a study's report: tables, charts, tests, limits",
         report,

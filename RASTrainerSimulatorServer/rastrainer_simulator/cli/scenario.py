@@ -15,7 +15,7 @@ from rastrainer.scenario.library import list_scenarios, unpack
 from rastrainer.scenario.writer import require_new
 from rastrainer.work_progress import print_progress, print_warning
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Command
+from rastrainer_simulator.cli.options import Subcommand
 from rastrainer_simulator.cli.scenario_options import (
     HEAD_OPTIONS,
     LIBRARY,
@@ -199,7 +199,7 @@ def _clean_up_when_terminated() -> None:
 
 FOLDER = arg.path("folder", "DIR")
 ACTIONS = (
-    Command(
+    Subcommand(
         "build",
         "make a scenario of a volume",
         _build,
@@ -211,20 +211,20 @@ ACTIONS = (
             *OPTIONS,
         ),
     ),
-    Command(
+    Subcommand(
         "tasks",
         "propose tasks on a head that was made elsewhere",
         _tasks,
         (arg.path("draft", "DRAFT", "folder with the head's draft"), *OPTIONS),
     ),
-    Command(
+    Subcommand(
         "preview",
         "draw the head in a volume, to adjust it",
         _preview,
         (arg.path("volume", "VOLUME"), arg.path("picture", "PNG"), *HEAD_OPTIONS),
     ),
-    Command("check", "list the errors of a scenario; status 1 if any", _check, (FOLDER,)),
-    Command(
+    Subcommand("check", "list the errors of a scenario; status 1 if any", _check, (FOLDER,)),
+    Subcommand(
         "plan",
         "copy a scenario with other targets or trajectory",
         _plan,
@@ -240,7 +240,7 @@ ACTIONS = (
             ),
         ),
     ),
-    Command(
+    Subcommand(
         "landmarks",
         "check placed landmarks on a head, or propose them; status 1 if wrong",
         _landmarks,
@@ -250,7 +250,7 @@ ACTIONS = (
             arg.flag("--propose", "write a proposal to MRK_JSON"),
         ),
     ),
-    Command(
+    Subcommand(
         "lines",
         "measure the planned lines of procedures; status 1 if any is wrong",
         _lines,
@@ -260,7 +260,7 @@ ACTIONS = (
             arg.path("--json", "FILE", "write everything there, too"),
         ),
     ),
-    Command(
+    Subcommand(
         "pack",
         "write a scenario as one zip file, without face, title and source",
         _pack,
@@ -273,18 +273,18 @@ ACTIONS = (
             arg.flag("--keep-names", "title, name and source, too"),
         ),
     ),
-    Command(
+    Subcommand(
         "unpack",
         "unpack a scenario into your library",
         _unpack,
         (arg.path("package", "ZIP"), LIBRARY),
     ),
-    Command("list", "list the available scenarios", _list, (LIBRARY,)),
+    Subcommand("list", "list the available scenarios", _list, (LIBRARY,)),
 )
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "scenario",
         "make a scenario of a head MRI or CT, check, pack and list scenarios",
         description="Makes and checks scenarios. Not for clinical use.",

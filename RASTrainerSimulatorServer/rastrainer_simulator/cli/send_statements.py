@@ -18,7 +18,7 @@ from rastrainer.number_text import counted
 from rastrainer.study.database.database import path_beside_study
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Command
+from rastrainer_simulator.cli.options import Subcommand
 from rastrainer_simulator.export.xapi import statements
 from rastrainer_simulator.net.record_store import (
     BATCH,
@@ -179,7 +179,7 @@ def _is_list_of_texts(value: Any) -> bool:
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "send-statements",
         "send a study's trials to a learning record store (xAPI)",
         run,

@@ -13,7 +13,7 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DEFAULT_VIEW_PORT
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Command, announce, check_ports
+from rastrainer_simulator.cli.options import Subcommand, announce, check_ports
 from rastrainer_simulator.ops.log_files import keep_logs
 from rastrainer_simulator.ops.processes import VIEW_KEY_VARIABLE, has_display
 from rastrainer_simulator.ops.system_paths import log_folder
@@ -130,7 +130,7 @@ def _size(text: str) -> tuple[int, int]:
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "simulator",
         "run the simulator, which Slicer and the views connect to",
         run_simulator,
@@ -185,7 +185,7 @@ COMMANDS = (
         ),
         "Serves OpenIGTLink and the views until Ctrl-C. Not for clinical use.",
     ),
-    Command(
+    Subcommand(
         "window",
         "open the desktop window of a running simulator",
         run_window,

@@ -14,7 +14,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.platform_links import PlatformLinks
 from rastrainer.study.trainee_data import erase_trainee
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Command
+from rastrainer_simulator.cli.options import Subcommand
 
 COUNTER = "trainee_numbers"
 """The one table that a new study has a row in."""
@@ -96,7 +96,7 @@ def run_delete_trainee(arguments: argparse.Namespace) -> int:
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "copy-study",
         "copy a study from its file into PostgreSQL, or back",
         run_copy_study,
@@ -108,7 +108,7 @@ COMMANDS = (
         "last bit, and leave the original as it is. Nobody should train meanwhile: what comes "
         "later is not copied.",
     ),
-    Command(
+    Subcommand(
         "delete-trainee",
         "delete a trainee from a study and from the journals, for good",
         run_delete_trainee,

@@ -26,7 +26,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import protocol_text, read_study_protocol
 from rastrainer.trial.trial_feedback import PastTrial
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Command, aligned
+from rastrainer_simulator.cli.options import Subcommand, aligned
 
 HEADER = ("assignment", "trial", "so far", "goal", "after", "trials", "mean")
 
@@ -144,7 +144,7 @@ def _sentence(
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "curriculum",
         "set the curriculum of a study's trainees, and print where they stand",
         follow_curriculum,
@@ -160,7 +160,7 @@ COMMANDS = (
         "curriculum set for everybody ends those set for single trainees before. Nothing is "
         "overwritten; earlier trials count, too.",
     ),
-    Command(
+    Subcommand(
         "pass-mark",
         "compute a pass mark from the novices and the experts of a study",
         compute_pass_mark,
