@@ -26,6 +26,7 @@ FIND_CHINESE_FONT = """
 from rastrainer_simulator.ops.system_paths import chinese_font
 raise SystemExit(chinese_font() is None)
 """
+QT_NEEDS = ["libegl1", "libgl1", "libfontconfig1", "libxkbcommon0", "libdbus-1-3"]
 OPENIGTLINK_HEADER = Path("/usr/include/openigtlink/igtlMessageHeader.h")
 FONTS = Path("/usr/share/fonts/truetype")
 REAL_HEADS = {
@@ -38,46 +39,34 @@ WAIT = ("-o", "DPkg::Lock::Timeout=300")
 """For another installation to end, s: many machines look for updates when they start."""
 
 
+TESTS, TRAINING = ("test", "soak"), ("simulator", "test", "soak")
+
+
 def missing_packages(target: str) -> list[str]:
     """Return the Debian packages that `target` needs and that are missing."""
-    wanted = []
-    if not _loads("libgomp.so.1"):
-        wanted += ["libgomp1"]
-    if not _runs(RENDER_ONE_PICTURE):
-        wanted += ["libegl1", "libgl1-mesa-dri", "libxcursor1"]
-    if target in ("simulator", "test", "soak") and not _loads("libGLX.so.0"):
-        wanted += ["libgl1", "libglx-mesa0"]
-    if target in ("test", "soak"):
-        wanted += _for_tests()
-    if target == "soak":
-        wanted += [package for package, file in REAL_HEADS.items() if not file.exists()]
-        if not list(Path("/usr/lib/postgresql").glob("*/bin/initdb")):
-            wanted += ["postgresql"]
-        if not _loads("libusb-1.0.so.0"):  # By Open3D, a peer.
-            wanted += ["libusb-1.0-0"]
-    return wanted
-
-
-def _for_tests() -> list[str]:
-    """Return the missing packages of the tests."""
-    wanted = []
-    if shutil.which("g++") is None:
-        wanted += ["g++", "libc6-dev"]
-    if shutil.which("cmake") is None:
-        wanted += ["cmake"]
-    if not OPENIGTLINK_HEADER.exists():
-        wanted += ["libopenigtlink-dev"]
-    if shutil.which("Xvfb") is None:
-        wanted += ["xvfb"]
-    if shutil.which("chromium") is None:
-        wanted += ["chromium"]
-    if not FONTS.is_dir():
-        wanted += ["fonts-dejavu-core"]
-    if not _runs(FIND_CHINESE_FONT):
-        wanted += ["fontconfig", "fonts-wqy-microhei"]
-    if not _runs(OPEN_QT, QT_QPA_PLATFORM="offscreen"):
-        wanted += ["libegl1", "libgl1", "libfontconfig1", "libxkbcommon0", "libdbus-1-3"]
-    return wanted
+    everything = (
+        (None, lambda: _loads("libgomp.so.1"), ["libgomp1"]),
+        (None, lambda: _runs(RENDER_ONE_PICTURE), ["libegl1", "libgl1-mesa-dri", "libxcursor1"]),
+        (TRAINING, lambda: _loads("libGLX.so.0"), ["libgl1", "libglx-mesa0"]),
+        (TESTS, lambda: shutil.which("g++"), ["g++", "libc6-dev"]),
+        (TESTS, lambda: shutil.which("cmake"), ["cmake"]),
+        (TESTS, OPENIGTLINK_HEADER.exists, ["libopenigtlink-dev"]),
+        (TESTS, lambda: shutil.which("Xvfb"), ["xvfb"]),
+        (TESTS, lambda: shutil.which("chromium"), ["chromium"]),
+        (TESTS, FONTS.is_dir, ["fonts-dejavu-core"]),
+        (TESTS, lambda: _runs(FIND_CHINESE_FONT), ["fontconfig", "fonts-wqy-microhei"]),
+        (TESTS, lambda: _runs(OPEN_QT, QT_QPA_PLATFORM="offscreen"), QT_NEEDS),
+        *((("soak",), file.exists, [package]) for package, file in REAL_HEADS.items()),
+        (("soak",), lambda: list(Path("/usr/lib/postgresql").glob("*/bin/initdb")), ["postgresql"]),
+        # Open3D, a peer, needs it.
+        (("soak",), lambda: _loads("libusb-1.0.so.0"), ["libusb-1.0-0"]),
+    )
+    return [
+        package
+        for targets, is_there, packages in everything
+        if (targets is None or target in targets) and not is_there()
+        for package in packages
+    ]
 
 
 def _loads(library: str) -> bool:
