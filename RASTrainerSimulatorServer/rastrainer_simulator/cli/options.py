@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, is_dataclass
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError
@@ -73,7 +73,7 @@ def json_text(value: Any) -> str:
 
 
 def _plain(value: Any) -> Any:
-    return asdict(value) if is_dataclass(value) else value.tolist()
+    return value.tolist() if hasattr(value, "tolist") else asdict(value)
 
 
 def picked(value: object, *names: str) -> dict[str, Any]:
