@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -39,30 +39,22 @@ def flag(name: str, help_text: str) -> Argument:
 
 def switch(name: str, help_text: str) -> Argument:
     """Return a flag that is set unless its opposite, `--no-…`, is given."""
-    action = argparse.BooleanOptionalAction
-    return option(name, action=action, default=True, help=help_text)
+    return option(name, action=argparse.BooleanOptionalAction, default=True, help=help_text)
 
 
 def group(title: str, *options: Argument) -> Argument:
     """Return options that the help shows below a title."""
-
-    def add(parser: argparse.ArgumentParser) -> None:
-        added = parser.add_argument_group(title)
-        for add_option in options:
-            add_option(added)
-
-    return add
+    return lambda parser: add_all(parser.add_argument_group(title), options)
 
 
 def one_of(*options: Argument) -> Argument:
     """Return options of which at most one can be given."""
+    return lambda parser: add_all(parser.add_mutually_exclusive_group(), options)
 
-    def add(parser: argparse.ArgumentParser) -> None:
-        added = parser.add_mutually_exclusive_group()
-        for add_option in options:
-            add_option(added)
 
-    return add
+def add_all(parser: Any, arguments: Iterable[Argument]) -> None:
+    for add in arguments:
+        add(parser)
 
 
 def path_of_user(text: str) -> Path:

@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.cli.arg import Argument
+from rastrainer_simulator.cli.arg import Argument, add_all
 
 if TYPE_CHECKING:
     from rastrainer.study.study_data import StudyData
@@ -33,8 +33,7 @@ class Subcommand:
 
     def add_to(self, subparsers: argparse._SubParsersAction) -> None:
         parser = subparsers.add_parser(self.name, help=self.help, description=self.description)
-        for add in self.arguments:
-            add(parser)
+        add_all(parser, self.arguments)
         parser.set_defaults(run=self.run)
         if self.actions:
             of_actions = parser.add_subparsers(title="what to do", required=True, metavar="ACTION")
