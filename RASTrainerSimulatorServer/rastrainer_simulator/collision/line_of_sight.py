@@ -1,4 +1,4 @@
-"""What can be seen from an eye past the head and one posture of the arm."""
+"""The lines of sight from an eye past the head and one posture of the arm."""
 
 from __future__ import annotations
 

@@ -130,7 +130,7 @@ class TouchPlanner:
         self._collision = collision
         self._clearance = clearance
         self._kinematics = make_kinematics(model)
-        # What the first pass cannot hold no other can: the rest would only approach it.
+        # No later pass can hold a goal that the first cannot: it would only approach it.
         self._fabrik = Fabrik(model, FabrikSettings(max_iterations=1))
         self._starts = [_swiveled(model.home, degrees) for degrees in SWIVELS_DEG]
 
@@ -155,8 +155,8 @@ class TouchPlanner:
     ) -> int | None:
         """Return which of the `tool_directions` works, None where `touch` finds none either.
 
-        The `likely` one is tried first: what has worked in one pose of the head mostly works in
-        others, too, which saves many tries.
+        The `likely` one is tried first: a choice for one pose of the head mostly fits others, too,
+        which saves many tries.
         """
         frame = _frame(normal)
         numbers = range(len(_LEANINGS))

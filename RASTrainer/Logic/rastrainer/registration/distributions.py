@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 TERMS = 200
-"""Of the continued fraction."""
+"""Terms of the continued fraction."""
 DIRECTIONS = 12
 """Nodes of a quadrature over an octant, in each direction."""
 
