@@ -73,7 +73,7 @@ class Fabrik:
 
         `target_position` (3,) is that of the tip, m; `target_direction` (3,) that of the tool, from
         the wrist to the tip; `target_rotation` (3, 3) that of the tip's frame. Without direction
-        and rotation only the position counts. The posture is near to `q_start` (7,) rad. Raises InputError for numbers that are no target.
+        and rotation only the position counts. The posture is near to `q_start` (7,) rad.
         """
         target = (target_position, target_direction, target_rotation, q_start)
         if self._true:
