@@ -18,6 +18,7 @@ from rastrainer.head.mesh import HeadMesh
 from rastrainer.procedure.geometry import mesh_crossings
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.surface_checks import LEAST_POINTS
+from rastrainer.transforms import frame_along
 
 SPACING_MM = 8.0
 """Distance between points of skin that faces the camera."""
@@ -49,10 +50,7 @@ def first_hits(mesh: HeadMesh, eye: np.ndarray, ahead: np.ndarray, spacing: floa
         ahead: (3,) float, the direction of view.
         spacing: Of the grid: the tangent of the angle between neighboring rays in the middle.
     """
-    ahead = ahead / np.linalg.norm(ahead)
-    right = np.cross(ahead, np.eye(3)[np.abs(ahead).argmin()])
-    right /= np.linalg.norm(right)
-    frame = np.stack([right, np.cross(ahead, right), ahead])
+    frame = frame_along(ahead / np.linalg.norm(ahead))
     seen = (mesh.vertices - eye) @ frame.T
     on_grid = seen[:, :2] / seen[:, 2:] / spacing
     low, high = np.floor(on_grid.min(axis=0)), np.ceil(on_grid.max(axis=0))
