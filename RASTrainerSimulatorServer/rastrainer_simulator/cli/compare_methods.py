@@ -18,6 +18,7 @@ from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.tidy_csv import csv_text
+from rastrainer.trial.score_reference import region_of
 from rastrainer.trial.touch_registration import GivenPoints
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli import arg
@@ -28,7 +29,6 @@ from rastrainer_simulator.virtual.method_trials import (
     mean_of,
     points_of_trial,
     register_by,
-    targets_of,
 )
 
 Found = Mapping[RegistrationMethod, Sequence[tuple[str, MethodResult]]]
@@ -98,7 +98,7 @@ def _simulated(arguments: argparse.Namespace, scenario: Scenario, notes: list[st
 
 
 def _played(place: StudyPlace, scenario: Scenario, notes: list[str]) -> Found:
-    mesh, targets = read_head_mesh(scenario.head_mesh), targets_of(scenario)
+    mesh, targets = read_head_mesh(scenario.head_mesh), region_of(scenario).targets
     found: dict[RegistrationMethod, list[tuple[str, MethodResult]]] = {}
     others = 0
     with Study.open_for_reading(place) as opened:

@@ -84,11 +84,6 @@ class MethodResult:
         return np.asarray((ends[:, 0] <= self.true_mm) & (self.true_mm <= ends[:, 1]))
 
 
-def targets_of(scenario: Scenario) -> np.ndarray:
-    """Return the targets at which methods are compared, (m, 3) float, RAS mm."""
-    return region_of(scenario).targets
-
-
 def register_by(
     points: MethodPoints,
     mesh: HeadMesh,
@@ -195,7 +190,7 @@ class MethodStudy:
     @cached_property
     def targets(self) -> np.ndarray:
         """(m, 3) float, RAS mm."""
-        return targets_of(self.scenario)
+        return region_of(self.scenario).targets
 
     @cached_property
     def fiducials(self) -> np.ndarray:
