@@ -25,20 +25,8 @@ from rastrainer.study.database.values import moment
 from rastrainer.study.outcomes import mode_title, short_mode_title, task_title
 from rastrainer.study.protocol.study_protocol import pass_mark_of
 from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.trial import scoring, trial_feedback
 from rastrainer.trial.aborted_trial import AbortedTrial
-from rastrainer.trial.scoring import (
-    COMMON_BIAS_LIMIT_MM,
-    CONTACT_LIMIT_S,
-    CONTACT_PATH_LIMIT_MM,
-    DEPTH_LIMIT_MM,
-    passes,
-)
-from rastrainer.trial.trial_feedback import (
-    ADEQUATE_FAILURES,
-    INADEQUATE_FAILURES,
-    TRAINING_TRIALS,
-    competence_of,
-)
 
 STARTED_HEADER = [
     *("trainee", "mode", "task", "started (n)", "finished"),
@@ -155,7 +143,7 @@ def passing(data: StudyData) -> str:
     found = {mode: _failures(data, mode, mark) for mode in data.modes}
     found = {mode: failures for mode, failures in found.items() if failures}
     competence = {
-        mode: {trainee: competence_of(own) for trainee, own in failures.items()}
+        mode: {trainee: trial_feedback.competence_of(own) for trainee, own in failures.items()}
         for mode, failures in found.items()
     }
     return page.section(
@@ -186,7 +174,7 @@ def _failures(data: StudyData, mode: str, mark: float) -> dict[str, list[bool]]:
             own.pop(0)
             failures[trial.trainee].append(True)
         score = trial.values.get(SCORE)
-        passed = score is not None and passes(score, trial.acceptable, mark)
+        passed = score is not None and scoring.passes(score, trial.acceptable, mark)
         failures[trial.trainee].append(not passed)
     for trainee, own in aborted.items():
         if own:
@@ -239,35 +227,33 @@ def _words(data: StudyData, mark: float) -> str:
     source = "the default, since the study sets no mark; no data support it"
     if data.protocol is not None and data.protocol.pass_mark is not None:
         source = "set by the protocol"
-    limit = lc_cusum_limit(ADEQUATE_FAILURES, INADEQUATE_FAILURES, TRAINING_TRIALS)
-    fewest = fewest_trials(ADEQUATE_FAILURES, INADEQUATE_FAILURES, limit)
-    too_likely = chance_of_successes(
-        fewest - 1, TRAINING_TRIALS, ADEQUATE_FAILURES, INADEQUATE_FAILURES
-    )
+    trials = trial_feedback.TRAINING_TRIALS
+    rates = trial_feedback.ADEQUATE_FAILURES, trial_feedback.INADEQUATE_FAILURES
+    fewest = fewest_trials(*rates, lc_cusum_limit(*rates, trials))
+    too_likely = chance_of_successes(fewest - 1, trials, *rates)
+    adequate, inadequate = map(percent, rates)
     return (
         f"A trial passes with {mark:g} of 100 points ({source}) and "
         f"{_acceptable(compared_method(data))}; one that was aborted after a touch, or has no "
-        "score, is not passed. "
-        "LC-CUSUM (Biau and Porcher 2010) calls a trainee competent "
-        "once the trials of a mode, over all tasks, speak clearly enough for a failure rate of "
-        f"{percent(ADEQUATE_FAILURES)} against one of {percent(INADEQUATE_FAILURES)}. Fewer than "
-        f"{fewest} trials in a mode cannot show it, even if all are passed: the score of "
-        f"{fewest - 1} passed trials would be reached by chance, within {TRAINING_TRIALS} trials, "
-        f"by {100 * too_likely:.1f} % of those who fail in {percent(INADEQUATE_FAILURES)}, and at "
-        f"most {percent(FALSE_DISCOVERY)} of them may be called competent. This takes "
-        "trials as independent: of trainees who fail as often, but on good days and bad ones, "
-        "several times as many are called competent."
+        "score, is not passed. LC-CUSUM (Biau and Porcher 2010) calls a trainee competent once "
+        "the trials of a mode, over all tasks, speak clearly enough for a failure rate of "
+        f"{adequate} against one of {inadequate}. Fewer than {fewest} trials in a mode cannot show "
+        f"it, even if all are passed: the score of {fewest - 1} passed trials would be reached by "
+        f"chance, within {trials} trials, by {100 * too_likely:.1f} % of those who fail in "
+        f"{inadequate}, and at most {percent(FALSE_DISCOVERY)} of them may be called competent. "
+        "This takes trials as independent: of trainees who fail as often, but on good days and "
+        "bad ones, several times as many are called competent."
     )
 
 
 def _acceptable(method: str) -> str:
     is_by_fiducials = method == RegistrationMethod.FIDUCIALS
-    bias = f"a bias common to all touches of at most {COMMON_BIAS_LIMIT_MM:g} mm, "
+    bias = f"a bias common to all touches of at most {scoring.COMMON_BIAS_LIMIT_MM:g} mm, "
     return (
         "within the limits of the score: a true target error in the brain within that of its "
         f"task, {bias if is_by_fiducials else ''}unintended contact of at most "
-        f"{CONTACT_LIMIT_S:g} s and {CONTACT_PATH_LIMIT_MM:g} mm, and a pressing depth of at most "
-        f"{DEPTH_LIMIT_MM:g} mm"
+        f"{scoring.CONTACT_LIMIT_S:g} s and {scoring.CONTACT_PATH_LIMIT_MM:g} mm, and a pressing "
+        f"depth of at most {scoring.DEPTH_LIMIT_MM:g} mm"
     )
 
 
