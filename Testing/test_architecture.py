@@ -69,7 +69,6 @@ LAYERS = {
         rastrainer_simulator.flow
         rastrainer_simulator.board, rastrainer_simulator.rating
         rastrainer_simulator.server
-        rastrainer_simulator.cli.doctor
         rastrainer_simulator.cli
     """,
 }

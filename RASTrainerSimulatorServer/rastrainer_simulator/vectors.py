@@ -117,13 +117,13 @@ def any_perpendicular(direction: Vector) -> Vector:
     return unit(cross(direction, axes[smallest]))
 
 
-def carried_along(across: Vector, direction: Vector, goal: Vector) -> Vector:
-    """Return `across`, perpendicular to `direction`, after the shortest turn of that to `goal`.
+def parallel_transport(vector: Vector, start: Vector, end: Vector) -> Vector:
+    """Return `vector`, perpendicular to `start`, after the shortest turn of that to `end`.
 
-    All are unit vectors; `direction` and `goal` are not opposite.
+    All are unit vectors; `start` and `end` are not opposite.
     """
-    share = dot(goal, across) / (1.0 + dot(direction, goal))
-    return unit(reject(subtract(across, scale(add(direction, goal), share)), goal))
+    share = dot(end, vector) / (1.0 + dot(start, end))
+    return unit(reject(subtract(vector, scale(add(start, end), share)), end))
 
 
 def segment_distance(

@@ -165,7 +165,9 @@ class Planner:
         found: list[ProcedureTrajectory] = []
         for one in wanted:
             for trajectory in self._by_cost(one, diameter_mm, safety_mm):
-                if self._is_free(trajectory, no_go, found) and self._is_reached(trajectory):
+                if self._is_free(trajectory, no_go, found) and self.reach.is_held(
+                    trajectory, self.poses
+                ):
                     found.append(trajectory)
                     break
             else:
@@ -217,9 +219,6 @@ class Planner:
             > 2 * radius + APART_MM
             for other in others
         )
-
-    def _is_reached(self, trajectory: ProcedureTrajectory) -> bool:
-        return self.reach.is_held(trajectory, self.poses)
 
     def checkpoints(self) -> tuple[Checkpoint, ...]:
         """Return places of smooth skin that the robot can touch in every pose of the head."""

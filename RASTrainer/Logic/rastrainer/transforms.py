@@ -73,3 +73,10 @@ def cross_products(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Return the cross products (…, 3), for few at a time faster than numpy's."""
     (a, b, c), (x, y, z) = np.moveaxis(one, -1, 0), np.moveaxis(other, -1, 0)
     return np.stack([b * z - c * y, c * x - a * z, a * y - b * x], axis=-1)
+
+
+def frame_along(direction: np.ndarray) -> np.ndarray:
+    """Return two unit vectors across a unit vector (3,), and that vector, as rows (3, 3)."""
+    across = np.cross(direction, np.eye(3)[np.abs(direction).argmin()])
+    across /= np.linalg.norm(across)
+    return np.array([across, np.cross(direction, across), direction])

@@ -14,16 +14,8 @@ from rastrainer.study.protocol.steps import mode_order
 from rastrainer.study.protocol.study_protocol import StudyProtocol, read_study_protocol
 from rastrainer.trial.score_reference import score_reference
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli.options import (
-    Command,
-    flag,
-    group,
-    number,
-    option,
-    output,
-    path,
-    text_table,
-)
+from rastrainer_simulator.cli import arg
+from rastrainer_simulator.cli.options import Subcommand, text_table
 from rastrainer_simulator.virtual.outcome_model import OutcomeModel, rejection_rates
 from rastrainer_simulator.virtual.population import ModeEffect, Population
 from rastrainer_simulator.virtual.scripted_trainee import Skill
@@ -165,13 +157,13 @@ def _power(protocol: StudyProtocol, arguments: argparse.Namespace) -> str:
     )
 
 
-SKILLS = group(
+SKILLS = arg.group(
     "the trainees",
-    number("--speed", 120.0, "of the tip between points", metavar="MM/S"),
-    number("--aim", 0.8, "SD along each axis", metavar="MM"),
-    number("--hmd-speed", 1.0, "of the speed in the headset", metavar="FACTOR"),
-    number("--hmd-aim", 1.0, "of the SD in the headset", metavar="FACTOR"),
-    option(
+    arg.number("--speed", 120.0, "of the tip between points", metavar="MM/S"),
+    arg.number("--aim", 0.8, "SD along each axis", metavar="MM"),
+    arg.number("--hmd-speed", 1.0, "of the speed in the headset", metavar="FACTOR"),
+    arg.number("--hmd-aim", 1.0, "of the SD in the headset", metavar="FACTOR"),
+    arg.option(
         "--hmd-bias",
         type=float,
         nargs=3,
@@ -179,41 +171,43 @@ SKILLS = group(
         metavar=("X", "Y", "Z"),
         help="systematic error of the aim in the headset, mm",
     ),
-    number("--spread", 0.15, "between trainees"),
-    number("--interaction", 0.05, "between trainees and modes"),
-    number("--tempo-spread", 0.0, "between trials"),
-    number("--learning", 0.15, "of the time over the trials", metavar="EXPONENT"),
-    number("--accuracy-learning", 0.0, "of the scatter", metavar="EXPONENT"),
-    number("--trade-off", 0.0, "of a trial's tempo in its scatter", metavar="EXPONENT"),
-    option(
+    arg.number("--spread", 0.15, "between trainees"),
+    arg.number("--interaction", 0.05, "between trainees and modes"),
+    arg.number("--tempo-spread", 0.0, "between trials"),
+    arg.number("--learning", 0.15, "of the time over the trials", metavar="EXPONENT"),
+    arg.number("--accuracy-learning", 0.0, "of the scatter", metavar="EXPONENT"),
+    arg.number("--trade-off", 0.0, "of a trial's tempo in its scatter", metavar="EXPONENT"),
+    arg.option(
         "--lapses",
         type=float,
         metavar="SHARE",
         help="of trials in which a touch slips and is undone (default: all played trials)",
     ),
 )
-ENGINE = group(
+ENGINE = arg.group(
     "the engine",
-    option(
+    arg.option(
         "--engine", choices=("processes", "dask"), default="processes", help="what plays the trials"
     ),
-    option("--workers", type=int, metavar="N", help="that play at once (default: one per core)"),
-    option("--address", metavar="URL", help="of a Dask scheduler"),
-    number("--step", 0.05, "of the simulation", metavar="S"),
-    path("--scenario", "DIR", "whose head and tasks are used (default: Colin27)"),
+    arg.option(
+        "--workers", type=int, metavar="N", help="that play at once (default: one per core)"
+    ),
+    arg.option("--address", metavar="URL", help="of a Dask scheduler"),
+    arg.number("--step", 0.05, "of the simulation", metavar="S"),
+    arg.path("--scenario", "DIR", "whose head and tasks are used (default: Colin27)"),
 )
 COMMANDS = (
-    Command(
+    Subcommand(
         "simulate-cohort",
         "simulate a study of virtual trainees whose parameters you set",
         run,
         (
-            number("--trainees", 20, "how many", metavar="N"),
-            path("--protocol", "FILE", "of the study (default: the published one)"),
-            number("--seed", 0, "of everything that is drawn"),
-            output("an empty folder, or one to resume"),
-            flag("--records", "write the journals too"),
-            option("--power", type=int, metavar="STUDIES", help="number of studies to draw"),
+            arg.number("--trainees", 20, "how many", metavar="N"),
+            arg.path("--protocol", "FILE", "of the study (default: the published one)"),
+            arg.number("--seed", 0, "of everything that is drawn"),
+            arg.output("an empty folder, or one to resume"),
+            arg.flag("--records", "write the journals too"),
+            arg.option("--power", type=int, metavar="STUDIES", help="number of studies to draw"),
             SKILLS,
             ENGINE,
         ),

@@ -18,30 +18,21 @@ from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.tidy_csv import csv_text
+from rastrainer.trial.score_reference import region_of
 from rastrainer.trial.touch_registration import GivenPoints
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli.options import (
-    JSON,
-    Command,
-    json_text,
-    number,
-    option,
-    output,
-    path,
-    study,
-    text_table,
-)
+from rastrainer_simulator.cli import arg
+from rastrainer_simulator.cli.options import Subcommand, json_text, text_table
 from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE
 from rastrainer_simulator.virtual.method_trials import (
     MethodResult,
     mean_of,
     points_of_trial,
     register_by,
-    targets_of,
 )
 
 Found = Mapping[RegistrationMethod, Sequence[tuple[str, MethodResult]]]
-"""By method, the trials' names and their results."""
+"""The trials' names and results, by method."""
 HEADER = (
     *("Method", "trials", "residual (mm)", "expected TRE (mm)", "interval (mm)"),
     *("true TRE (mm)", "interval holds it"),
@@ -99,7 +90,7 @@ def _simulated(arguments: argparse.Namespace, scenario: Scenario, notes: list[st
     notes.append(
         f"Simulated: skin shift {arguments.skin_shift:g} mm RMS, indentation "
         f"{arguments.indentation:g} mm; error of a point, mm: "
-        + ", ".join(f"{method.value} {PUBLISHED_NOISE[method].point_mm:g}" for method in possible)
+        + ", ".join(f"{method.value} {PUBLISHED_NOISE[method]:g}" for method in possible)
         + "."
     )
     seeds = range(arguments.seed, arguments.seed + arguments.trials)
@@ -107,7 +98,7 @@ def _simulated(arguments: argparse.Namespace, scenario: Scenario, notes: list[st
 
 
 def _played(place: StudyPlace, scenario: Scenario, notes: list[str]) -> Found:
-    mesh, targets = read_head_mesh(scenario.head_mesh), targets_of(scenario)
+    mesh, targets = read_head_mesh(scenario.head_mesh), region_of(scenario).targets
     found: dict[RegistrationMethod, list[tuple[str, MethodResult]]] = {}
     others = 0
     with Study.open_for_reading(place) as opened:
@@ -201,25 +192,25 @@ def picture(found: Found) -> str:
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "compare-methods",
         "register the same trials by every method and compare residual, expected and true TRE",
         run,
         (
-            study(nargs="?"),
-            path("--scenario", "DIR", "default: Colin27"),
-            option("--task", help="of simulated trials; default: the scenario's last one"),
-            number("--trials", 20, "number of simulated trials"),
-            number("--seed", 0, "of the first"),
-            number(
+            arg.study(nargs="?"),
+            arg.path("--scenario", "DIR", "default: Colin27"),
+            arg.option("--task", help="of simulated trials; default: the scenario's last one"),
+            arg.number("--trials", 20, "number of simulated trials"),
+            arg.number("--seed", 0, "of the first"),
+            arg.number(
                 "--skin-shift",
                 0.0,
                 "between imaging and operation, RMS; default: none",
                 metavar="MM",
             ),
-            number("--indentation", 0.0, "of the skin under the tip", metavar="MM"),
-            output("write CSV, JSON, text and a picture"),
-            JSON,
+            arg.number("--indentation", 0.0, "of the skin under the tip", metavar="MM"),
+            arg.output("write CSV, JSON, text and a picture"),
+            arg.JSON,
         ),
         "Without STUDY, trials are simulated on the scenario, with the noise of "
         "docs/registration-methods.md. With it, its played trials are registered by every method "

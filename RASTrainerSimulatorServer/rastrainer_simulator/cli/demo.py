@@ -34,12 +34,13 @@ from rastrainer.trial.ctps import CTPS_WARNING
 from rastrainer.trial.procedure_outcome import procedure_outcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli.options import Command, number, path
+from rastrainer_simulator.cli import arg
+from rastrainer_simulator.cli.options import Subcommand
 from rastrainer_simulator.core.setup import DEFAULT_SCENARIO
 
 TASKS = (TRIAL_RUN, "task-1")
 PROCEDURES = {"task-1": "dbs"}
-"""What follows the touches of a task."""
+"""The procedure after the touches of a task."""
 TRAINEE = "virtual-01"
 TOUCHES, FIDUCIALS = "touches.csv", "fiducials.csv"
 BAR_WIDTH = 30
@@ -78,7 +79,8 @@ def play_demo(output: Path, seed: int, speed: float) -> None:
     for trial in trials:
         print("\n" + trial_summary(trial, scenario.task(trial["record"]["task"]).title))
     print("\n" + procedure_summary(record, scenario, head_to_world))
-    print(f"\nWritten to {output} in {time.monotonic() - started:.0f} s: {_listing(output)}.")
+    written = ", ".join(sorted(path.name for path in output.iterdir()))
+    print(f"\nWritten to {output} in {time.monotonic() - started:.0f} s: {written}.")
 
 
 def check_slicers_side() -> None:
@@ -148,6 +150,9 @@ def _play(
     """Play the tasks; return the states at their last touches, and the record with a procedure."""
     from rastrainer_simulator.virtual.scripted_trial import play_procedure, play_trial, send_hello
 
+    def tell(done: str) -> None:
+        print(f"  {done}", flush=True)
+
     states, records = [], []
     with Client(DEFAULT_HOST, port) as client:
         send_hello(client, "scripted trainee")
@@ -164,12 +169,8 @@ def _play(
             states.append(trial.last_state)
             if procedure:
                 print(scenario.procedure(procedure).title, flush=True)
-                records.append(play_procedure(client, scenario, trial.trial_id, _tell))
+                records.append(play_procedure(client, scenario, trial.trial_id, tell))
     return states, records[-1]
-
-
-def _tell(done: str) -> None:
-    print(f"  {done}", flush=True)
 
 
 class _Bar:
@@ -250,10 +251,6 @@ def _write_points(output: Path, scenario: Scenario, record: TrialRecord) -> None
         write_text(output / name, "\n".join(["label,x,y,z", *rows, ""]))
 
 
-def _listing(folder: Path) -> str:
-    return ", ".join(sorted(path.name for path in folder.iterdir()))
-
-
 def trial_summary(trial: Mapping[str, Any], title: str) -> str:
     """Return a summary of one trial for people; `trial` is a line of results.jsonl."""
     record, target, rigid = trial["record"], trial["targetName"], trial["fits"]["rigid"]
@@ -324,14 +321,14 @@ def _residuals(labels: Sequence[str], residuals_mm: Sequence[float]) -> list[str
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "demo",
         "play two trials with a virtual trainee and show the results",
         run,
         (
-            path("--output", "DIR", "folder to write into", default=Path("rastrainer-demo")),
-            number("--seed", 2026, "of the trainee and the head's pose"),
-            number("--speed", 10.0, "simulated seconds a second"),
+            arg.path("--output", "DIR", "folder to write into", default=Path("rastrainer-demo")),
+            arg.number("--seed", 2026, "of the trainee and the head's pose"),
+            arg.number("--speed", 10.0, "simulated seconds a second"),
         ),
     ),
 )

@@ -18,7 +18,8 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DEFAULT_VIEW_PORT
 from rastrainer_simulator.assets import page_folder
-from rastrainer_simulator.cli.options import RECORDS, Command, flag, number, path
+from rastrainer_simulator.cli import arg
+from rastrainer_simulator.cli.options import Subcommand
 from rastrainer_simulator.input.gamepads import NoGamepadsError, start_sdl
 from rastrainer_simulator.net.listener import listening_socket
 from rastrainer_simulator.ops.application_window import application_browser
@@ -26,9 +27,9 @@ from rastrainer_simulator.ops.processes import has_display
 from rastrainer_simulator.ops.system_paths import config_folder, log_folder
 
 OK, WARNING, PROBLEM = "ok", "warning", "problem"
-"""With a warning a feature is missing, with a problem training is impossible."""
+"""A warning means that a feature is missing, a problem that training is impossible."""
 Answers = Iterator[tuple[str, str]]
-"""Verdicts, and what was found, a sentence each."""
+"""Verdicts, each with a sentence about the finding."""
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -52,12 +53,11 @@ NEEDED = ("aiohttp", "numpy", "psycopg", "pygame-ce", "python-fcl", "trustme", "
 FASTER = () if sys.platform == "win32" else ("fastcrc", "pin")
 MODULES = {"pin": "pinocchio", "pygame-ce": "pygame", "python-fcl": "fcl"}
 MODULES |= {"vtk": "vtkmodules.vtkCommonCore"}
-"""What is imported of a package, where it has another name."""
+"""Modules whose names differ from their packages."""
 
 
 def check_python(_arguments: argparse.Namespace) -> Answers:
-    verdict = OK if sys.version_info >= (3, 10) else PROBLEM
-    yield verdict, f"Python {platform.python_version()} at {sys.executable}."
+    yield OK, f"Python {platform.python_version()} at {sys.executable}."
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     loaded = []
     for package in (*NEEDED, *FASTER):
@@ -127,34 +127,38 @@ def check_ports(arguments: argparse.Namespace) -> Answers:
 
 EXTENSION = "SlicerOpenIGTLink"
 PLACES = {
-    "linux": ("~", "~/Applications", "~/Downloads", "/opt", "/usr/local"),
-    "win32": ("$LOCALAPPDATA", "$ProgramData", "$ProgramFiles"),
-    "darwin": ("/Applications", "~/Applications"),
+    "linux": "~:~/Applications:~/Downloads:/opt:/usr/local",
+    "darwin": "/Applications:~/Applications",
+    "win32": "$LOCALAPPDATA;$ProgramData;$ProgramFiles",
 }
 """Where Slicer usually is; on Windows perhaps in a folder of its publisher."""
 
 
+def _folders(names: str) -> list[Path]:
+    # Unlike Path's, this leaves ~ as it is where there is no home folder.
+    split = names.split(os.pathsep)
+    return [Path(os.path.expandvars(os.path.expanduser(name))) for name in split]  # noqa: PTH111
+
+
 def check_slicer(_arguments: argparse.Namespace) -> Answers:
-    """Look for Slicer and its extension."""
     slicers = list(_slicers())
     if not slicers:
         yield WARNING, "3D Slicer is not found; nothing is wrong where it runs elsewhere."
         return
     for folder in slicers:
         version = re.search(r"Slicer[- ](\d+)\.(\d+)", str(folder))
-        is_old = version is not None and tuple(map(int, version.groups())) < (5, 10)
-        age = " is older than the module was made for" if is_old else ""
-        yield WARNING if is_old else OK, f"3D Slicer in {folder}{age}."
-    users = _folder("$APPDATA" if sys.platform == "win32" else "~/.config")
+        if version is None or tuple(map(int, version.groups())) >= (5, 10):
+            yield OK, f"3D Slicer is in {folder}."
+        else:
+            yield WARNING, f"3D Slicer in {folder} is older than the module was made for."
+    (users,) = _folders("$APPDATA" if sys.platform == "win32" else "~/.config")
     bases = [users / "slicer.org", users / "NA-MIC"]
     bases += [base for each in slicers for base in (each / "slicer.org", each / "Extensions", each)]
     found = [path for base in bases for path in base.glob(f"Extensions-*/{EXTENSION}")]
-    yield (OK, f"{EXTENSION} is in {found[0]}.") if found else (WARNING, f"{EXTENSION} is missing.")
-
-
-def _folder(name: str) -> Path:
-    # Unlike Path's, this leaves ~ as it is where there is no home folder.
-    return Path(os.path.expandvars(os.path.expanduser(name)))  # noqa: PTH111
+    if found:
+        yield OK, f"{EXTENSION} is in {found[0]}."
+    else:
+        yield WARNING, f"{EXTENSION} is missing: install it in Slicer's Extensions Manager."
 
 
 def _slicers() -> Iterator[Path]:
@@ -162,9 +166,9 @@ def _slicers() -> Iterator[Path]:
     named, on_path = os.environ.get("SLICER_HOME"), shutil.which("Slicer")
     candidates = [Path(named)] if named else []
     candidates += [Path(on_path).resolve().parent] if on_path else []
-    for place in PLACES.get(sys.platform, ()):
+    for place in _folders(PLACES.get(sys.platform, "~")):
         for pattern in ("Slicer*", "slicer.org/Slicer*", "NA-MIC/Slicer*"):
-            candidates += sorted(_folder(place).glob(pattern))
+            candidates += sorted(place.glob(pattern))
     program = {"win32": "Slicer.exe", "darwin": "MacOS/Slicer"}.get(sys.platform, "Slicer")
     for candidate in dict.fromkeys(candidates):
         folder = candidate / "Contents" if candidate.suffix == ".app" else candidate
@@ -193,13 +197,9 @@ def check_disk(arguments: argparse.Namespace) -> Answers:
         yield verdict, f"{what}: {folder} can be written to; {free_mb:,.0f} MB are free."
 
 
+PIP = f"{sys.executable} -m pip install"
 CHECKS = (
-    (
-        "python",
-        check_python,
-        "Install Python 3.10 or newer, and what is missing: "
-        f"{sys.executable} -m pip install --force-reinstall PACKAGE",
-    ),
+    ("python", check_python, f"Install the package again: {PIP} --force-reinstall PACKAGE"),
     ("window", check_window, "Install one of them, or open the page on another computer: --lan"),
     ("browser", check_page, "Build it: make page"),
     (
@@ -212,23 +212,22 @@ CHECKS = (
     (
         "slicer",
         check_slicer,
-        "Get 3D Slicer 5.10 or newer from https://download.slicer.org (or set SLICER_HOME to its "
-        f"folder), and {EXTENSION} in its Extensions Manager.",
+        "Get Slicer 5.10 or newer from download.slicer.org, or set SLICER_HOME.",
     ),
     ("disk", check_disk, "Free some space there and allow writing, or choose another folder."),
 )
 """Title, test and remedy of each check."""
 COMMANDS = (
-    Command(
+    Subcommand(
         "doctor",
         "check this computer, and suggest remedies for problems",
         run,
         (
-            number("--port", DEFAULT_PORT, "of OpenIGTLink"),
-            number("--view-port", DEFAULT_VIEW_PORT, "of the views"),
-            RECORDS,
-            path("--config", "DIR", "of your settings"),
-            flag("--json", "print the findings as JSON"),
+            arg.number("--port", DEFAULT_PORT, "of OpenIGTLink"),
+            arg.number("--view-port", DEFAULT_VIEW_PORT, "of the views"),
+            arg.RECORDS,
+            arg.path("--config", "DIR", "of your settings"),
+            arg.flag("--json", "print the findings as JSON"),
         ),
         "Exit status: 0 without problems (warnings leave something out), 1 with one.",
     ),

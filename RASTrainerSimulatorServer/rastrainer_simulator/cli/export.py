@@ -26,15 +26,8 @@ from rastrainer.study.tidy_csv import (
     touches_csv,
     trials_csv,
 )
-from rastrainer_simulator.cli.options import (
-    INCOMPLETE,
-    Command,
-    option,
-    output,
-    path,
-    read_known_study,
-    study,
-)
+from rastrainer_simulator.cli import arg
+from rastrainer_simulator.cli.options import Subcommand, read_known_study
 from rastrainer_simulator.export.grades import PLATFORMS, RULES, grade, grades_csv
 from rastrainer_simulator.export.trial_files import write_motion_bids, write_slicer_files
 from rastrainer_simulator.export.xapi import HOME_PAGE, statements_text
@@ -128,40 +121,42 @@ def _stored(data: StudyData, place: StudyPlace) -> Iterator[tuple[TrialRow, Stor
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "export",
         "export a study: tidy CSV, Motion-BIDS, xAPI, Slicer's files, grades",
         run,
         (
-            study(),
-            output("an empty folder", required=True),
-            option(
+            arg.study(),
+            arg.output("an empty folder", required=True),
+            arg.option(
                 "--format", action="append", choices=FORMATS, help="may be repeated; default: all"
             ),
-            path("--records", "DIR", "the simulator's journals, for Motion-BIDS"),
-            option(
+            arg.path("--records", "DIR", "the simulator's journals, for Motion-BIDS"),
+            arg.option(
                 "--home-page",
                 type=_home_page,
                 default=HOME_PAGE,
                 metavar="URL",
                 help="of the lab's system, which makes pseudonyms unique among labs, for xAPI",
             ),
-            option("--grades", choices=PLATFORMS, help="write only what this platform imports"),
-            option("--task", metavar="TASK", help="whose trials give the grade (default: any)"),
-            option(
+            arg.option("--grades", choices=PLATFORMS, help="write only what this platform imports"),
+            arg.option("--task", metavar="TASK", help="whose trials give the grade (default: any)"),
+            arg.option(
                 "--mode",
                 choices=[each.value for each in Mode],
                 help="whose trials give the grade (default: both)",
             ),
-            option(
+            arg.option(
                 "--method",
                 choices=[each.value for each in RegistrationMethod],
                 default=RegistrationMethod.FIDUCIALS.value,
                 metavar="METHOD",
                 help="of registration, whose trials give the grade",
             ),
-            option("--rule", choices=RULES, default="best", help="which acceptable trial gives it"),
-            INCOMPLETE,
+            arg.option(
+                "--rule", choices=RULES, default="best", help="which acceptable trial gives it"
+            ),
+            arg.INCOMPLETE,
         ),
         "Write a study into an empty folder, a folder a format. Trainees appear by their "
         "pseudonyms, and only those who consented to research. With --grades, write only the "

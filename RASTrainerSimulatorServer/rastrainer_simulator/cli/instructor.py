@@ -12,16 +12,8 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer.study.database.database import StudyPlace
-from rastrainer_simulator.cli.options import (
-    CONFIG,
-    STUDY_HELP,
-    Command,
-    announce,
-    check_ports,
-    flag,
-    number,
-    study,
-)
+from rastrainer_simulator.cli import arg
+from rastrainer_simulator.cli.options import Subcommand, announce, check_ports
 from rastrainer_simulator.ops.instructor_pin import PIN_WORDS, InstructorPin
 from rastrainer_simulator.ops.system_paths import config_folder
 
@@ -83,29 +75,30 @@ def _asked() -> str:
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "board",
         "watch several simulators in one page of live tiles",
         serve_board,
         (
-            study(
-                "--study", f"also show the class of this study, which is only read: {STUDY_HELP}"
+            arg.study(
+                "--study",
+                f"also show the class of this study, which is only read: {arg.STUDY_HELP}",
             ),
-            number(
+            arg.number(
                 "--port", DEFAULT_BOARD_PORT, "for browsers on this computer, 0 for any free one"
             ),
-            CONFIG,
+            arg.CONFIG,
         ),
         "Serves a teacher's board to browsers on this computer until Ctrl-C: who trains where, "
         "task, point, time, contact and last score of each seat, and each seat's scene; with a "
         "study, also where every trainee stands in the curriculum. The seats' addresses and keys "
         "stay on this computer.",
     ),
-    Command(
+    Subcommand(
         "instructor-pin",
         "set the PIN that instructors need at this seat",
         set_pin,
-        (flag("--remove", "have no PIN any more"), CONFIG),
+        (arg.flag("--remove", "have no PIN any more"), arg.CONFIG),
         f"Asks for a PIN of {PIN_WORDS}, twice, or reads it from a pipe. With it, a teacher's "
         "board may pause this simulator, show the trainee a sentence and start a replay; and at "
         "the simulator, settings, order of tasks and another view's taking the control are locked "

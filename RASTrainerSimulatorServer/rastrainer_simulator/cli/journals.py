@@ -9,16 +9,8 @@ from typing import TYPE_CHECKING
 
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
-from rastrainer_simulator.cli.options import (
-    JSON,
-    Command,
-    flag,
-    json_text,
-    option,
-    path,
-    study,
-    text_table,
-)
+from rastrainer_simulator.cli import arg
+from rastrainer_simulator.cli.options import Subcommand, json_text, text_table
 
 if TYPE_CHECKING:
     from rastrainer.study.database.study import Study
@@ -45,7 +37,7 @@ def _verify(path: Path, study: Study | None = None) -> int:
 
 
 def _differs(reading: JournalReading, study: Study) -> str:
-    """Return how a journal is not the one that a study's trial came from; "" if it is."""
+    """Return how a journal differs from the journal of a study's trial; "" if it does not."""
     try:
         record = study.trial(str(reading.header.get("trialId"))).record
     except InputError:
@@ -76,23 +68,25 @@ def measure(arguments: argparse.Namespace) -> int:
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "verify",
         "check whether journals of trials are intact, cut short or altered",
         verify,
         (
-            option("journals", nargs="+", type=Path, metavar="JOURNAL"),
-            study("--study", "whose trials must be those of the journals; a file or an address"),
+            arg.option("journals", nargs="+", type=Path, metavar="JOURNAL"),
+            arg.study(
+                "--study", "whose trials must be those of the journals; a file or an address"
+            ),
         ),
         "Exit status: 0 all intact (and those of the study's trials), 1 one cut short, altered or "
         "another, 2 one not a journal. Whether a trial was played as its journal says is found by "
         "`rastrainer replay --verify`.",
     ),
-    Command(
+    Subcommand(
         "measure",
         "compute the motion metrics of a trial from its journal",
         measure,
-        (path("journal", "JOURNAL"), flag("--explain", "explain each metric"), JSON),
+        (arg.path("journal", "JOURNAL"), arg.flag("--explain", "explain each metric"), arg.JSON),
         "The numbers are those of the trial's record, to the last bit.",
     ),
 )

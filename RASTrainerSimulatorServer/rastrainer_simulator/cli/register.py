@@ -13,7 +13,6 @@ from rastrainer.errors import InputError
 from rastrainer.files.point_files import read_point_numbers, read_points
 from rastrainer.files.point_list import PointList, pair
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.json_records import record_to_json
 from rastrainer.registration.fits import KINDS, RIGID
 from rastrainer.registration.localization_error import (
     LocalizationError,
@@ -26,15 +25,8 @@ from rastrainer.registration.registration import Registration, register
 from rastrainer.registration.surface_error import knowledge_of, surface_target_error
 from rastrainer.registration.surface_match import SurfaceMatch, match_surface
 from rastrainer.registration.target_error import INTERVAL_NOTE, TargetError, target_error
-from rastrainer_simulator.cli.options import (
-    JSON,
-    Command,
-    json_text,
-    one_of,
-    option,
-    path,
-    text_table,
-)
+from rastrainer_simulator.cli import arg
+from rastrainer_simulator.cli.options import Subcommand, json_text, picked, text_table
 
 FRE_NOTE = (
     "FRE is the error at the fiducials; it does not predict the error at a target in a single case."
@@ -56,13 +48,13 @@ class StatedErrors:
     Attributes:
         fle_mm: (n,) float, RMS length of each point's error.
         localization: The same as covariances.
-        misfit: Probability of residuals as large as the present ones.
+        misfit_probability: Probability of residuals as large as the present ones.
     """
 
     fle_mm: np.ndarray
     localization: LocalizationError
     expected_fre_mm: float
-    misfit: float
+    misfit_probability: float
 
     @classmethod
     def of(cls, registration: Registration, fle_mm: np.ndarray) -> StatedErrors:
@@ -110,24 +102,14 @@ def registration_json(
     registration: Registration, error: TargetError | None, stated: StatedErrors | None = None
 ) -> dict[str, Any]:
     """Return a registration as a JSON object; `expected_tre` is None if it is unknown."""
-    weights = registration.weights
+    given = None
+    if stated is not None:
+        given = picked(stated, "fle_mm", "expected_fre_mm", "misfit_probability")
+    names = ("fre_mm", "matrix", "labels", "residuals_mm", "residual_vectors_mm", "warnings")
     return {
         "type": registration.kind,
-        "fre_mm": registration.fre_mm,
-        "matrix": registration.matrix.tolist(),
-        "labels": list(registration.labels),
-        "residuals_mm": registration.residuals_mm.tolist(),
-        "residual_vectors_mm": registration.residual_vectors_mm.tolist(),
-        "warnings": [record_to_json(warning) for warning in registration.warnings],
-        "weights": None if weights is None else weights.tolist(),
-        "weighted_fre_mm": registration.weighted_fre_mm,
-        "stated": None
-        if stated is None
-        else {
-            "fle_mm": stated.fle_mm.tolist(),
-            "expected_fre_mm": stated.expected_fre_mm,
-            "misfit_probability": stated.misfit,
-        },
+        **picked(registration, *names, "weights", "weighted_fre_mm"),
+        "stated": given,
         "expected_tre": None if error is None else {**asdict(error), "note": INTERVAL_NOTE},
     }
 
@@ -152,7 +134,7 @@ def registration_text(
     lines += [FRE_NOTE, "", "Moving to fixed (mm)", *_matrix_lines(registration.matrix)]
     lines += ["", _residual_table(registration, stated)]
     warnings = [warning.message for warning in registration.warnings]
-    if stated is not None and stated.misfit < MISFIT_LEVEL:
+    if stated is not None and stated.misfit_probability < MISFIT_LEVEL:
         warnings.append(
             "The residuals are larger than the stated FLE allow; the expected TRE, which is "
             "computed from these, is too small."
@@ -237,20 +219,13 @@ def match_files(
 
 def match_json(match: SurfaceMatch, error: TargetError) -> dict[str, Any]:
     """Return a match as a JSON object."""
+    names = ("rms_mm", "inlier_share", "converged", "starts", "best_starts", "spread_mm")
     return {
         "type": "surface",
-        "matrix": match.matrix.tolist(),
         "points": len(match.residuals_mm),
-        "rms_mm": match.rms_mm,
-        "inlier_share": match.inlier_share,
-        "converged": match.converged,
-        "starts": match.starts,
-        "best_starts": match.best_starts,
-        "spread_mm": match.spread_mm,
         "slide_mm": match.slide.distance_mm,
         "slide_place": match.slide.place,
-        "residuals_mm": match.residuals_mm.tolist(),
-        "warnings": [record_to_json(warning) for warning in match.warnings],
+        **picked(match, "matrix", *names, "residuals_mm", "warnings"),
         "expected_tre": {**asdict(error), "note": RESIDUAL_NOTE},
     }
 
@@ -279,15 +254,15 @@ def match_text(match: SurfaceMatch, error: TargetError) -> str:
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "register",
         "register moving points to fixed points",
         run,
         (
-            option("moving", metavar="MOVING", help="the points to be mapped"),
-            option("fixed", metavar="FIXED", help="the points to map them to"),
-            option("--type", choices=KINDS, default=RIGID, help="of the transform"),
-            option(
+            arg.option("moving", metavar="MOVING", help="the points to be mapped"),
+            arg.option("fixed", metavar="FIXED", help="the points to map them to"),
+            arg.option("--type", choices=KINDS, default=RIGID, help="of the transform"),
+            arg.option(
                 "--target",
                 nargs=3,
                 type=float,
@@ -295,15 +270,15 @@ COMMANDS = (
                 help="point in the fixed space (mm) whose error is estimated; default: the "
                 "centroid",
             ),
-            one_of(
-                option(
+            arg.one_of(
+                arg.option(
                     "--fle",
                     metavar="FILE.csv",
                     help="weight each point by 1/FLE² (rigid only): a CSV file with the header "
                     "label,fle, the RMS localization error of each point in mm; may be MOVING "
                     "itself with that column",
                 ),
-                option(
+                arg.option(
                     "--weights",
                     metavar="FILE.csv",
                     help="weight the points (rigid only): a CSV file with the header label,weight; "
@@ -311,13 +286,13 @@ COMMANDS = (
                     "residuals",
                 ),
             ),
-            option(
+            arg.option(
                 "--surface",
                 metavar="TRACE",
                 help="points drawn over the skin, in the frame of MOVING: CSV, .mrk.json or .ply",
             ),
-            path("--head", "HEAD.ply", "the head's mesh for --surface, RAS mm"),
-            JSON,
+            arg.path("--head", "HEAD.ply", "the head's mesh for --surface, RAS mm"),
+            arg.JSON,
         ),
         "Register two files of points: CSV with the header label,x,y,z (mm), or Slicer's "
         ".mrk.json, .fcsv or exported table. Points are paired by label, or by order where the "

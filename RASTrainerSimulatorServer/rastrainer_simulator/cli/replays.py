@@ -12,18 +12,8 @@ from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.study.database.study import Study
 from rastrainer.study.ratings import FORMS, RatingStore, find_form
-from rastrainer_simulator.cli.options import (
-    RECORDS,
-    Command,
-    announce,
-    check_ports,
-    flag,
-    number,
-    option,
-    path,
-    study,
-    switch,
-)
+from rastrainer_simulator.cli import arg
+from rastrainer_simulator.cli.options import Subcommand, announce, check_ports
 
 REPLAYS = 20
 
@@ -92,48 +82,50 @@ def rate(arguments: argparse.Namespace) -> int:
 
 
 PLAYBACK = (
-    option("--view-port", type=int, metavar="PORT", help="where views are served"),
-    switch("--window", "open the window"),
+    arg.option("--view-port", type=int, metavar="PORT", help="where views are served"),
+    arg.switch("--window", "open the window"),
 )
 COMMANDS = (
-    Command(
+    Subcommand(
         "replay",
         "show a recorded trial, or simulate it again and compare it bit by bit",
         replay,
         (
-            path("journal", "JOURNAL"),
-            path("--scenario", "DIR", "the scenario it was recorded with"),
-            flag(
+            arg.path("journal", "JOURNAL"),
+            arg.path("--scenario", "DIR", "the scenario it was recorded with"),
+            arg.flag(
                 "--verify",
                 "simulate the trial again and compare it with the journal instead of showing it",
             ),
-            flag("--json", "print the report of --verify as JSON"),
+            arg.flag("--json", "print the report of --verify as JSON"),
             *PLAYBACK,
         ),
         "Shows the trial in the window and to every view; Escape ends it. Exit status: 0 shown, or "
         "equal to the last bit; 1 something differs; 2 not replayable.",
     ),
-    Command(
+    Subcommand(
         "rate",
         "mark replays of a study's trials on GEARS and OSATS forms, blinded",
         rate,
         (
-            study(),
-            option(
+            arg.study(),
+            arg.option(
                 "--rater",
                 required=True,
                 metavar="NAME",
                 help="a pseudonym of who rates, such as R1",
             ),
-            RECORDS,
-            number("--replays", REPLAYS, "how many trials are drawn for all raters", metavar="N"),
-            option(
+            arg.RECORDS,
+            arg.number(
+                "--replays", REPLAYS, "how many trials are drawn for all raters", metavar="N"
+            ),
+            arg.option(
                 "--form",
                 action="append",
                 choices=list(FORMS),
                 help="may be given several times (default: all)",
             ),
-            path("--scenario", "DIR", "the scenario they were recorded with"),
+            arg.path("--scenario", "DIR", "the scenario they were recorded with"),
             *PLAYBACK,
         ),
         "Shows the replays of trials in the window and to every view, under shuffled numbers, "

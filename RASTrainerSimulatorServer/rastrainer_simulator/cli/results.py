@@ -14,18 +14,12 @@ from rastrainer.trial.ctps import (
     score_cohort,
     trials_by_mode,
 )
+from rastrainer_simulator.cli import arg
 from rastrainer_simulator.cli.options import (
-    INCOMPLETE,
-    JSON,
-    STUDY_HELP,
-    Argument,
-    Command,
+    Subcommand,
     json_text,
-    option,
-    output,
-    path,
+    picked,
     read_known_study,
-    study,
     text_table,
 )
 
@@ -51,7 +45,7 @@ def _scores_json(scores: CohortScores) -> dict[str, Any]:
     """Return the scores of one mode as a JSON object; undefined values are None."""
     names = ("overall", "equation_3_overall", "tasks", "subjects", "sd_population", "sd_sample")
     return {
-        **{name: getattr(scores, name) for name in (*names, "pearson_r", "r_squared")},
+        **picked(scores, *names, "pearson_r", "r_squared"),
         "mean_ct": scores.reference.mean_ct_s,
         "best_rmse": scores.reference.best_rmse_mm,
         "trials": len(scores.trials),
@@ -118,41 +112,41 @@ def _mean_times(given: list[str], modes: list[str]) -> dict[str, float]:
     return means
 
 
-def _mean_ct(help_text: str) -> Argument:
-    return option(
+def _mean_ct(help_text: str) -> arg.Argument:
+    return arg.option(
         "--mean-ct", action="append", default=[], metavar="[MODE=]SECONDS", help=help_text
     )
 
 
 CSV_HEADER = "mode,subject,task,ct,rmse"
 COMMANDS = (
-    Command(
+    Subcommand(
         "score",
         "score the trials of a study as the paper does (CTPS)",
         score,
         (
-            path("trials", "TRIALS.csv", "one trial a row"),
+            arg.path("trials", "TRIALS.csv", "one trial a row"),
             _mean_ct(
                 "use this mean completion time instead of the trials' own, or of the one that "
                 "notes beside the file (TRIALS.json) give; without MODE for all modes; may be "
                 "given once for each mode"
             ),
-            JSON,
+            arg.JSON,
         ),
         f"Score the trials of a CSV file with the header {CSV_HEADER} (s and mm) with CTPS, "
         "separately for each mode.",
     ),
-    Command(
+    Subcommand(
         "report",
         "write a study's report: tables, charts, tests, limits",
         report,
         (
-            study(help_text=f"{STUDY_HELP}; or a CSV file with the header {CSV_HEADER}"),
-            output("folder to write into", required=True),
+            arg.study(help_text=f"{arg.STUDY_HELP}; or a CSV file with the header {CSV_HEADER}"),
+            arg.output("folder to write into", required=True),
             _mean_ct(
                 "a mean completion time for CTPS instead of the trials' own; see rastrainer score"
             ),
-            INCOMPLETE,
+            arg.INCOMPLETE,
         ),
         "Write report.html, which needs no other file and prints on A4, and trials.csv. Trainees "
         "who did not consent to research are left out.",

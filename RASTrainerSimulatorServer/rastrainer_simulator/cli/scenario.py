@@ -14,7 +14,8 @@ from rastrainer.procedure.plan import Procedure, read_procedure
 from rastrainer.scenario.library import list_scenarios, unpack
 from rastrainer.scenario.writer import require_new
 from rastrainer.work_progress import print_progress, print_warning
-from rastrainer_simulator.cli.options import Command, flag, path
+from rastrainer_simulator.cli import arg
+from rastrainer_simulator.cli.options import Subcommand
 from rastrainer_simulator.cli.scenario_options import (
     HEAD_OPTIONS,
     LIBRARY,
@@ -196,34 +197,34 @@ def _clean_up_when_terminated() -> None:
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
 
 
-FOLDER = path("folder", "DIR")
+FOLDER = arg.path("folder", "DIR")
 ACTIONS = (
-    Command(
+    Subcommand(
         "build",
         "make a scenario of a volume",
         _build,
         (
-            path("volume", "VOLUME", "NRRD, NIfTI or DICOM folder"),
+            arg.path("volume", "VOLUME", "NRRD, NIfTI or DICOM folder"),
             *HEAD_OPTIONS,
-            flag("--no-skull", "leave the skull out"),
-            flag("--no-volume", "leave the images out"),
+            arg.flag("--no-skull", "leave the skull out"),
+            arg.flag("--no-volume", "leave the images out"),
             *OPTIONS,
         ),
     ),
-    Command(
+    Subcommand(
         "tasks",
         "propose tasks on a head that was made elsewhere",
         _tasks,
-        (path("draft", "DRAFT", "folder with the head's draft"), *OPTIONS),
+        (arg.path("draft", "DRAFT", "folder with the head's draft"), *OPTIONS),
     ),
-    Command(
+    Subcommand(
         "preview",
         "draw the head in a volume, to adjust it",
         _preview,
-        (path("volume", "VOLUME"), path("picture", "PNG"), *HEAD_OPTIONS),
+        (arg.path("volume", "VOLUME"), arg.path("picture", "PNG"), *HEAD_OPTIONS),
     ),
-    Command("check", "list the errors of a scenario; status 1 if any", _check, (FOLDER,)),
-    Command(
+    Subcommand("check", "list the errors of a scenario; status 1 if any", _check, (FOLDER,)),
+    Subcommand(
         "plan",
         "copy a scenario with other targets or trajectory",
         _plan,
@@ -232,54 +233,58 @@ ACTIONS = (
             *OUTPUT,
             *PLAN,
             procedure_option("added, or in the place of the one of the same name"),
-            path(
+            arg.path(
                 "--landmarks",
                 "MRK_JSON",
                 "placed landmarks, in the order of touching, in the place of the scenario's own",
             ),
         ),
     ),
-    Command(
+    Subcommand(
         "landmarks",
         "check placed landmarks on a head, or propose them; status 1 if wrong",
         _landmarks,
-        (FOLDER, path("file", "MRK_JSON"), flag("--propose", "write a proposal to MRK_JSON")),
+        (
+            FOLDER,
+            arg.path("file", "MRK_JSON"),
+            arg.flag("--propose", "write a proposal to MRK_JSON"),
+        ),
     ),
-    Command(
+    Subcommand(
         "lines",
         "measure the planned lines of procedures; status 1 if any is wrong",
         _lines,
         (
             FOLDER,
             procedure_option("measured in the place of the scenario's own"),
-            path("--json", "FILE", "write everything there, too"),
+            arg.path("--json", "FILE", "write everything there, too"),
         ),
     ),
-    Command(
+    Subcommand(
         "pack",
         "write a scenario as one zip file, without face, title and source",
         _pack,
         (
             FOLDER,
-            path("package", "ZIP"),
-            path("--picture", "PNG", "only draw the head before and after; write no zip file"),
-            flag("--yes", "the picture was looked at"),
-            flag("--keep-face", "the patient can then be recognized"),
-            flag("--keep-names", "title, name and source, too"),
+            arg.path("package", "ZIP"),
+            arg.path("--picture", "PNG", "only draw the head before and after; write no zip file"),
+            arg.flag("--yes", "the picture was looked at"),
+            arg.flag("--keep-face", "the patient can then be recognized"),
+            arg.flag("--keep-names", "title, name and source, too"),
         ),
     ),
-    Command(
+    Subcommand(
         "unpack",
         "unpack a scenario into your library",
         _unpack,
-        (path("package", "ZIP"), LIBRARY),
+        (arg.path("package", "ZIP"), LIBRARY),
     ),
-    Command("list", "list the available scenarios", _list, (LIBRARY,)),
+    Subcommand("list", "list the available scenarios", _list, (LIBRARY,)),
 )
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "scenario",
         "make a scenario of a head MRI or CT, check, pack and list scenarios",
         description="Makes and checks scenarios. Not for clinical use.",

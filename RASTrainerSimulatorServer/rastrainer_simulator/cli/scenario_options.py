@@ -15,15 +15,7 @@ from rastrainer.scenario.points import PlannedTarget, PlannedTrajectory
 from rastrainer.scenario.scenario import UNKNOWN_LICENSE
 from rastrainer.scenario.setup import SetUp, read_setup
 from rastrainer.scenario.writer import scenario_name
-from rastrainer_simulator.cli.options import (
-    Argument,
-    flag,
-    number,
-    option,
-    output,
-    path,
-    path_of_user,
-)
+from rastrainer_simulator.cli import arg
 
 if TYPE_CHECKING:
     from rastrainer_simulator.authoring.make import ScenarioOptions
@@ -32,32 +24,32 @@ LONGEST_TITLE, LONGEST_NAME, LONGEST_TEXT = 80, 60, 4000
 
 
 HEAD_OPTIONS = (
-    option(
+    arg.option(
         "--threshold",
         type=float,
         help="value that separates air from skin (default: estimated)",
     ),
-    option("--cut", type=float, metavar="S", help="height of the flat base, mm superior"),
-    option(
+    arg.option("--cut", type=float, metavar="S", help="height of the flat base, mm superior"),
+    arg.option(
         "--orientation",
         metavar="LAS",
         help="how the axes of a file run that states none: to the left, anterior, superior",
     ),
 )
 """How the head is found in a volume."""
-LIBRARY = option(
+LIBRARY = arg.option(
     "--library",
-    type=path_of_user,
+    type=arg.path_of_user,
     default=f"~/{USER_LIBRARY}",
     metavar="DIR",
     help="folder of your scenarios",
 )
 OUTPUT = (
-    output("a new one", required=True),
-    option("--title", help="default: the name of the new folder"),
+    arg.output("a new one", required=True),
+    arg.option("--title", help="default: the name of the new folder"),
 )
 PLAN = (
-    option(
+    arg.option(
         "--target",
         nargs=4,
         action="append",
@@ -65,7 +57,7 @@ PLAN = (
         metavar=("NAME", "R", "A", "S"),
         help="a planned target, RAS mm; may be repeated: the error is reported at the first",
     ),
-    option(
+    arg.option(
         "--trajectory",
         nargs=7,
         metavar=("NAME", "ER", "EA", "ES", "TR", "TA", "TS"),
@@ -75,11 +67,11 @@ PLAN = (
 OPTIONS = (
     *OUTPUT,
     *PLAN,
-    option("--source", help="where the images come from (default: the volume's name)"),
-    option("--license", default=UNKNOWN_LICENSE, help="under which it may be used"),
-    path("--setup", "JSON", "head, table and robot base"),
-    number("--seed", 1, "of the proposed tasks"),
-    option(
+    arg.option("--source", help="where the images come from (default: the volume's name)"),
+    arg.option("--license", default=UNKNOWN_LICENSE, help="under which it may be used"),
+    arg.path("--setup", "JSON", "head, table and robot base"),
+    arg.number("--seed", 1, "of the proposed tasks"),
+    arg.option(
         "--tasks",
         nargs="+",
         type=Path,
@@ -87,15 +79,15 @@ OPTIONS = (
         metavar="MRK_JSON",
         help="manually placed fiducials: the trial run, Task 1, Task 2 …",
     ),
-    flag("--check", "only check whether set-up, plan and placed fiducials can be used"),
+    arg.flag("--check", "only check whether set-up, plan and placed fiducials can be used"),
 )
-"""What a new scenario is made with; `options_of` reads them."""
+"""The options of a new scenario, read by `options_of`."""
 
 
-def procedure_option(what: str) -> Argument:
+def procedure_option(what: str) -> arg.Argument:
     """Return the argument of a procedure's file; `what` says what becomes of it."""
     text = f"a procedure as in scenario.json, its meshes in the folder no-go beside it: {what}"
-    return path("--procedure", "JSON", text)
+    return arg.path("--procedure", "JSON", text)
 
 
 def options_of(arguments: argparse.Namespace, source: str) -> ScenarioOptions:

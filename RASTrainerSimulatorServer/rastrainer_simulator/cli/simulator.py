@@ -9,18 +9,8 @@ from functools import partial
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DEFAULT_VIEW_PORT
-from rastrainer_simulator.cli.options import (
-    CONFIG,
-    RECORDS,
-    Command,
-    announce,
-    check_ports,
-    flag,
-    number,
-    option,
-    path,
-    switch,
-)
+from rastrainer_simulator.cli import arg
+from rastrainer_simulator.cli.options import Subcommand, announce, check_ports
 from rastrainer_simulator.ops.log_files import keep_logs
 from rastrainer_simulator.ops.processes import has_display
 from rastrainer_simulator.ops.system_paths import log_folder
@@ -89,53 +79,55 @@ def _address(text: str) -> tuple[str, int]:
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "simulator",
         "run the simulator, which Slicer and the views connect to",
         run_simulator,
         (
-            option("--host", default=DEFAULT_HOST, help="address to listen on"),
-            number("--port", DEFAULT_PORT, "port to listen on, 0 for any free one"),
-            option("--connect", metavar="HOST:PORT", help="connect to a listening Slicer instead"),
-            option(
+            arg.option("--host", default=DEFAULT_HOST, help="address to listen on"),
+            arg.number("--port", DEFAULT_PORT, "port to listen on, 0 for any free one"),
+            arg.option(
+                "--connect", metavar="HOST:PORT", help="connect to a listening Slicer instead"
+            ),
+            arg.option(
                 "--view-port",
                 type=int,
                 help="port for the browser, 0 for any free one (default: "
                 f"{DEFAULT_VIEW_PORT}, or any free one where that is taken)",
             ),
-            flag(
+            arg.flag(
                 "--lan",
                 "serve browsers and headsets in the local network, too, by https with a "
                 "certificate made on this computer",
             ),
-            flag("--no-views", "serve OpenIGTLink only, no page for browsers"),
-            number("--speed", 1.0, "simulated seconds a second"),
-            option(
+            arg.flag("--no-views", "serve OpenIGTLink only, no page for browsers"),
+            arg.number("--speed", 1.0, "simulated seconds a second"),
+            arg.option(
                 "--seed",
                 type=int,
                 help="of the heads' poses, for tests: no study counts such trials (default: none; "
                 "the poses cannot be predicted)",
             ),
-            RECORDS,
-            path("--scenario", "DIR", "a scenario of your own (default: Colin27)"),
-            path("--robot-meshes", "DIR", "the robot's official meshes"),
-            flag(
+            arg.RECORDS,
+            arg.path("--scenario", "DIR", "a scenario of your own (default: Colin27)"),
+            arg.path("--robot-meshes", "DIR", "the robot's official meshes"),
+            arg.flag(
                 "--desktop",
                 "open the page in a window of its own; the simulator ends when it is closed",
             ),
-            switch("--gamepad", "read the gamepads of this computer"),
-            CONFIG,
-            switch(
+            arg.switch("--gamepad", "read the gamepads of this computer"),
+            arg.CONFIG,
+            arg.switch(
                 "--resume",
                 "resume the newest trial where it was interrupted; it is paused until it is "
                 "resumed or aborted",
             ),
-            switch(
+            arg.switch(
                 "--own-score",
                 "score a trial outside of a study in the simulator where no Slicer is connected "
                 "when it ends",
             ),
-            path(
+            arg.path(
                 "--log-folder",
                 "DIR",
                 "folder of the logs (default: the usual, or logs in that of --config)",

@@ -12,7 +12,8 @@ from rastrainer.study.database.database import Connection
 from rastrainer.study.database.schema import Table, study_tables
 from rastrainer.study.database.study import Study
 from rastrainer.study.trainee_data import erase_trainee
-from rastrainer_simulator.cli.options import Command, flag, option, path, study
+from rastrainer_simulator.cli import arg
+from rastrainer_simulator.cli.options import Subcommand
 
 COUNTER = "trainee_numbers"
 """The one table that a new study has a row in."""
@@ -90,27 +91,27 @@ def run_delete_trainee(arguments: argparse.Namespace) -> int:
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "copy-study",
         "copy a study from its file into PostgreSQL, or back",
         run_copy_study,
         (
-            study("source", "the study: a file, or an address of PostgreSQL", "FROM"),
-            study("target", "an empty database of PostgreSQL, or a file to be made", "TO"),
+            arg.study("source", "the study: a file, or an address of PostgreSQL", "FROM"),
+            arg.study("target", "an empty database of PostgreSQL, or a file to be made", "TO"),
         ),
         "Copy all trainees, trials, results and ratings, compare them with the original to the "
         "last bit, and leave the original as it is. Nobody should train meanwhile: what comes "
         "later is not copied.",
     ),
-    Command(
+    Subcommand(
         "delete-trainee",
         "delete a trainee from a study and from the journals, for good",
         run_delete_trainee,
         (
-            study(),
-            option("pseudonym", metavar="PSEUDONYM"),
-            path("--records", "DIR", "the folder of the simulator's journals"),
-            flag("--yes", "really delete"),
+            arg.study(),
+            arg.option("pseudonym", metavar="PSEUDONYM"),
+            arg.path("--records", "DIR", "the folder of the simulator's journals"),
+            arg.flag("--yes", "really delete"),
         ),
         "Nothing of the trainee is left in the database, the journals or later exports. Earlier "
         "exports, backups and printed reports are yours to delete. Exit status: 0 all is deleted, "

@@ -25,15 +25,8 @@ from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import protocol_text, read_study_protocol
 from rastrainer.trial.trial_feedback import PastTrial
-from rastrainer_simulator.cli.options import (
-    Command,
-    aligned,
-    flag,
-    one_of,
-    option,
-    path,
-    study,
-)
+from rastrainer_simulator.cli import arg
+from rastrainer_simulator.cli.options import Subcommand, aligned
 
 HEADER = ("assignment", "trial", "so far", "goal", "after", "trials", "mean")
 
@@ -151,33 +144,35 @@ def _sentence(
 
 
 COMMANDS = (
-    Command(
+    Subcommand(
         "curriculum",
         "set the curriculum of a study's trainees, and print where they stand",
         follow_curriculum,
         (
-            study(),
-            one_of(
-                path("--set", "FILE", "a curriculum to follow from now on"),
-                flag("--end", "follow no curriculum from now on"),
+            arg.study(),
+            arg.one_of(
+                arg.path("--set", "FILE", "a curriculum to follow from now on"),
+                arg.flag("--end", "follow no curriculum from now on"),
             ),
-            option("--trainee", metavar="PSEUDONYM", help="for this trainee alone"),
+            arg.option("--trainee", metavar="PSEUDONYM", help="for this trainee alone"),
         ),
         "Without an option, prints where each trainee stands. What is set last counts: a "
         "curriculum set for everybody ends those set for single trainees before. Nothing is "
         "overwritten; earlier trials count, too.",
     ),
-    Command(
+    Subcommand(
         "pass-mark",
         "compute a pass mark from the novices and the experts of a study",
         compute_pass_mark,
         (
-            study(),
+            arg.study(),
             *(
-                option(group, nargs="+", required=True, metavar="PSEUDONYM", help="five or more")
+                arg.option(
+                    group, nargs="+", required=True, metavar="PSEUDONYM", help="five or more"
+                )
                 for group in ("--novices", "--experts")
             ),
-            path(
+            arg.path(
                 "--write",
                 "PROTOCOL",
                 "write the mark into this protocol's file, for a study that has not started yet",

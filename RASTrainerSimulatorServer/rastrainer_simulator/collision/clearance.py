@@ -1,4 +1,4 @@
-"""The clearances of the arm: what they are, when to measure them again, and those to the head."""
+"""The clearances of the arm, when to measure them again, and the clearances to the head."""
 
 from __future__ import annotations
 

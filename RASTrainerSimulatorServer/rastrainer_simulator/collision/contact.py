@@ -69,7 +69,7 @@ class Moved:
 class Contact:
     """Keeps the arm from entering the head, itself, the table and the head's stand.
 
-    Equal calls give equal results: what is cached from the last tick only saves time.
+    Equal calls give equal results: values cached from the last tick only save time.
     """
 
     def __init__(self, collision: Collision, kinematics: Kinematics) -> None:
@@ -93,8 +93,8 @@ class Contact:
         """Return where a motion from `q` ends that is to move the tip by `displacement`.
 
         The tip stops 0.01 mm above the head and slides along it, and so does the shaft. Where a
-        link, the table or the arm itself is in the path, the motion is cut short. What overlaps
-        already may move, but not deeper.
+        link, the table or the arm itself is in the path, the motion is cut short. Overlapping
+        parts may move, but not deeper.
         """
         start = self.at(q)
         moved = self._move(start, displacement, to_joints)
@@ -295,7 +295,7 @@ def _step(
     longest: float,
     rest: float,
 ) -> tuple[Vector, Nearest, tuple[HalfSpace, ...]] | None:
-    """Return the end of one step toward the goal, what is nearest there, and what limits it."""
+    """Return the end of one step toward the goal, the nearest point there, and limiting planes."""
     for _ in range(_TRIALS):
         target = nearest_inside(goal, planes)
         if target is None:

@@ -1,4 +1,4 @@
-"""What can be seen from an eye past the head and one posture of the arm."""
+"""The lines of sight from an eye past the head and one posture of the arm."""
 
 from __future__ import annotations
 
@@ -62,10 +62,6 @@ class LineOfSight:
 
     def is_past_head(self, eye: Vector, place: Vector) -> bool:
         return eye[2] > self._lowest and not self._head.is_crossed(eye, place)
-
-    def is_past_tool(self, eye: Vector, place: Vector) -> bool:
-        """Return whether the tool leaves a point visible from an eye."""
-        return bool(self.off_tool(np.array([eye]), np.array(place))[0] > 0.0)
 
     def off_links(self, eyes: np.ndarray, place: np.ndarray) -> np.ndarray:
         """Return how far the lines from eyes (m, 3) to a place (3,) pass the links, (m,), m."""

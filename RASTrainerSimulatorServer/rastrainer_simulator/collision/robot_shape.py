@@ -186,7 +186,7 @@ def robot_shape(model: RobotModel) -> RobotShape:
 def _rounded(capsules: tuple[Capsule, ...]) -> tuple[Capsule, ...]:
     """Return the capsules in whole nanometers: the same ones on every machine.
 
-    What is rounded to zero from below is -0.0, and becomes 0.0.
+    Rounding a small negative number gives -0.0, which becomes 0.0.
     """
     return tuple(
         Capsule(
@@ -268,7 +268,7 @@ def _profile(points: np.ndarray, start: float) -> np.ndarray:
     kept = slices >= 0
     radii = np.zeros(slices.max() + 1)
     np.maximum.at(radii, slices[kept], np.hypot(points[kept, 0], points[kept, 1]))
-    # What touches the border of two slices belongs to both.
+    # A point on the border of two slices belongs to both.
     return np.maximum(radii, np.concatenate([radii[1:], [0.0]]))
 
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rastrainer.transforms import frame_along
 from rastrainer_simulator.collision.clearance import Clearance
 from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.robot.fabrik import Fabrik
@@ -130,7 +131,7 @@ class TouchPlanner:
         self._collision = collision
         self._clearance = clearance
         self._kinematics = make_kinematics(model)
-        # What the first pass cannot hold no other can: the rest would only approach it.
+        # No later pass can hold a goal that the first cannot: it would only approach it.
         self._fabrik = Fabrik(model, FabrikSettings(max_iterations=1))
         self._starts = [_swiveled(model.home, degrees) for degrees in SWIVELS_DEG]
 
@@ -155,10 +156,10 @@ class TouchPlanner:
     ) -> int | None:
         """Return which of the `tool_directions` works, None where `touch` finds none either.
 
-        The `likely` one is tried first: what has worked in one pose of the head mostly works in
-        others, too, which saves many tries.
+        The `likely` one is tried first: a choice for one pose of the head mostly fits others, too,
+        which saves many tries.
         """
-        frame = _frame(normal)
+        frame = frame_along(normal)
         numbers = range(len(_LEANINGS))
         for number in (likely, *(each for each in numbers if each != likely)):
             if self._posture(position, _leaning(frame, number)) is not None:
@@ -178,16 +179,9 @@ class TouchPlanner:
 
 
 def tool_directions(normal: np.ndarray) -> Iterator[tuple[float, np.ndarray]]:
-    frame = _frame(normal)
+    frame = frame_along(normal)
     for number, (leaning_deg, _azimuth) in enumerate(_LEANINGS):
         yield leaning_deg, _leaning(frame, number)
-
-
-def _frame(normal: np.ndarray) -> np.ndarray:
-    """Return two directions across a unit normal, and the normal, as rows (3, 3)."""
-    across = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
-    across /= np.linalg.norm(across)
-    return np.array([across, np.cross(normal, across), normal])
 
 
 def _leaning(frame: np.ndarray, number: int) -> np.ndarray:

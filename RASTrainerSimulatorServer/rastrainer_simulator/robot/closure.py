@@ -1,6 +1,6 @@
 """The exact closure: for a given wrist and tool, the possible elbows, and the joint angles.
 
-With the wrist fixed the elbow moves on a circle about the line from shoulder to wrist. Each tilt
+If the wrist is fixed, the elbow moves on a circle about the line from shoulder to wrist. Each tilt
 limit cuts an arc out of it, each pan limit too, and the ends of all arcs have a closed form,
 a cos φ + b sin φ + c = 0 (Shimizu et al. 2008, 10.1109/TRO.2008.2003266, section IV). The feasible
 elbow nearest to φ = 0 is therefore φ = 0 itself or one of those ends.

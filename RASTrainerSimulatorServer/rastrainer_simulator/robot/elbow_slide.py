@@ -1,4 +1,4 @@
-"""With wrist and tool held, slide the elbow along its circle to where the joints move least.
+"""Hold wrist and tool, and slide the elbow along its circle to where the joints move least.
 
 The one freedom that is left turns upper arm and forearm about the line from shoulder to wrist. Its
 joint rates have a closed form, so the angle of least squares is one division (Gauss–Newton).

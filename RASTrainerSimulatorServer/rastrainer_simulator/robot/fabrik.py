@@ -47,7 +47,7 @@ from rastrainer_simulator.vectors import ZERO, Vector, scale, subtract, unit
 # A warm start that would move a joint farther than this (rad) looks for an elbow that avoids it.
 _JUMP = 0.5
 _BENT = 1e-6
-# What the arithmetic of an exact S-R-S arm leaves over, m.
+# Rounding error of an exact S-R-S arm, m.
 _ROUNDING = 1e-12
 
 
@@ -73,8 +73,7 @@ class Fabrik:
 
         `target_position` (3,) is that of the tip, m; `target_direction` (3,) that of the tool, from
         the wrist to the tip; `target_rotation` (3, 3) that of the tip's frame. Without direction
-        and rotation only the position counts. Of all postures that reach the target, one
-        near to `q_start` (7,) rad is chosen. Raises InputError for numbers that are no target.
+        and rotation only the position counts. The posture is near to `q_start` (7,) rad.
         """
         target = (target_position, target_direction, target_rotation, q_start)
         if self._true:

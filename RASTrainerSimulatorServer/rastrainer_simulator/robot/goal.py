@@ -125,7 +125,7 @@ class Goal(NamedTuple):
         cosine = ax * bx + ay * by + az * bz
         if self.roll is None:
             return (x, y, z), cosine
-        # From the skew part and the trace: exact for small angles too.
+        # The skew part and the trace give exact small angles, too.
         (ax, ay, az), (cx, cy, cz) = tool_axes(theta, links)
         (bx, by, bz), (dx, dy, dz) = self.roll
         x += ay * bz - az * by + cy * dz - cz * dy

@@ -106,7 +106,7 @@ class NumpyKinematics:
 
 
 class PinocchioKinematics:
-    """Kinematics by Pinocchio. Only what is needed is read: copying all frames is slow."""
+    """Kinematics by Pinocchio. Only the needed frames are read: copying all of them is slow."""
 
     def __init__(self, model: RobotModel) -> None:
         import pinocchio as pin

@@ -4,7 +4,7 @@ Aristidou & Lasenby 2011 (10.1016/j.gmod.2011.05.003): reach backward from the t
 from the base, each time moving a joint along the line to its neighbor to the link's length, within
 the joints' cones. Between shoulder and wrist the passes need not be iterated: both keep the elbow
 in the half-plane through the line from shoulder to wrist, so their limit is the nearest point of
-the elbow's circle, which `closure` gives exactly. What is left to iterate is the wrist.
+the elbow's circle, which `closure` gives exactly. Only the wrist is left to iterate.
 """
 
 from __future__ import annotations

@@ -14,9 +14,9 @@ from rastrainer_simulator.vectors import (
     Vector,
     add,
     angle,
-    carried_along,
     cross,
     length,
+    parallel_transport,
     reject,
     rotated,
     scale,
@@ -100,7 +100,7 @@ class ChosenAxes:
 
 
 class ToolDirection(str, Enum):
-    """Who decides the tool's direction.
+    """The ways to choose the tool's direction.
 
     FREE: the inverse kinematics alone, as in the paper: only the tip's position is followed.
     CLEAR: the same, but near the head the tool leans no farther from the surface normal than
@@ -185,7 +185,7 @@ class ToolSteering:
         if self._settings.choice is not ToolDirection.POSE:
             return None
         before, held = self._frame or (direction, across)
-        self._frame = (wanted, carried_along(held, before, wanted))
+        self._frame = (wanted, parallel_transport(held, before, wanted))
         return self._frame[1]
 
     def turn_to(self, direction: Vector, goal: Vector, dt: float) -> Vector:
@@ -218,7 +218,7 @@ class ToolSteering:
         return self._held
 
     def _leaned(self, dt: float, direction: Vector, surface: NearestSurface) -> Vector | None:
-        """Return the direction turned toward the normal, None where it may stay."""
+        """Return the direction turned toward the normal, None if it may stay."""
         settings = self._settings
         if settings.choice not in (ToolDirection.CLEAR, ToolDirection.NORMAL):
             return None

@@ -103,13 +103,13 @@ class Tip:
 
 @dataclass(frozen=True)
 class MotionRequest:
-    """What the operator wants of this tick.
+    """The operator's request for this tick.
 
     Attributes:
         motion: its source; NONE keeps the arm still.
         displacement: of the tip, m, World.
-        direction: of the tool, unit vector; None where it is free.
-        across: the x axis of the tool's tip, unit vector; None where the tool may roll.
+        direction: of the tool, unit vector; None if it is free.
+        across: the x axis of the tool's tip, unit vector; None if the tool may roll.
         goal: end of the motion, m, World; None if no position is commanded.
     """
 

@@ -13,7 +13,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import rastrainer
 from rastrainer.errors import InputError
@@ -25,7 +25,7 @@ from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol, protocol_text
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.setup import DEFAULT_SCENARIO, scenario_sha256
-from rastrainer_simulator.virtual.play import PlayedTrial, PlaySettings, play_job
+from rastrainer_simulator.virtual.play import PlaySettings, play_job
 from rastrainer_simulator.virtual.population import Population, TrialJob, trial_jobs
 from rastrainer_simulator.virtual.worker_pool import (
     ATTEMPTS,
@@ -139,26 +139,27 @@ def simulate_cohort(
     left out, also in the stored protocol: virtual trainees have no opinion and need no rest.
     `on_trial` is called with the number of finished trials.
     """
-    if with_journals and protocol.procedures:
-        raise InputError(
-            "The journals of virtual trainees contain only the touches: leave out --records, or "
-            "the protocol's procedures."
-        )
-    if protocol.methods:
-        raise InputError(
-            "Virtual trainees touch fiducials: leave the protocol's methods out. To compare "
-            "methods in simulated trials, use rastrainer compare-methods."
-        )
+    protocol = _virtual(protocol, with_journals)
     if not (folder / DATABASE).is_file():
         make_empty_folder(folder)
-    protocol = _virtual(protocol)
     start = time.perf_counter()
     records = folder / RECORDS if with_journals else None
     played_with = PlaySettings(settings.scenario, settings.step_s, protocol.references, records)
     function = functools.partial(play_job, settings=played_with)
     truth = {"seed": seed, "trainees": trainees, "population": asdict(population)}
-    plan = {**truth, **_circumstances(settings, with_journals)}
+    scenario = load_scenario(settings.scenario or asset_path(*DEFAULT_SCENARIO))
+    plan = {
+        **truth,
+        "step": settings.step_s,
+        "scenario": scenario_sha256(scenario),
+        "records": with_journals,
+        "version of RASTrainer": rastrainer.__version__,
+    }
     planned = trainees * len(protocol.modes) * len(protocol.tasks) * protocol.repetitions
+
+    def name_of(job: TrialJob) -> str:
+        return f"The trial of {job.trainee}, {job.task} ({job.mode}),"
+
     counts = dict.fromkeys(("found", "played", "stuck"), 0)
     simulated_s = 0.0
     with Study.open(folder / DATABASE) as study:
@@ -175,17 +176,32 @@ def simulate_cohort(
                 counts["found"] += 1
             else:
                 missing.append(job)
-        for trial in run_jobs(function, missing, engine, workers, address, _name_of):
-            _store(store, trial)
-            counts["stuck" if trial.analysis is None else "played"] += 1
-            simulated_s += 0.0 if trial.analysis is None else trial.record.completion_time_s
+        for trial in run_jobs(function, missing, engine, workers, address, name_of):
+            if trial.analysis is None:
+                store.add_stuck(trial.job.trial_id)
+                counts["stuck"] += 1
+            else:
+                store.add(trial.analysis)
+                counts["played"] += 1
+                simulated_s += trial.record.completion_time_s
             if on_trial is not None:
                 on_trial(sum(counts.values()))
         store.finish()
     return CohortRun(**counts, seconds=time.perf_counter() - start, simulated_s=simulated_s)
 
 
-def _virtual(protocol: StudyProtocol) -> StudyProtocol:
+def _virtual(protocol: StudyProtocol, with_journals: bool) -> StudyProtocol:
+    """Return the protocol as virtual trainees play it; raise `InputError` if they cannot."""
+    if with_journals and protocol.procedures:
+        raise InputError(
+            "The journals of virtual trainees contain only the touches: leave out --records, or "
+            "the protocol's procedures."
+        )
+    if protocol.methods:
+        raise InputError(
+            "Virtual trainees touch fiducials: leave the protocol's methods out. To compare "
+            "methods in simulated trials, use rastrainer compare-methods."
+        )
     return replace(
         protocol,
         title=f"{protocol.title[:90]} (virtual trainees)",
@@ -194,25 +210,3 @@ def _virtual(protocol: StudyProtocol) -> StudyProtocol:
         break_between_tasks_min=0.0,
         questionnaires=(),
     )
-
-
-def _circumstances(settings: PlaySettings, with_journals: bool) -> dict[str, Any]:
-    """Return the other conditions of the trials, which must be equal in a whole cohort."""
-    folder = settings.scenario or asset_path(*DEFAULT_SCENARIO)
-    return {
-        "step": settings.step_s,
-        "scenario": scenario_sha256(load_scenario(folder)),
-        "records": with_journals,
-        "version of RASTrainer": rastrainer.__version__,
-    }
-
-
-def _name_of(job: TrialJob) -> str:
-    return f"The trial of {job.trainee}, {job.task} ({job.mode}),"
-
-
-def _store(store: CohortStore, trial: PlayedTrial) -> None:
-    if trial.analysis is None:
-        store.add_stuck(trial.job.trial_id)
-    else:
-        store.add(trial.analysis)

@@ -35,7 +35,7 @@ from rastrainer.registration.warnings import RegistrationWarning
 from rastrainer.scenario.scenario import Scenario, task_by_method
 from rastrainer.trial.score_reference import region_of
 from rastrainer.trial.touch_registration import LEAST_ALONG_SURFACE, GivenPoints, normals_at
-from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE, MethodNoise, RangeCamera
+from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE, RangeCamera
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +45,7 @@ class MethodPoints:
     Attributes:
         moving_mm: (n, 3) float, World, touched points; those of a surface match give its start.
         fixed_mm: (n, 3) float, RAS, where they belong.
-        normals: (n, 3) float, of the skin there, RAS; None where the error has no direction.
+        normals: (n, 3) float, of the skin there, RAS; None if the error has no direction.
         cloud_mm: (k, 3) float, World, traced or scanned points; empty of touches alone.
     """
 
@@ -64,7 +64,7 @@ class MethodResult:
         points: number of points whose residuals count.
         residual_mm: their root mean square, mm. It does not show the error.
         matrix: (4, 4) float, World→RAS, mm.
-        true_mm: (m,) float, the true target error; None where the truth is unknown.
+        true_mm: (m,) float, the true target error; None if the truth is unknown.
     """
 
     method: RegistrationMethod
@@ -82,11 +82,6 @@ class MethodResult:
             raise InputError("The true error of this registration is not known.")
         ends = np.array([error.interval_mm for error in self.errors])
         return np.asarray((ends[:, 0] <= self.true_mm) & (self.true_mm <= ends[:, 1]))
-
-
-def targets_of(scenario: Scenario) -> np.ndarray:
-    """Return the targets at which methods are compared, (m, 3) float, RAS mm."""
-    return region_of(scenario).targets
 
 
 def register_by(
@@ -147,8 +142,8 @@ def points_of_trial(given: GivenPoints, scenario: Scenario) -> tuple[MethodPoint
 def mean_of(results: Sequence[MethodResult]) -> tuple[float, float, float | None, float | None]:
     """Return residual, expected and true error, and the share of intervals that hold the truth.
 
-    The first three are root mean squares over trials and targets, mm; the last two are None where
-    the truth is unknown.
+    The first three are root mean squares over trials and targets, mm; the last two are None if the
+    truth is unknown.
     """
     residual = _rms([one.residual_mm for one in results])
     expected = _rms([error.expected_mm for one in results for error in one.errors])
@@ -173,7 +168,7 @@ METHODS = tuple(PUBLISHED_NOISE)
 
 @dataclass(frozen=True, eq=False)
 class MethodStudy:
-    """What the virtual trials have in common.
+    """The common settings of virtual trials.
 
     Attributes:
         task: whose fiducials are touched.
@@ -185,7 +180,7 @@ class MethodStudy:
     task: str
     shift_mm: float = 0.0
     indentation_mm: float = 0.0
-    noise: Mapping[RegistrationMethod, MethodNoise] = field(default_factory=lambda: PUBLISHED_NOISE)
+    noise: Mapping[RegistrationMethod, float] = field(default_factory=lambda: PUBLISHED_NOISE)
     starts: int = STARTS
 
     @cached_property
@@ -195,7 +190,7 @@ class MethodStudy:
     @cached_property
     def targets(self) -> np.ndarray:
         """(m, 3) float, RAS mm."""
-        return targets_of(self.scenario)
+        return region_of(self.scenario).targets
 
     @cached_property
     def fiducials(self) -> np.ndarray:
@@ -228,7 +223,7 @@ class MethodStudy:
         """The range camera, where the close-up view is."""
         to_head = transforms.inverse(self.scenario.head_to_world)
         eye = transforms.apply(to_head, self.scenario.cameras["close-up"].position)
-        return RangeCamera(eye, self.noise[RegistrationMethod.SCAN].point_mm)
+        return RangeCamera(eye, self.noise[RegistrationMethod.SCAN])
 
     @cached_property
     def seen(self) -> np.ndarray:
@@ -271,7 +266,7 @@ class MethodStudy:
     def _points(
         self, method: RegistrationMethod, shift: SkinShift, random: Generator, tip: np.ndarray
     ) -> MethodPoints:
-        """Return what is touched, traced or scanned, before the head is posed: all in RAS."""
+        """Return touched, traced or scanned points before the head is posed: all in RAS."""
         if method is RegistrationMethod.BONE_SCREWS:
             touched = self._found(self.screws, method, random) + tip
             return MethodPoints(method, touched, self.screws)
@@ -293,10 +288,10 @@ class MethodStudy:
         rows = random.choice(self.reached, TRACE_POINTS)
         normals = self.mesh.vertex_normals[rows]
         drawn = shift.touched(self.mesh.vertices[rows], normals, self.mesh)
-        noise = random.normal(0.0, self.noise[method].point_mm, (len(rows), 1))
+        noise = random.normal(0.0, self.noise[method], (len(rows), 1))
         return MethodPoints(method, touched, fixed, None, drawn + noise * normals + tip)
 
     def _found(
         self, points: np.ndarray, method: RegistrationMethod, random: Generator
     ) -> np.ndarray:
-        return points + random.normal(0.0, self.noise[method].point_mm / np.sqrt(3), points.shape)
+        return points + random.normal(0.0, self.noise[method] / np.sqrt(3), points.shape)

@@ -2,8 +2,8 @@
 
 Completion time and registration error of a trial are drawn from the distributions that the theory
 gives: times log-normal about task, trainee, mode and practice; errors as the FRE of fifteen points
-whose localization error depends on task, trainee and mode (FRE² = FLE²·(1 − 2/N)·χ²/dof). What is
-estimated from such data can be compared with what was put in. It is not the simulator: hands, arm
+whose localization error depends on task, trainee and mode (FRE² = FLE²·(1 − 2/N)·χ²/dof).
+Estimates from such data can be compared with the true values. It is not the simulator: hands, arm
 and head play no part.
 
 Practice is the power law (Newell and Rosenbloom 1981); a hurried trial is the less exact one, as
@@ -178,7 +178,7 @@ def _practice(model: OutcomeModel, numbers: np.ndarray) -> tuple[np.ndarray, np.
 
 @dataclass(frozen=True)
 class RejectionRates:
-    """Of one outcome over many studies: false positives without a true effect, power with one.
+    """Rates for one outcome over many studies: false positives without an effect, else power.
 
     Attributes:
         t_test: Share with p < .05 by the t-test, with the period where the orders allow it.
@@ -215,7 +215,9 @@ def rejection_rates(
     drawn = [draw_outcomes(model, trainees, modes, random, orders) for _ in range(studies)]
     times, errors = (np.array(values) for values in zip(*drawn, strict=True))
     outcomes = (times, errors, model_scores(model, times, errors))
-    delays = _delays(trainees, modes, orders)
+    periods = [float(own.index(modes[1]) - own.index(modes[0])) for own in orders or [modes]]
+    # Periods between the modes of each trainee.
+    delays = np.array(periods) if is_separable(np.array(periods)) else None
     fits, differences = [], []
     for values in outcomes:
         own = np.diff(values.mean(axis=-1))[..., 0]
@@ -248,12 +250,3 @@ def rejection_rates(
             )
         )
     return tuple(found)
-
-
-def _delays(
-    trainees: int, modes: Sequence[str], orders: Sequence[Sequence[str]] | None
-) -> np.ndarray | None:
-    """Return by how many periods each trainee does the second mode later; None if not separable."""
-    orders = orders or [tuple(modes)] * trainees
-    delays = np.array([float(own.index(modes[1]) - own.index(modes[0])) for own in orders])
-    return delays if is_separable(delays) else None

@@ -13,7 +13,7 @@ import numpy as np
 
 from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import RASTrainerError
-from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.head.mesh import read_head_mesh
 from rastrainer.journal.folder import SUFFIX
 from rastrainer.journal.journal_file import file_stamp, iso
 from rastrainer.json_records import record_from_json
@@ -111,7 +111,12 @@ def play_virtual_trial(
     }
 
     def step(action: Action | None, own: Mapping[str, Any] = NOTHING) -> StepResult:
-        before, operator_input = simulation.state, _input(action, own)
+        before, operator_input = simulation.state, HANDS_OFF
+        if action is not None:
+            name, arguments = action
+            # `own` are arguments that no client may send.
+            command = OperatorCommand(name, {**check_arguments(name, arguments), **own})
+            operator_input = OperatorInput(commands=(command,))
         result = simulation.step(dt, operator_input)
         if on_step is not None:
             on_step(simulation, before, operator_input, result)
@@ -139,16 +144,6 @@ def play_virtual_trial(
     )
 
 
-def _input(action: Action | None, own: Mapping[str, Any]) -> OperatorInput:
-    """Return an action as the operator's input; `own` are arguments that no client may send."""
-    if action is None:
-        return HANDS_OFF
-    name, arguments = action
-    return OperatorInput(
-        commands=(OperatorCommand(name, {**check_arguments(name, arguments), **own}),)
-    )
-
-
 def _observation(state: SimulationState) -> Observation:
     point = state.training.next_point
     return Observation(
@@ -162,7 +157,7 @@ def _observation(state: SimulationState) -> Observation:
 
 STEP_S = 0.05
 PROCEDURE_STREAM = 21
-"""Of chance, beside that of the touches."""
+"""Random stream of procedures; touches have their own."""
 
 
 @dataclass(frozen=True)
@@ -303,10 +298,8 @@ def _write_journal(folder: Path, entries: list[dict[str, Any]], started: datetim
     partial.replace(folder / name)
 
 
-@functools.lru_cache(maxsize=1)
-def _skull(path: Path) -> HeadMesh:
-    """Return the skull of this process's scenario, which is read once."""
-    return read_head_mesh(path)
+_skull = functools.lru_cache(maxsize=1)(read_head_mesh)
+"""Returns the skull of this process's scenario, which is read once."""
 
 
 @functools.lru_cache(maxsize=1)

@@ -79,7 +79,7 @@ LARGEST_BIAS_MM = 5.0
 
 _MODES = [mode.value for mode in Mode]
 _INTERACTION, _TRIAL = 1, 2
-"""Streams of chance beside that of the trainee, so that what one adds changes no other."""
+"""Further random streams of a trainee: draws from one change no other."""
 
 
 @dataclass(frozen=True)

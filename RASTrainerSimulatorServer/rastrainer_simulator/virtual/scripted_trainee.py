@@ -26,7 +26,7 @@ PRESS_MM = 1.5
 """How far below the skin the last aim is: the touch of the tip should be felt."""
 
 LOWEST_DIP = np.radians(5.0)
-"""By how much the path around the head's center may be lower than both of its ends."""
+"""The path around the head's center may be lower than both of its ends by this angle."""
 
 DECISION_PERIOD_S = 0.05
 JOG_DURATION_S = 0.1
@@ -43,7 +43,7 @@ class Skill:
     Attributes:
         gain_per_s: how briskly the remaining distance is closed.
         aim_sd_mm: standard deviation of the aim on the skin, along each of its two directions.
-        settled_mm: how far beside its aim the tip may be for a touch.
+        settled_mm: largest distance of the tip from its aim for a touch.
         tremor_mm_s: standard deviation of the hand's unwanted velocity, along each axis.
         overshoot: how far the first aim goes past the fiducial, as a share of the distance.
         dwell_s: how long the tip is held still before a touch.
@@ -67,7 +67,7 @@ class Skill:
 
 @dataclass(frozen=True)
 class Observation:
-    """What the trainee sees.
+    """The view of the trainee.
 
     Attributes:
         is_in_contact: whether the tool is shown to touch the head.
@@ -193,7 +193,9 @@ class ScriptedTrainee:
         remaining = self._path[0] - observation.tip_mm
         gave_up = is_aim and observation.sim_time_s > self._gives_up_at_s
         if is_aim:
-            is_there = observation.is_in_contact and self._is_over_aim(remaining)
+            # At any height over the aim.
+            beside_mm = np.linalg.norm(self._along_skin(remaining))
+            is_there = observation.is_in_contact and bool(beside_mm < self._skill.settled_mm)
             remaining = remaining - PRESS_MM * self._outward_at_aim
         else:
             is_there = bool(np.linalg.norm(remaining) < 8.0)
@@ -207,10 +209,6 @@ class ScriptedTrainee:
         # In contact the hand stops pushing: it only corrects along the skin.
         eases_off = is_aim and observation.is_in_contact
         return _jog(self._along_skin(velocity) if eases_off else velocity)
-
-    def _is_over_aim(self, remaining: np.ndarray) -> bool:
-        """Return whether the tip is close enough to the aim, at any height."""
-        return bool(np.linalg.norm(self._along_skin(remaining)) < self._skill.settled_mm)
 
     def _along_skin(self, displacement: np.ndarray) -> np.ndarray:
         return displacement - self._outward_at_aim * float(displacement @ self._outward_at_aim)

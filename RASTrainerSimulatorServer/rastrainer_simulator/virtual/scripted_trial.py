@@ -90,7 +90,7 @@ def play_trial(
 
 
 class _View:
-    """What the scripted trainee sees of the running trial."""
+    """The scripted trainee's view of the running trial."""
 
     def __init__(self, client: Client, trial_id: str, on_progress: Callable) -> None:
         self._client = client
@@ -197,7 +197,7 @@ def _place(client: Client, trajectory: ProcedureTrajectory, number: int, inner_m
 
 
 def _feed(client: Client, tool: str, to_mm: float, fastest_mm_s: float) -> None:
-    """Feed what is in the guide to a depth, the last bit slowly."""
+    """Feed the tool in the guide to a depth, the last bit slowly."""
     depth = _depth(client, tool, -1.0)
     for _ in range(MAX_FEEDS):
         left = to_mm - depth

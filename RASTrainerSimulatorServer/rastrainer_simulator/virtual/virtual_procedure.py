@@ -38,7 +38,7 @@ MISSED_BONE_MM = 20.0
 """How far the drill goes past the entry where it meets no bone."""
 MAX_CHECKPOINTS = 3
 TIME_SD = 0.15
-"""Of the logarithm of the times of aligning, drilling and inserting."""
+"""Standard deviation of the logarithm of the times of aligning, drilling and inserting."""
 
 
 @dataclass(frozen=True)
@@ -123,7 +123,7 @@ def _placed(
     to_world = transforms.inverse(used.world_to_head)
     entry, target = (transforms.apply(to_world, point) for point in (plan.entry, plan.target))
     line = (target - entry) / np.linalg.norm(target - entry)
-    across = _across(line)
+    across = transforms.frame_along(line)[:2]
     tilt = np.tan(np.radians(hands.angle_sd_deg * random.normal(size=2)))
     direction = line + tilt @ across
     direction /= np.linalg.norm(direction)
@@ -175,14 +175,6 @@ def _checked(
         time_s = touching_s + 4.0 * number
         touched.append(TouchedCheckpoint(checkpoint.name, _triple(place), float(error), time_s))
     return tuple(touched)
-
-
-def _across(direction: np.ndarray) -> np.ndarray:
-    """Return two unit vectors across a direction, (2, 3) float."""
-    helper = np.eye(3)[int(np.argmin(np.abs(direction)))]
-    first = np.cross(direction, helper)
-    first /= np.linalg.norm(first)
-    return np.array([first, np.cross(direction, first)])
 
 
 def _spread(random: np.random.Generator) -> float:

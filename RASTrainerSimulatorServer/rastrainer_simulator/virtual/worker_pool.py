@@ -150,7 +150,11 @@ class _Pool:
         if task.attempts < ATTEMPTS:
             self._again.append(task)
             return
-        sentence = died_message(self._name_of(task.job), _cause(exit_code))
+        cause = f" (the last with exit status {exit_code})"
+        if exit_code is not None and exit_code < 0:
+            with contextlib.suppress(ValueError):
+                cause = f" (the last by {signal.Signals(-exit_code).name})"
+        sentence = died_message(self._name_of(task.job), cause)
         self._done[task.place] = None, WorkerDiedError(sentence)
 
 
@@ -161,13 +165,6 @@ def died_message(job: str, cause: str) -> str:
         f"it{cause}. The computer may be short of memory: try fewer workers, or --workers 1 to see "
         "the error itself. The trials played so far are stored, and the same command resumes."
     )
-
-
-def _cause(exit_code: int | None) -> str:
-    if exit_code is not None and exit_code < 0:
-        with contextlib.suppress(ValueError):
-            return f" (the last by {signal.Signals(-exit_code).name})"
-    return f" (the last with exit status {exit_code})"
 
 
 def _work(connection: Connection, function: Callable[[Any], Any]) -> None:

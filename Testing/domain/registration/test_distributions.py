@@ -40,31 +40,5 @@ def test_the_quantile_of_unequally_weighted_squares_agrees_with_simulation():
         assert share == pytest.approx(probability, abs=0.002)
 
 
-def bisected(probability_up_to, probability, guess, tolerance):
-    low, high = 0.0, guess
-    while probability_up_to(high) < probability:
-        low, high = high, 4.0 * high
-    while high - low > tolerance * high:
-        middle = (low + high) / 2
-        low, high = (middle, high) if probability_up_to(middle) < probability else (low, middle)
-    return (low + high) / 2
-
-
-@pytest.mark.parametrize("probability", [0.001, 0.025, 0.5, 0.975, 0.999])
-@pytest.mark.parametrize("dof", [1, 3, 39])
-def test_a_quantile_equals_that_of_plain_bisection_bit_for_bit_in_fewer_steps(probability, dof):
-    taken = []
-
-    def probability_up_to(value):
-        taken.append(value)
-        return float(scipy.stats.chi2.cdf(value, dof))
-
-    expected = bisected(probability_up_to, probability, 1.0, 1e-8)
-    steps = len(taken)
-    taken.clear()
-    assert _quantile(probability_up_to, probability, 1.0, 1e-8) == expected
-    assert len(taken) < steps
-
-
 def test_the_quantile_of_a_step_distribution_is_its_step():
     assert _quantile(lambda value: float(value >= 2.0), 0.5, 1.0, 1e-8) == pytest.approx(2.0)

@@ -123,7 +123,7 @@ def no_slicer(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", "")
     monkeypatch.delenv("SLICER_HOME", raising=False)
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
-    monkeypatch.setitem(doctor.PLACES, sys.platform, (str(tmp_path),))
+    monkeypatch.setitem(doctor.PLACES, sys.platform, str(tmp_path))
     return tmp_path
 
 
@@ -135,8 +135,9 @@ def test_slicer_and_its_extension_are_found_or_missed(no_slicer):
     slicer.mkdir()
     (slicer / "Slicer").touch()
     found, extension = answers(doctor.check_slicer)
-    assert found == (OK, f"3D Slicer is in {slicer}.") or str(slicer) in found[1]
-    assert extension == (WARNING, "SlicerOpenIGTLink is missing.")
+    assert found == (OK, f"3D Slicer is in {slicer}.")
+    assert extension[0] == WARNING
+    assert "SlicerOpenIGTLink is missing" in extension[1]
     (slicer / "slicer.org" / "Extensions-33000" / "SlicerOpenIGTLink").mkdir(parents=True)
     assert verdicts(answers(doctor.check_slicer)) == [OK, OK]
 

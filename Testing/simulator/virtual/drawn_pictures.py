@@ -170,9 +170,9 @@ class DrawnPictures:
         is_end_on = to_tip @ direction > math.cos(math.radians(END_ON_DEG))
         reached = {
             "fiducial": sight.is_free(camera.position, fiducial)
-            and sight.is_past_tool(camera.position, fiducial),
+            and bool(sight.off_tool(np.array([camera.position]), np.array(fiducial))[0] > 0.0),
             "number": sight.is_free(camera.position, number)
-            and sight.is_past_tool(camera.position, number),
+            and bool(sight.off_tool(np.array([camera.position]), np.array(number))[0] > 0.0),
             "tip": sight.is_free(camera.position, marker) and not is_end_on,
         }
         on_skin = np.array(fiducial) - OFF_SKIN_M * self._places.outward[label]

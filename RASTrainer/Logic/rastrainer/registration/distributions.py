@@ -9,11 +9,9 @@ from functools import lru_cache
 import numpy as np
 
 TERMS = 200
-"""Of the continued fraction."""
+"""Terms of the continued fraction."""
 DIRECTIONS = 12
 """Nodes of a quadrature over an octant, in each direction."""
-MAX_STEPS = 40
-"""Steps of the search for a bracket; the bisection does the rest."""
 
 
 def f_tail(value: float, numerator: float, denominator: float) -> float:
@@ -111,61 +109,18 @@ def _quantile(
 ) -> float:
     """Return, by bisection, the value above 0 up to which a distribution has a probability.
 
-    A narrow bracket tells where most of the midpoints lie, which takes a third of the
-    bisection's evaluations.
-
     `guess` is above 0, and `tolerance` is a share of the value.
     """
-    low, high, at_low = 0.0, guess, -probability
-    while (at_high := probability_up_to(high) - probability) < 0.0:
-        low, high, at_low = high, 4.0 * high, at_high
-
-    def offset(value: float) -> float:
-        return probability_up_to(value) - probability
-
-    below, above = _bracket(offset, (low, at_low), (high, at_high), 0.25 * tolerance)
+    low, high = 0.0, guess
+    while probability_up_to(high) < probability:
+        low, high = high, 4.0 * high
     while high - low > tolerance * high:
         middle = (low + high) / 2
-        if middle <= below or (middle < above and offset(middle) < 0.0):
+        if probability_up_to(middle) < probability:
             low = middle
         else:
             high = middle
     return (low + high) / 2
-
-
-def _bracket(
-    offset: Callable[[float], float],
-    low: tuple[float, float],
-    high: tuple[float, float],
-    tolerance: float,
-) -> tuple[float, float]:
-    """Return the ends of a bracket around the zero of a rising function: its sign differs there.
-
-    It is regula falsi as in the Illinois method (Dowell 1971). Each step goes a little beyond the
-    zero that it expects, so that the end on the farther side comes near, too.
-
-    Args:
-        low: An argument below the zero, and the function there.
-        high: An argument above the zero, and the function there.
-        tolerance: Width of the bracket, a share of its upper end; not reached in rare cases.
-    """
-    (below, at_below), (above, at_above) = low, high
-    moved = ""
-    for _ in range(MAX_STEPS):
-        if above - below <= tolerance * above:
-            break
-        tried = below + (above - below) * at_below / (at_below - at_above)
-        beyond = 0.4 * tolerance * above
-        tried += beyond if tried - below < above - tried else -beyond
-        at_tried = offset(tried)
-        if at_tried < 0.0:
-            # An end that stays twice counts as nearer to the zero than it is.
-            at_above *= 0.5 if moved == "below" else 1.0
-            below, at_below, moved = tried, at_tried, "below"
-        else:
-            at_below *= 0.5 if moved == "above" else 1.0
-            above, at_above, moved = tried, at_tried, "above"
-    return below, above
 
 
 def _inverse_chi_square(dof: float) -> tuple[np.ndarray, np.ndarray]:

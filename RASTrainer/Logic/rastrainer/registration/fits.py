@@ -64,7 +64,7 @@ def motions(kind: str, points: np.ndarray) -> np.ndarray:
 def rigid_sums_of_squares(
     moving: np.ndarray, fixed: np.ndarray, weights: np.ndarray, handedness: int = 1
 ) -> np.ndarray:
-    """Return what is left of Σ|T(m) − f|² after the best rigid fit, for many fits at once.
+    """Return the residual Σ|T(m) − f|² of the best rigid fit, for many fits at once.
 
     With the singular values s₁ ≥ s₂ ≥ s₃ of the cross-covariance H it is
     Σ|a|² + Σ|b|² − 2(s₁ + s₂ + sign(det H)·s₃); no transform need be built.

@@ -261,7 +261,7 @@ def _check_numbers(points: np.ndarray, which: str, labels: tuple[str, ...]) -> N
 def _check_extent(points: np.ndarray, which: str, kind: str, labels: tuple[str, ...]) -> None:
     along, across, out_of_plane = extents(points)
     names = ", ".join(labels)
-    # Doubles hold about 16 digits of the coordinates; what is smaller than that is no extent.
+    # Doubles hold about 16 digits of the coordinates; a smaller extent is none.
     if along <= 1e-12 * max(1.0, np.abs(points).max()):
         raise InputError(f"All {which} points ({names}) are at the same place.")
     if across < FLAT * along:

@@ -3,7 +3,7 @@
 The curvature of the cost at its minimum is H = Σ JᵢᵀJᵢ with Jᵢ = (nᵢ, (pᵢ − c) × nᵢ): what each
 point reveals about the pose. With the variance σ² of the points across the skin, σ²H⁻¹ is the
 covariance of the pose. Both are to first order, and for errors that are independent: a shift of the
-skin is not. By it, a trainee is guided while the skin is traced.
+skin is not. It guides a trainee who traces the skin.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ DAB = 10
 
 @dataclass(frozen=True, eq=False)
 class PoseKnowledge:
-    """What points on the skin reveal about the head's pose.
+    """The information of points on the skin about the head's pose.
 
     Attributes:
         center: (3,) float, RAS mm, about which rotations are taken.
@@ -103,7 +103,7 @@ def surface_target_error(
     An offset that all points share, such as that of the tip's calibration, moves the whole head and
     adds 3σ² of its standard deviation on each axis, as with fiducials. The interval is that of
     fiducials, too (`rastrainer.registration.target_error.target_error`), and has the same blind
-    spots: errors that neighboring points share. Of drawn traces it holds less often; see
+    spots: errors that neighboring points share. It holds less often for drawn traces; see
     docs/error-rates.md.
     """
     return error_of_covariance(
@@ -165,7 +165,7 @@ def _rows(
 COVERED_MM = 10.0
 """Within this distance of a traced point the skin is covered: no next place lies there."""
 SPACING_MM = 8.0
-"""Between places that are compared; of more, the best one would hardly be another."""
+"""Distance between compared places; a finer grid would hardly change the best one."""
 ABOVE_BASE_MM = 10.0
 LEAST_UPWARD = -0.3
 """Least height of a unit normal: the tool does not reach skin that faces the table."""

@@ -28,7 +28,8 @@ from rastrainer.head.triangle_tree import FollowedPoints, NearestPoints
 STEP_MM = 10.0
 """No step moves a point of the trace farther: the nearest points are others there."""
 _DAMPING = 1e-7
-"""Of the curvature's trace: a direction that the points leave open is not followed far."""
+"""Damping, as a share of the Hessian's trace: limits steps along directions that the points do not
+constrain."""
 
 
 @dataclass(frozen=True)

@@ -55,7 +55,7 @@ def calibration(data: StudyData) -> str:
             page.figure([calibration_chart(found, colors)], caption),
             page.table([HEADER], rows),
         ]
-    parts.append(page.paragraph(f"{INTERVAL_NOTE} {NOTE}", "small"))
+    parts.append(page.note(f"{INTERVAL_NOTE} {NOTE}"))
     return page.section("Expected and true target error", *parts)
 
 

@@ -1,6 +1,6 @@
-"""What a report compares: modes, on the means of trainees who did both.
+"""The comparison of modes on the means of trainees who did both.
 
-Effects of the modes are separated from those of their order where the orders allow it.
+If the orders allow it, the effects of the modes are separated from the effect of their order.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ from rastrainer.study.study_data import StudyData, values_of
 
 SHOWN = ("completion_time_s", "rmse_mm", "score")
 MIN_CURVE_TRIALS = 8
-"""With fewer trials the plateau is too uncertain to report."""
+"""The plateau of fewer trials is too uncertain to report."""
 HEADER: page.Line = [
     *("Outcome", page.text("mode"), "n", "trials", "first", "last", "change [95 %]"),
     *("p (Page)", "p (Holm)", "alone: better / steady / undecided"),
@@ -83,7 +83,7 @@ def learning(data: StudyData) -> str:
             "Thin: each trainee. Thick: the means of all or, where getting better is shown, the "
             "curve that is fitted to them.",
         ),
-        *([page.table([HEADER], rows, "wide"), page.paragraph(WORDS, "small")] if rows else []),
+        *([page.table([HEADER], rows, "wide"), page.note(WORDS)] if rows else []),
         page.bullets(sentences),
         page.paragraph(_limits(data)),
     )

@@ -1,6 +1,6 @@
 """The methods of registration side by side: residual, expected and true target error.
 
-Also what a shift of the skin did: the true errors next to those of the same trials without it.
+It also shows the effect of a shift of the skin: the true errors with and without it.
 """
 
 from __future__ import annotations

@@ -189,7 +189,7 @@ def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
             effect = interval_text(result.hedges_gz, result.gz_interval, 2)
         n = "–" if result is None else str(result.n)
         rows.append([outcome.heading, *means, counts, n, effect])
-    definitions = [
+    definitions: list[page.Line] = [
         [outcome.title, page.text(outcome.definition), page.text(outcome.source)]
         for outcome in outcomes
     ]

@@ -1,4 +1,4 @@
-"""What the sections of a report are made of: HTML with escaped text."""
+"""The elements of a report as HTML; their text is escaped."""
 
 from __future__ import annotations
 
@@ -71,6 +71,14 @@ def heading(words: str) -> str:
 def paragraph(words: str, kind: str = "") -> str:
     attribute = f' class="{kind}"' if kind else ""
     return f"<p{attribute}>{_flowing(words)}</p>"
+
+
+def note(words: str) -> str:
+    return paragraph(words, "small")
+
+
+def warning(words: str) -> str:
+    return paragraph(words, "warning")
 
 
 def bullets(texts: Sequence[str]) -> str:

@@ -152,7 +152,7 @@ def _order(comparisons: Sequence[ModeComparison]) -> list[str]:
     return [
         page.heading("What the order of the modes did"),
         page.table([header], rows, "wide"),
-        page.paragraph(SEPARATED.format(first=first, second=second), "small"),
+        page.note(SEPARATED.format(first=first, second=second)),
     ]
 
 

@@ -25,20 +25,8 @@ from rastrainer.study.database.values import moment
 from rastrainer.study.outcomes import mode_title, short_mode_title, task_title
 from rastrainer.study.protocol.study_protocol import pass_mark_of
 from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.trial import scoring, trial_feedback
 from rastrainer.trial.aborted_trial import AbortedTrial
-from rastrainer.trial.scoring import (
-    COMMON_BIAS_LIMIT_MM,
-    CONTACT_LIMIT_S,
-    CONTACT_PATH_LIMIT_MM,
-    DEPTH_LIMIT_MM,
-    passes,
-)
-from rastrainer.trial.trial_feedback import (
-    ADEQUATE_FAILURES,
-    INADEQUATE_FAILURES,
-    TRAINING_TRIALS,
-    competence_of,
-)
 
 STARTED_HEADER = [
     *("trainee", "mode", "task", "started (n)", "finished"),
@@ -58,12 +46,11 @@ def started_trials(data: StudyData) -> str:
         parts.append(page.table([STARTED_HEADER], _started_rows(data, scored)))
         failed = sum(stored.record.counts_as_failed for stored in scored)
         parts.append(
-            page.paragraph(
+            page.note(
                 "Tasks of trainees who aborted none are left out of the table. An aborted trial "
                 f"with a touch ({failed} of {len(scored)}) counts as not passed in the pass mark's "
                 "LC-CUSUM; it has no score and no time for anything else here, so that what "
-                "follows is about the finished trials.",
-                "small",
+                "follows is about the finished trials."
             )
         )
     if runs:
@@ -73,23 +60,28 @@ def started_trials(data: StudyData) -> str:
                 "being registered, as is usual; none counts."
             )
         )
-    parts += [page.paragraph(sentence, "warning") for sentence in _missing(data)]
-    if repeats := _repeats(scored):
+    parts += [page.warning(sentence) for sentence in _missing(data)]
+    repeats = [
+        f"{stored.record.trainee}, {stored.step}, aborted with {len(stored.record.points)} points "
+        f"touched ({stored.record.reason}): {stored.repeat_reason}"
+        for stored in scored
+        if stored.repeat_reason
+    ]
+    if repeats:
         parts += [page.heading("Steps of the protocol that were repeated"), page.bullets(repeats)]
     silent = sum(not stored.repeat_reason for stored in scored)
     if data.protocol is not None and silent:
         parts.append(
-            page.paragraph(
+            page.note(
                 f"For {counted(silent, 'aborted trial')} no reason of a repeat is stored: the "
-                "step was not repeated, was skipped, or its repeat had arrived before.",
-                "small",
+                "step was not repeated, was skipped, or its repeat had arrived before."
             )
         )
     return page.section("Started trials", *parts)
 
 
 def _missing(data: StudyData) -> list[str]:
-    """Return what is said about trials without a score, and about those that never arrived."""
+    """Return sentences about trials without a score and trials that never arrived."""
     unscored = _unscored(data.trials)
     sentences = []
     if unscored:
@@ -135,15 +127,6 @@ def _counts(finished: int, early: int, late: int) -> list[str]:
     return [str(finished + early + late), str(finished), str(early), str(late)]
 
 
-def _repeats(aborted: list[StoredAbortedTrial]) -> list[str]:
-    return [
-        f"{stored.record.trainee}, {stored.step}, aborted with {len(stored.record.points)} points "
-        f"touched ({stored.record.reason}): {stored.repeat_reason}"
-        for stored in aborted
-        if stored.repeat_reason
-    ]
-
-
 HEADER = [
     *("mode", "trials", "passed", "trainees competent", "shown at trial (median)"),
     *("aborted trials among them", "without a score among them"),
@@ -156,11 +139,11 @@ def passing(data: StudyData) -> str:
         return ""
     mark = pass_mark_of(data.protocol, compared_method(data))
     if mark is None:
-        return page.section("Pass mark", page.paragraph(_no_mark(data), "warning"))
+        return page.section("Pass mark", page.warning(_no_mark(data)))
     found = {mode: _failures(data, mode, mark) for mode in data.modes}
     found = {mode: failures for mode, failures in found.items() if failures}
     competence = {
-        mode: {trainee: competence_of(own) for trainee, own in failures.items()}
+        mode: {trainee: trial_feedback.competence_of(own) for trainee, own in failures.items()}
         for mode, failures in found.items()
     }
     return page.section(
@@ -172,7 +155,7 @@ def passing(data: StudyData) -> str:
             [_chart(data, mode, charts) for mode, charts in competence.items()],
             "LC-CUSUM of every trainee; thick: the limit at which competence is shown.",
         ),
-        page.paragraph(_words(data, mark), "small"),
+        page.note(_words(data, mark)),
     )
 
 
@@ -191,7 +174,7 @@ def _failures(data: StudyData, mode: str, mark: float) -> dict[str, list[bool]]:
             own.pop(0)
             failures[trial.trainee].append(True)
         score = trial.values.get(SCORE)
-        passed = score is not None and passes(score, trial.acceptable, mark)
+        passed = score is not None and scoring.passes(score, trial.acceptable, mark)
         failures[trial.trainee].append(not passed)
     for trainee, own in aborted.items():
         if own:
@@ -244,35 +227,33 @@ def _words(data: StudyData, mark: float) -> str:
     source = "the default, since the study sets no mark; no data support it"
     if data.protocol is not None and data.protocol.pass_mark is not None:
         source = "set by the protocol"
-    limit = lc_cusum_limit(ADEQUATE_FAILURES, INADEQUATE_FAILURES, TRAINING_TRIALS)
-    fewest = fewest_trials(ADEQUATE_FAILURES, INADEQUATE_FAILURES, limit)
-    too_likely = chance_of_successes(
-        fewest - 1, TRAINING_TRIALS, ADEQUATE_FAILURES, INADEQUATE_FAILURES
-    )
+    trials = trial_feedback.TRAINING_TRIALS
+    rates = trial_feedback.ADEQUATE_FAILURES, trial_feedback.INADEQUATE_FAILURES
+    fewest = fewest_trials(*rates, lc_cusum_limit(*rates, trials))
+    too_likely = chance_of_successes(fewest - 1, trials, *rates)
+    adequate, inadequate = map(percent, rates)
     return (
         f"A trial passes with {mark:g} of 100 points ({source}) and "
         f"{_acceptable(compared_method(data))}; one that was aborted after a touch, or has no "
-        "score, is not passed. "
-        "LC-CUSUM (Biau and Porcher 2010) calls a trainee competent "
-        "once the trials of a mode, over all tasks, speak clearly enough for a failure rate of "
-        f"{percent(ADEQUATE_FAILURES)} against one of {percent(INADEQUATE_FAILURES)}. Fewer than "
-        f"{fewest} trials in a mode cannot show it, even if all are passed: the score of "
-        f"{fewest - 1} passed trials would be reached by chance, within {TRAINING_TRIALS} trials, "
-        f"by {100 * too_likely:.1f} % of those who fail in {percent(INADEQUATE_FAILURES)}, and at "
-        f"most {percent(FALSE_DISCOVERY)} of them may be called competent. This takes "
-        "trials as independent: of trainees who fail as often, but on good days and bad ones, "
-        "several times as many are called competent."
+        "score, is not passed. LC-CUSUM (Biau and Porcher 2010) calls a trainee competent once "
+        "the trials of a mode, over all tasks, speak clearly enough for a failure rate of "
+        f"{adequate} against one of {inadequate}. Fewer than {fewest} trials in a mode cannot show "
+        f"it, even if all are passed: the score of {fewest - 1} passed trials would be reached by "
+        f"chance, within {trials} trials, by {100 * too_likely:.1f} % of those who fail in "
+        f"{inadequate}, and at most {percent(FALSE_DISCOVERY)} of them may be called competent. "
+        "This takes trials as independent: of trainees who fail as often, but on good days and "
+        "bad ones, several times as many are called competent."
     )
 
 
 def _acceptable(method: str) -> str:
     is_by_fiducials = method == RegistrationMethod.FIDUCIALS
-    bias = f"a bias common to all touches of at most {COMMON_BIAS_LIMIT_MM:g} mm, "
+    bias = f"a bias common to all touches of at most {scoring.COMMON_BIAS_LIMIT_MM:g} mm, "
     return (
         "within the limits of the score: a true target error in the brain within that of its "
         f"task, {bias if is_by_fiducials else ''}unintended contact of at most "
-        f"{CONTACT_LIMIT_S:g} s and {CONTACT_PATH_LIMIT_MM:g} mm, and a pressing depth of at most "
-        f"{DEPTH_LIMIT_MM:g} mm"
+        f"{scoring.CONTACT_LIMIT_S:g} s and {scoring.CONTACT_PATH_LIMIT_MM:g} mm, and a pressing "
+        f"depth of at most {scoring.DEPTH_LIMIT_MM:g} mm"
     )
 
 

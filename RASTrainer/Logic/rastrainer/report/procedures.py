@@ -142,17 +142,16 @@ def procedures(data: StudyData) -> str:
         "Procedures: from the registration to the target",
         page.bullets(_sentences(everything, len(data.trials))),
         page.table([list(HEADER)], rows, "wide"),
-        page.paragraph(EXPLANATION, "small"),
+        page.note(EXPLANATION),
         page.figure([split_chart(charted)], caption) if charted else "",
         page.table([list(TIME_HEADER)], [_time_row(KINDS[kind][0], kinds[kind]) for kind in kinds]),
         page.heading("Trainees"),
         page.table([list(TRAINEE_HEADER)], _trainee_rows(everything)),
         page.heading("Published figures, for orientation"),
         page.table([["what", "target point error (mm)", "source"]], PUBLISHED),
-        page.paragraph(
+        page.note(
             "They are no pass marks: patients, images and definitions differ between studies, and "
-            "a simulator has no brain shift and no resistance of tissue.",
-            "small",
+            "a simulator has no brain shift and no resistance of tissue."
         ),
     )
 

@@ -12,10 +12,9 @@ from rastrainer.number_text import counted, fixed, p_phrase, significant
 from rastrainer.report import page
 from rastrainer.statistics.intervals import Correlation, correlation
 from rastrainer.study.outcomes import mode_title, task_title
-from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.study.study_data import StudyData
 from rastrainer.trial.ctps import (
     CTPS_WARNING,
-    CohortReference,
     CohortScores,
     Printed,
     published_ctps,
@@ -30,14 +29,16 @@ RED, YELLOW, GREEN = (244, 165, 158), (252, 234, 170), (171, 219, 165)
 
 def with_ctps(data: StudyData) -> StudyData:
     """Return the study with `ctps` in the values of each registered trial."""
-    references = {}
-    for mode in data.modes:
-        scores = cohort_scores(data, mode)
-        if scores is not None:
-            references[mode] = scores.reference
-    return replace(
-        data, trials=tuple(_with_ctps(trial, references.get(trial.mode)) for trial in data.trials)
-    )
+    references = {mode: cohort_scores(data, mode) for mode in data.modes}
+    trials = []
+    for trial in data.trials:
+        scores, values = references[trial.mode], trial.values
+        if scores is not None and "rmse_mm" in values:
+            measures = values["completion_time_s"], values["rmse_mm"]
+            ctps = published_ctps(*measures, scores.reference)
+            trial = replace(trial, values={**values, "ctps": ctps})
+        trials.append(trial)
+    return replace(data, trials=tuple(trials))
 
 
 def cohort_scores(data: StudyData, mode: str) -> CohortScores | None:
@@ -58,13 +59,6 @@ def complexity_correlation(values: Iterable[tuple[str, float]]) -> Correlation |
         return None
 
 
-def _with_ctps(trial: TrialRow, reference: CohortReference | None) -> TrialRow:
-    if reference is None or "rmse_mm" not in trial.values:
-        return trial
-    ctps = published_ctps(trial.values["completion_time_s"], trial.values["rmse_mm"], reference)
-    return replace(trial, values={**trial.values, "ctps": ctps})
-
-
 def published_tables(data: StudyData) -> str:
     """Return both tables, colored from red (hard, low) to green (easy, high)."""
     parts = []
@@ -77,12 +71,10 @@ def published_tables(data: StudyData) -> str:
         parts.append(page.heading(f"Table {ROMAN[number % 4]}. {mode_title(mode)}: {counts}"))
         few = len(scores.subjects) <= MAX_COLUMNS
         parts.append(_whole(data, mode, scores) if few else _by_task(data, mode, scores))
-        parts.append(
-            page.paragraph(_overall(mode, scores) + _complexity(data, mode, scores), "small")
-        )
+        parts.append(page.note(_overall(mode, scores) + _complexity(data, mode, scores)))
     if not parts:
         return ""
-    warning = page.paragraph(f"How to read CTPS: {CTPS_WARNING}", "warning")
+    warning = page.warning(f"How to read CTPS: {CTPS_WARNING}")
     return page.section("Performance as the paper tabulates it", *parts, warning)
 
 
@@ -210,10 +202,13 @@ def paper_notes(data: StudyData) -> str:
     notes = data.notes
     if notes is None:
         return ""
-    rows = [
-        [printed.what, _count(data, printed), printed.printed, _ours(data, printed)]
-        for printed in notes.printed
-    ]
+    rows = []
+    for printed in notes.printed:
+        trials = data.ctps_trials(printed.mode)
+        count = counted(len(trials), "trial")
+        if printed.quantity in ("pearson_r", "r_squared"):
+            count = counted(len({trial.task for trial in trials}), "task mean")
+        rows.append([printed.what, count, printed.printed, _ours(data, printed)])
     claims = [[page.text(claim), page.text(words)] for claim, words in notes.claims]
     return page.section(
         "The paper's numbers, checked",
@@ -227,14 +222,6 @@ def paper_notes(data: StudyData) -> str:
             claims,
         ),
     )
-
-
-def _count(data: StudyData, printed: Printed) -> str:
-    """Return the number of values behind a printed number."""
-    trials = data.ctps_trials(printed.mode)
-    if printed.quantity in ("pearson_r", "r_squared"):
-        return counted(len({trial.task for trial in trials}), "task mean")
-    return counted(len(trials), "trial")
 
 
 def _ours(data: StudyData, printed: Printed) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -22,7 +23,7 @@ from rastrainer.study.ratings import FORMS, HIGHEST, LOWEST, Rating, RatingForm
 from rastrainer.study.study_data import StudyData
 
 _WORDS = ((0.5, "poor"), (0.75, "moderate"), (0.9, "good"), (float("inf"), "excellent"))
-"""Below which ICC reliability is called so (Koo and Li 2016)."""
+"""Names of reliability, each with the ICC below which it holds (Koo and Li 2016)."""
 TOTALS: page.Line = ["Form", "n", "Raters", "ICC(2,1) [95 %]", "ICC(2,k) [95 %]", "Mean totals"]
 DOMAINS: page.Line = ["Domain", "n", "Raters", "κ [95 %]", "Same mark", "Mean marks"]
 SCORES: page.Line = ["Rating", "n", "Pearson r [95 %]", "Spearman ρ"]
@@ -33,12 +34,13 @@ Marks = Mapping[str, Mapping[str, Rating]]
 
 def raters(data: StudyData) -> str:
     """Return the section; "" if nobody has rated replays."""
-    parts = [_of_form(form, marks, data) for form in FORMS.values() if (marks := _of(data, form))]
+    marks: dict[str, dict[str, dict[str, Rating]]] = defaultdict(lambda: defaultdict(dict))
+    for rating in data.ratings:
+        marks[rating.form][rating.rater][rating.trial_id] = rating
+    parts = [_of_form(form, marks[name], data) for name, form in FORMS.items() if name in marks]
     if not parts:
         return ""
-    return page.section(
-        "Raters", page.paragraph(_INTRODUCTION), *parts, page.paragraph(_NOTE, "small")
-    )
+    return page.section("Raters", page.paragraph(_INTRODUCTION), *parts, page.note(_NOTE))
 
 
 _INTRODUCTION = (
@@ -56,14 +58,6 @@ _NOTE = (
 )
 
 
-def _of(data: StudyData, form: RatingForm) -> Marks:
-    found: dict[str, dict[str, Rating]] = {}
-    for rating in data.ratings:
-        if rating.form == form.name:
-            found.setdefault(rating.rater, {})[rating.trial_id] = rating
-    return found
-
-
 def _of_form(form: RatingForm, marks: Marks, data: StudyData) -> str:
     names = sorted(marks)
     shared = sorted(set.intersection(*(set(of_rater) for of_rater in marks.values())))
@@ -78,7 +72,7 @@ def _of_form(form: RatingForm, marks: Marks, data: StudyData) -> str:
             f"{' in common' if len(names) > 1 else ''}: agreement needs two raters and {FEWEST} "
             "replays that both have rated."
         )
-        parts.append(page.paragraph(few, "warning"))
+        parts.append(page.warning(few))
     else:
         parts += _agreement(form, marks, names, shared)
     return "".join([*parts, *_compared_with_score(form, marks, data)])
@@ -94,7 +88,7 @@ def _agreement(
         found = intraclass_correlations(totals)
     except InputError as error:
         line: page.Line = [form.title, str(len(shared)), who, "–", "–", means]
-        said = [page.paragraph(str(error), "warning")]
+        said = [page.warning(str(error))]
     else:
         values = (agreement_text(found.single), agreement_text(found.average))
         line = [form.title, str(len(shared)), who, *values, means]

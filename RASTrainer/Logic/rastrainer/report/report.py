@@ -114,18 +114,16 @@ def _summary(comparisons: list[ModeComparison], gap: str, *left_out: str) -> str
             f"Only {counted(n, 'trainee')} did both modes. What is not shown here may still be "
             "there; see “What cannot be concluded”."
         )
-        parts.append(page.paragraph(few, "warning"))
+        parts.append(page.warning(few))
     if sentences and (caveat := order_caveat(comparisons)):
-        parts.append(page.paragraph(caveat, "warning"))
+        parts.append(page.warning(caveat))
     if not parts:
         parts = [
             page.paragraph("No trainee did two modes; the study is described, nothing is tested.")
         ]
-    parts += [page.paragraph(note, "warning") for note in left_out if note]
+    parts += [page.warning(note) for note in left_out if note]
     if gap:
-        parts.insert(
-            0, page.paragraph(f"{gap} What follows is about these trials alone.", "warning")
-        )
+        parts.insert(0, page.warning(f"{gap} What follows is about these trials alone."))
     return page.section("In short", *parts)
 
 

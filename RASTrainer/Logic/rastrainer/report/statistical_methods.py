@@ -23,29 +23,10 @@ from rastrainer.statistics.paired import PairedComparison
 from rastrainer.study.outcomes import FILTER, mode_title, task_title
 from rastrainer.study.protocol.study_protocol import BALANCED
 from rastrainer.study.study_data import StudyData
-from rastrainer.trial.score_reference import (
-    BELOW_VERTEX_MM,
-    REFERENCE_FLE_MM,
-    SPACING_MM,
-    UNDER_SKIN_MM,
-)
-from rastrainer.trial.scoring import (
-    COMMON_BIAS_LIMIT_MM,
-    COMMON_BIAS_POWER,
-    CONTACT_LIMIT_S,
-    CONTACT_PATH_LIMIT_MM,
-    DEPTH_LIMIT_MM,
-    HALF_COMMON_BIAS_MM,
-    HALF_CONTACT_PATH_MM,
-    HALF_CONTACT_S,
-    HALF_DEPTH_MM,
-    LIMIT_MM,
-    LONG_PAUSE_S,
-    SCORE_VERSION,
-)
+from rastrainer.trial import score_reference, scoring
 
 FEW_SUBJECTS = 20
-"""Below this many subjects the limits are stated without being asked for."""
+"""The limits are always stated for fewer subjects."""
 
 
 def limits(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
@@ -146,12 +127,15 @@ def _about_order(with_period: bool, order_known: bool) -> str:
 
 
 def _paused(data: StudyData) -> list[str]:
-    count = sum(trial.values.get("pause_time_s", 0.0) > LONG_PAUSE_S for trial in data.trials)
+    count = sum(
+        trial.values.get("pause_time_s", 0.0) > scoring.LONG_PAUSE_S for trial in data.trials
+    )
     if not count:
         return []
     return [
-        f"{count} of {len(data.trials)} trials were paused for more than {LONG_PAUSE_S:g} s in "
-        "all. Completion time and score leave pauses out: time to think that others did not have."
+        f"{count} of {len(data.trials)} trials were paused for more than {scoring.LONG_PAUSE_S:g} "
+        "s in all. Completion time and score leave pauses out: time to think that others did not "
+        "have."
     ]
 
 
@@ -213,7 +197,7 @@ def methods(data: StudyData) -> str:
     versions = [[name, ", ".join(found)] for name, found in data.versions.items()]
     own = [
         ["rastrainer (this report)", rastrainer.__version__],
-        ["score", SCORE_VERSION],
+        ["score", scoring.SCORE_VERSION],
         [
             "python, numpy, scipy (this report)",
             f"{platform.python_version()}, {np.__version__}, {scipy_module('version').version}",
@@ -280,33 +264,34 @@ def _score(method: str) -> str:
     bias, bias_limit = "", ""
     if method == RegistrationMethod.FIDUCIALS:
         bias = (
-            "This is multiplied by the trueness (ISO 5725-1) of the touches, "
-            f"1/(1 + (b/{HALF_COMMON_BIAS_MM:g} mm)^{COMMON_BIAS_POWER}), with b the length of the "
-            "bias along the skin that best explains the true errors of all touches (least "
-            "squares), because on a small patch of skin such a bias hardly moves the brain. "
+            "This is multiplied by the trueness (ISO 5725-1) of the touches, 1/(1 + "
+            f"(b/{scoring.HALF_COMMON_BIAS_MM:g} mm)^{scoring.COMMON_BIAS_POWER}), with b the "
+            "length of the bias along the skin that best explains the true errors of all touches "
+            "(least squares), because on a small patch of skin such a bias hardly moves the "
+            "brain. "
         )
-        bias_limit = f"{COMMON_BIAS_LIMIT_MM:g} mm of common bias, "
+        bias_limit = f"{scoring.COMMON_BIAS_LIMIT_MM:g} mm of common bias, "
     return (
-        f" The RASTrainer score (version {SCORE_VERSION}, 0 to 100) is made of three "
+        f" The RASTrainer score (version {scoring.SCORE_VERSION}, 0 to 100) is made of three "
         "desirabilities (Harrington 1965), each of the form 1/(1 + (value/half)²): the geometric "
         "mean (Derringer and Suich 1980) of time and accuracy, times the square root of safety. "
         "Accuracy is the true target error of the rigid registration, which the simulator reveals "
         "once the registration is final: the root mean square over the scenario's targets and "
-        f"over a {SPACING_MM:g} mm grid of the brain, half and half (points at least "
-        f"{UNDER_SKIN_MM:g} mm under the skin and at most {BELOW_VERTEX_MM:g} mm below the "
-        f"vertex). {bias}Safety is the product of three: the time of unintended contact (one half "
-        f"at {HALF_CONTACT_S:g} s), its path ({HALF_CONTACT_PATH_MM:g} mm) and the depth to which "
-        f"the tool was pressed in ({HALF_DEPTH_MM:g} mm, root mean square over the fiducials). A "
-        f"trial with more than {LIMIT_MM:g} mm of error (where the protocol sets no other limit), "
-        f"{bias_limit}"
-        f"{CONTACT_LIMIT_S:g} s, {CONTACT_PATH_LIMIT_MM:g} mm or {DEPTH_LIMIT_MM:g} mm deep scores "
-        "below every trial of its task within the limits, and does not pass. The references of "
-        "time and error are the same in all modes and, where the protocol sets none, come from the "
-        "scenario: time from the path through the fiducials; the error by propagating independent "
-        f"localization errors along the skin, of {REFERENCE_FLE_MM:.1f} mm, to the same region to "
-        "first order (RASTrainer's own; Fitzpatrick, West and Maurer 1998 assume isotropic "
-        "errors). "
-        "Halves and limits are RASTrainer's own conventions."
+        f"over a {score_reference.SPACING_MM:g} mm grid of the brain, half and half (points at "
+        f"least {score_reference.UNDER_SKIN_MM:g} mm under the skin and at most "
+        f"{score_reference.BELOW_VERTEX_MM:g} mm below the vertex). {bias}Safety is the product of "
+        f"three: the time of unintended contact (one half at {scoring.HALF_CONTACT_S:g} s), its "
+        f"path ({scoring.HALF_CONTACT_PATH_MM:g} mm) and the depth to which the tool was pressed "
+        f"in ({scoring.HALF_DEPTH_MM:g} mm, root mean square over the fiducials). A trial with "
+        f"more than {scoring.LIMIT_MM:g} mm of error (where the protocol sets no other limit), "
+        f"{bias_limit}{scoring.CONTACT_LIMIT_S:g} s, {scoring.CONTACT_PATH_LIMIT_MM:g} mm or "
+        f"{scoring.DEPTH_LIMIT_MM:g} mm deep scores below every trial of its task within the "
+        "limits, and does not pass. The references of time and error are the same in all modes "
+        "and, where the protocol sets none, come from the scenario: time from the path through "
+        "the fiducials; the error by propagating independent localization errors along the skin, "
+        f"of {score_reference.REFERENCE_FLE_MM:.1f} mm, to the same region to first order "
+        "(RASTrainer's own; Fitzpatrick, West and Maurer 1998 assume isotropic errors). Halves "
+        "and limits are RASTrainer's own conventions."
     )
 
 

@@ -16,7 +16,6 @@ from rastrainer.statistics.trainee_clusters import (
 )
 from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.standing import (
-    AssignmentStanding,
     CurriculumStanding,
     by_curriculum,
     goal_of,
@@ -43,7 +42,12 @@ def questionnaires(data: StudyData) -> str:
         return ""
     values: dict[tuple[str, str, str], list[float]] = defaultdict(list)
     for answered in data.answers:
-        occasion = _occasion(answered.step.name, answered.step.mode)
+        step = answered.step
+        if step.mode:
+            when = "before" if "/before/" in step.name else "after"
+            occasion = f"{when} {mode_title(step.mode)}"
+        else:
+            occasion = "before all" if step.name.startswith("before-all") else "after all"
         for scale, score in answered.scores.items():
             values[answered.step.questionnaire, scale, occasion].append(score)
     rows: list[page.Line] = []
@@ -61,13 +65,6 @@ def questionnaires(data: StudyData) -> str:
     return page.section(
         "Questionnaires", page.table(header, rows), page.paragraph(" ".join(sources))
     )
-
-
-def _occasion(step: str, mode: str) -> str:
-    if not mode:
-        return "before all" if step.startswith("before-all") else "after all"
-    when = "before" if "/before/" in step else "after"
-    return f"{when} {mode_title(mode)}"
 
 
 def _row(scale: Scale, when: str, scores: list[float]) -> page.Line:
@@ -91,7 +88,7 @@ def groups(data: StudyData) -> str:
         found = cluster_trainees(means, metrics)
     except NoClustersError as error:
         return page.section("Groups of trainees", page.paragraph(f"None are reported. {error}"))
-    return page.section("Groups of trainees", _table(found), page.paragraph(_words(found), "small"))
+    return page.section("Groups of trainees", _table(found), page.note(_words(found)))
 
 
 def trainee_means(data: StudyData) -> dict[str, dict[str, float]]:
@@ -135,7 +132,7 @@ def curricula(data: StudyData) -> str:
         return ""
     groups = by_curriculum(data.standings)
     parts = [_of_curriculum(each, found) for each, found in groups.items()]
-    return page.section("Curriculum", *parts, page.paragraph(_CURRICULA_NOTE, "small"))
+    return page.section("Curriculum", *parts, page.note(_CURRICULA_NOTE))
 
 
 def _of_curriculum(curriculum: Curriculum, found: Mapping[str, CurriculumStanding]) -> str:
@@ -150,11 +147,10 @@ def _of_curriculum(curriculum: Curriculum, found: Mapping[str, CurriculumStandin
         ]
         for name, standing in found.items()
     ]
-    goals = [f"{each.assignment.name}: {_goal(each)}" for each in first.standings]
+    goals = []
+    for each in first.standings:
+        after = ", ".join(each.assignment.after)
+        gate = f"; after {after}" if after else ""
+        what = f"{title_of(each.assignment)}, {goal_of(each)}{gate}"
+        goals.append(f"{each.assignment.name}: {what}")
     return page.heading(curriculum.title) + page.table([header], rows) + page.bullets(goals)
-
-
-def _goal(standing: AssignmentStanding) -> str:
-    after = ", ".join(standing.assignment.after)
-    gate = f"; after {after}" if after else ""
-    return f"{title_of(standing.assignment)}, {goal_of(standing)}{gate}"

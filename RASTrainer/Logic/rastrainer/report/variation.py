@@ -70,7 +70,7 @@ def study_variation(data: StudyData) -> StudyVariation | None:
 
 @dataclass(frozen=True)
 class ViewBias:
-    """By how much a view displaces the target, beyond what the residuals say.
+    """The displacement of the target by a view that the residuals do not show.
 
     Attributes:
         squared: Of the displacement, mm²; below 0 by chance where it is about 0.
@@ -139,13 +139,19 @@ def _sources(found: StudyVariation, modes: list[str]) -> list[str]:
     trials, trainees = counted(found.trials, "trial"), counted(found.trainees, "trainee")
     practice = "Practice: exponent b, the m-th trial of all in proportion to m⁻ᵇ"
     speed = "Speed and accuracy: exponent k, RMSE in proportion to time⁻ᵏ"
+    against_first: list[page.Line] = [
+        [
+            f"{mode_title(mode)} against {mode_title(modes[0])}",
+            trainees,
+            _factor(time),
+            _factor(error),
+        ]
+        for mode, time, error in zip(modes[1:], found.time.modes, found.error.modes, strict=True)
+    ]
     rows: list[page.Line] = [
         [practice, trials, *(_exponent(one.learning) for one in both)],
         [speed, trials, "–", _exponent(found.trade_off)],
-        *(
-            [f"{mode_title(mode)} against {mode_title(modes[0])}", trainees, *map(_factor, both)]
-            for mode, *both in zip(modes[1:], found.time.modes, found.error.modes, strict=True)
-        ),
+        *against_first,
         ["Between trainees (SD)", trainees, *(_sd(one.trainee_variance) for one in both)],
         ["Trainee × mode (SD)", trainees, *(_sd(one.interaction_variance) for one in both)],
         ["From trial to trial (SD)", trials, *(_sd(one.trial_variance) for one in both)],
@@ -160,7 +166,7 @@ def _sources(found: StudyVariation, modes: list[str]) -> list[str]:
             page.Cell(share_text(found.lapses), span=2),
         ],
     ]
-    return [page.table([HEADER], rows, "wide"), page.paragraph(_words(found), "small")]
+    return [page.table([HEADER], rows, "wide"), page.note(_words(found))]
 
 
 def _view_biases(biases: dict[str, ViewBias]) -> list[str]:
@@ -174,7 +180,7 @@ def _view_biases(biases: dict[str, ViewBias]) -> list[str]:
     return [
         page.heading("Bias of the views"),
         page.table([BIAS_HEADER], rows),
-        page.paragraph(BIAS_WORDS, "small"),
+        page.note(BIAS_WORDS),
     ]
 
 

@@ -12,7 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.statistics.intervals import TAIL, t_quantile
 
 FEWEST = 3
-"""Of two rated objects, no agreement can be computed."""
+"""The agreement on two rated objects cannot be computed."""
 DRAWS = 10_000
 """For the limits of an intraclass correlation; they are then exact to about 0.01."""
 
@@ -21,12 +21,11 @@ _Number = TypeVar("_Number", float, np.ndarray)
 
 @dataclass(frozen=True)
 class Agreement:
-    """A coefficient, 1 where raters agree, 0 where they do by chance only.
+    """A coefficient: 1 if raters always agree, 0 if they agree by chance only.
 
     Attributes:
         value: At most 1.
-        interval: The 95 % interval; None where the data give none, such as of raters who agree
-            everywhere.
+        interval: The 95 % interval; None if the data give none, as of raters who always agree.
     """
 
     value: float
@@ -54,7 +53,7 @@ class IntraclassCorrelations:
 def intraclass_correlations(ratings: np.ndarray) -> IntraclassCorrelations:
     """Return the agreement of (n, k) float ratings: n objects by k raters.
 
-    The coefficients are those of Shrout and Fleiss (1979). Their 95 % limits are generalized
+    The coefficients are defined by Shrout and Fleiss (1979). Their 95 % limits are generalized
     confidence limits (Weerahandi 1993): those of McGraw and Wong (1996, table 7) hold the truth in
     as few as 75 % of simulated studies where raters differ as much as objects; see
     docs/error-rates.md. Raters who differ by nothing but a constant leave no limits.
@@ -69,7 +68,7 @@ def intraclass_correlations(ratings: np.ndarray) -> IntraclassCorrelations:
     columns = n * float(np.sum((raters - mean) ** 2)) / (k - 1)
     rest = ratings - objects[:, None] - raters[None, :] + mean
     error = float(np.sum(rest**2)) / ((n - 1) * (k - 1))
-    # Of what is rounded away, nothing is estimated.
+    # Rounding errors are not estimated from.
     least = 1e-12 * max(1.0, float(np.ptp(ratings)) ** 2)
     if rows < least:
         raise InputError("On average, all objects were rated the same: agreement is undefined.")

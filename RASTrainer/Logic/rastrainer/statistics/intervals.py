@@ -221,8 +221,8 @@ def variance(square: MeanSquare) -> Estimate:
 def difference(first: MeanSquare, second: MeanSquare) -> Estimate:
     """Return the difference of the variances that two independent mean squares estimate.
 
-    The limits are those of Ting et al. (1990), the modified large-sample interval of Burdick and
-    Graybill (1992). They may be below 0.
+    Ting et al. (1990) give the limits, the modified large-sample interval of Burdick and Graybill
+    (1992). They may be below 0.
     """
     one, other = first.value, second.value
     difference_ = one - other

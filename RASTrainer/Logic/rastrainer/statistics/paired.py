@@ -52,7 +52,7 @@ def is_separable(order: np.ndarray | None) -> bool:
 
     Args:
         order: (n,) float, by how many periods each subject did the second condition later than the
-            first: 1 for AB, -1 for BA; None where that is unknown.
+            first: 1 for AB, -1 for BA; None if that is unknown.
     """
     if order is None or len(order) < MIN_SUBJECTS:
         return False
@@ -146,9 +146,9 @@ class PairedComparison:
         hedges_gz: Mean difference over its standard deviation, corrected for few subjects; None
             with one degree of freedom.
         gz_interval: 95 % interval of the population's own (noncentral t); None likewise.
-        ranks: Wilcoxon's signed ranks, or his rank sums where periods are separated; None where
+        ranks: Wilcoxon's signed ranks, or his rank sums where periods are separated; None if
             neither can be computed.
-        sequences: What the order did; None where it is unknown, or the same for all.
+        sequences: What the order did; None if it is unknown, or the same for all.
     """
 
     n: int
@@ -244,7 +244,7 @@ class RankTest:
 
     Attributes:
         p: Two-sided; exact, or by the normal approximation for more than 100 values of two groups.
-        smallest_p: Smallest possible p for these ranks; 0 where p is approximate.
+        smallest_p: Smallest possible p for these ranks; 0 if p is approximate.
     """
 
     p: float
@@ -257,8 +257,8 @@ MAX_SIGNED = 400
 def signed_rank_test(differences: np.ndarray) -> RankTest:
     """Test whether (n,) float differences scatter about 0.
 
-    Zeros are left out (Wilcoxon 1945); tied sizes share their mean rank. The distribution is that
-    of all 2ⁿ signs of the ranks that were observed.
+    Zeros are left out (Wilcoxon 1945); tied sizes share their mean rank. All 2ⁿ signs of the
+    observed ranks make the distribution.
     """
     values = np.asarray(differences, dtype=float)
     values = values[values != 0]
@@ -281,7 +281,7 @@ MAX_EXACT_SUMS = 100
 def rank_sum_test(one: np.ndarray, other: np.ndarray) -> RankTest | None:
     """Test whether (n,) and (m,) float values have equal location; None if a group is empty.
 
-    The distribution is that of all draws of n of the observed ranks; tied values share their mean
+    All draws of n of the observed ranks make the distribution; tied values share their mean
     rank, which scipy's exact test does not support.
     """
     drawn = len(one)

@@ -32,7 +32,7 @@ MAX_ORDERS = 9999
 
 
 class TrendVerdict(Enum):
-    """What a series of trials shows."""
+    """The result of a series of trials."""
 
     FALLS = "falls"
     STEADY = "steady"
@@ -199,7 +199,7 @@ class LearningCurve:
     """The power law of practice y = a·n^−b + c over the trials n = 1, 2, …, fitted.
 
     It describes (Newell and Rosenbloom 1981), in the unit of what was measured; whether there is
-    learning at all is for the test. Of few trials the plateau is a guess: it lies beyond them.
+    learning at all is for the test. The plateau of few trials is a guess: it lies beyond them.
 
     Attributes:
         gain: a, how much the first trial is above the plateau.
@@ -220,8 +220,7 @@ class LearningCurve:
 def fit_learning_curve(values: Sequence[float]) -> LearningCurve:
     """Fit the power law to (n,) values of consecutive trials by least squares.
 
-    Gain and plateau are not below 0: what is measured falls with practice and stays above 0, as
-    times and errors do.
+    Gain and plateau are not below 0: times and errors fall with practice and stay above 0.
     """
     y = np.asarray(values, dtype=float)
     if len(y) < MIN_FIT_TRIALS:

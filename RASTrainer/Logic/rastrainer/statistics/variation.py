@@ -33,7 +33,7 @@ class Trials:
 
     Attributes:
         numbers: Which trial of the trainee's it was, over all modes, from 1.
-        lapses: 1.0 where a touch was undone, else 0.0.
+        lapses: 1.0 if a touch was undone, else 0.0.
     """
 
     trainees: np.ndarray
@@ -45,11 +45,11 @@ class Trials:
 
 @dataclass(frozen=True)
 class Variation:
-    """What the logarithm of one outcome varies by, with 95 % intervals.
+    """The sources of variation of the logarithm of one outcome, with 95 % intervals.
 
     Attributes:
         learning: b; the n-th trial has n^−b of the first one's value.
-        lapse: What an undone touch adds to the logarithm; None where there was none.
+        lapse: What an undone touch adds to the logarithm; None if there was none.
         modes: What each mode adds to the logarithm against the first mode, from the second on.
     """
 
@@ -64,7 +64,7 @@ class Variation:
 
 
 def fit_variation(trials: Trials, values: np.ndarray) -> Variation | None:
-    """Return what positive values (n,) vary by; None where the trials do not allow it.
+    """Return what positive values (n,) vary by; None if the trials do not allow it.
 
     They do not where there are fewer than four trainees or two modes, where a trainee lacks a mode,
     or where there are no more trials than unknowns.

@@ -1,0 +1,96 @@
+"""Arguments of commands, as each command lists them, and those that several share."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.home_folder import home_folder
+from rastrainer.study.database.database import EXAMPLE, StudyPlace, study_place
+
+Argument = Callable[[Any], object]
+"""Adds itself to a parser of argparse, or to a group of one."""
+
+
+def option(*names: str, **settings: Any) -> Argument:
+    """Return an argument with the names and settings that argparse knows."""
+    return lambda parser: parser.add_argument(*names, **settings)
+
+
+def path(name: str, metavar: str, help_text: str | None = None, **settings: Any) -> Argument:
+    return option(name, type=Path, metavar=metavar, help=help_text, **settings)
+
+
+def output(help_text: str, **settings: Any) -> Argument:
+    return option("-o", "--output", type=Path, metavar="DIR", help=help_text, **settings)
+
+
+def number(name: str, default: float, help_text: str, **settings: Any) -> Argument:
+    """Return an option with a number, which is of the type of its default."""
+    return option(name, type=type(default), default=default, help=help_text, **settings)
+
+
+def flag(name: str, help_text: str) -> Argument:
+    return option(name, action="store_true", help=help_text)
+
+
+def switch(name: str, help_text: str) -> Argument:
+    """Return a flag that is set unless its opposite, `--no-…`, is given."""
+    return option(name, action=argparse.BooleanOptionalAction, default=True, help=help_text)
+
+
+def group(title: str, *options: Argument) -> Argument:
+    """Return options that the help shows below a title."""
+    return lambda parser: add_all(parser.add_argument_group(title), options)
+
+
+def one_of(*options: Argument) -> Argument:
+    """Return options of which at most one can be given."""
+    return lambda parser: add_all(parser.add_mutually_exclusive_group(), options)
+
+
+def add_all(parser: Any, arguments: Iterable[Argument]) -> None:
+    for add in arguments:
+        add(parser)
+
+
+def path_of_user(text: str) -> Path:
+    """Return the path of an option, in which ~ is the home folder."""
+    start, *rest = Path(text).parts or (".",)
+    try:
+        return home_folder().joinpath(*rest) if start == "~" else Path(text)
+    except InputError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def _place(text: str) -> StudyPlace:
+    try:
+        return study_place(text)
+    except InputError as error:
+        # In place of argparse's own sentence, which would repeat what was entered.
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+STUDY_HELP = f"a study's file, or its address in PostgreSQL, such as {EXAMPLE}"
+
+
+def study(
+    name: str = "study", help_text: str = STUDY_HELP, metavar: str = "STUDY", **settings: Any
+) -> Argument:
+    """Return the argument that says where a study is: a `StudyPlace`."""
+    return option(name, type=_place, metavar=metavar, help=help_text, **settings)
+
+
+CONFIG = path("--config", "DIR", "folder of your settings (default: the usual)")
+RECORDS = option(
+    "--records",
+    type=path_of_user,
+    metavar="DIR",
+    default="~/RASTrainer/trials",
+    help="folder of the trials' journals",
+)
+JSON = flag("--json", "print one JSON object")
+INCOMPLETE = flag("--incomplete", "accept a virtual cohort that was not played to its end")
