@@ -388,6 +388,6 @@ class StreamTrainee:
     def _stick_axes(self) -> np.ndarray:
         """Return (3, 3) float: right, forward and up as the picture shows them, as rows."""
         camera = Viewpoint.from_json(self.view.state["view"])
-        line = tuple((camera.focal_point - camera.position).tolist())
+        line = tuple((camera.focal_point_mm - camera.position_mm).tolist())
         axes = camera_axes(line, tuple(camera.view_up.tolist()))
         return np.array([axes.right, axes.forward, axes.up])

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.random import default_rng
@@ -22,6 +22,7 @@ from rastrainer.commands import skin_amounts
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields
 from rastrainer.head.mesh import HeadMesh
+from rastrainer.json_checks import number
 from rastrainer.protocol import SKIN_KEYS, SKIN_LIMIT_MM
 
 
@@ -35,13 +36,12 @@ class Perturbation:
         tilt_deg: about a horizontal axis of any direction.
     """
 
-    translation_mm: float
-    yaw_deg: float
-    tilt_deg: float
+    translation_mm: Annotated[float, number(0, 200, "mm")]
+    yaw_deg: Annotated[float, number(0, 180, "°")]
+    tilt_deg: Annotated[float, number(0, 45, "°")]
 
 
 MAX_PERTURBATION = Perturbation(200.0, 180.0, 45.0)
-"""Limits for scenarios and set-ups."""
 
 
 def perturbed_pose(
