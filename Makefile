@@ -77,13 +77,12 @@ docs: .venv/docs-installed
 # Hashes, but no addresses: the locks hold at whatever index a site uses.
 lock: .venv/installed
 	$(BIN)/pip install -q uv==0.13.9
-	$(COMPILE) --extra lti --extra page --extra slicer -o requirements/base.lock
+	$(COMPILE) --extra page --extra slicer -o requirements/base.lock
 	$(COMPILE) --extra test --constraints requirements/base.lock -o requirements/test.lock
 	$(COMPILE) --extra bench --constraints requirements/test.lock -o requirements/bench.lock
 	$(COMPILE) --extra soak --constraints requirements/test.lock -o requirements/soak.lock
 	$(subst pyproject.toml,requirements/ralph.in,$(COMPILE)) -o requirements/ralph.lock
 	$(subst pyproject.toml,requirements/icp.in,$(COMPILE)) -o requirements/icp.lock
-	$(subst pyproject.toml,requirements/openedx.in,$(COMPILE)) -o requirements/openedx.lock
 	$(COMPILE) --extra supply --constraints requirements/base.lock -o requirements/supply.lock
 	$(COMPILE) --extra docs --constraints requirements/test.lock -o requirements/docs.lock
 	$(COMPILE) --constraints requirements/base.lock --excludes tools/simulator-leaves-out.txt -o $(SIMULATOR)/requirements.lock
@@ -116,14 +115,12 @@ $(VENV_PYTHON):
 	touch $@
 
 # A peer has an environment of its own: it wants other versions of the same packages.
-.venv/soak-installed: .venv/test-installed requirements/soak.lock requirements/ralph.lock requirements/icp.lock requirements/openedx.lock
+.venv/soak-installed: .venv/test-installed requirements/soak.lock requirements/ralph.lock requirements/icp.lock
 	$(BIN)/python -m pip install -q --require-hashes -r requirements/soak.lock
 	$(BIN)/python -m venv .venv/ralph
 	.venv/ralph/bin/python -m pip install -q --require-hashes -r requirements/ralph.lock
 	$(BIN)/python -m venv .venv/icp
 	.venv/icp/bin/python -m pip install -q --require-hashes -r requirements/icp.lock
-	$(BIN)/python -m venv .venv/openedx
-	.venv/openedx/bin/python -m pip install -q --require-hashes -r requirements/openedx.lock
 	touch $@
 
 .venv/supply-installed: .venv/installed requirements/supply.lock

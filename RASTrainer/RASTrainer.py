@@ -15,6 +15,7 @@ from slicer.parameterNodeWrapper import parameterNodeWrapper
 
 if TYPE_CHECKING:
     from rastrainer.panels.panel_stack import PanelStack
+    from rastrainer.slicer.turns import Turns
 
 #
 # RASTrainer
@@ -110,7 +111,9 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
     def __init__(self, parent=None) -> None:
         ScriptedLoadableModuleWidget.__init__(self, parent)
         VTKObservationMixin.__init__(self)
-        self.logic: Optional[RASTrainerLogic] = None
+        self._logic: Optional[RASTrainerLogic] = None
+        self._building: Optional[Turns] = None
+        self.ui: Any = None
         self._parameterNode: Any = None
         self._parameterNodeGuiTag: Any = None
         self._uiWidget: Any = None
@@ -119,23 +122,40 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
         self._workTimer: Any = None
         self._isWoken = False
 
+    @property
+    def logic(self) -> Optional["RASTrainerLogic"]:
+        """The logic; whoever asks for it has the panel built at once, if it is not yet."""
+        if self._building is not None:
+            self._building.finish()
+        return self._logic
+
     def setup(self) -> None:
-        from rastrainer.panels.panel_stack import PanelStack
-        from rastrainer.panels.application import isAnythingVisible
-        from rastrainer.slicer.background_work import PERIOD_MS
+        from rastrainer.slicer.turns import Turns
 
         ScriptedLoadableModuleWidget.setup(self)
-        uiWidget = slicer.util.loadUI(self.resourcePath("UI/RASTrainer.ui"))
-        self.layout.addWidget(uiWidget)
-        self._uiWidget = uiWidget
-        self.logic = RASTrainerLogic()
-        session = self.logic.session
+        self._uiWidget = slicer.util.loadUI(self.resourcePath("UI/RASTrainer.ui"))
+        self._uiWidget.setMRMLScene(slicer.mrmlScene)
+        # Slicer's window answers between imports and sections.
+        self._building = Turns(self._build(), lambda step: qt.QTimer.singleShot(0, step))
+
+    def _build(self):
+        from rastrainer.slicer.turns import importInTurns
+
+        yield from importInTurns("rastrainer.panels.panel_stack")
+        from rastrainer.panels.application import isAnythingVisible
+        from rastrainer.panels.panel_stack import PanelStack
+        from rastrainer.slicer.background_work import PERIOD_MS
+
+        scene = slicer.mrmlScene
+        self._logic = RASTrainerLogic()
+        session = self._logic.session
         session.isSeen = lambda inSlices: isAnythingVisible(self.parent.isEntered, inSlices)
-        self._panels = PanelStack(uiWidget, self.resourcePath, session)
+        self.addObserver(scene, scene.StartCloseEvent, self.onSceneStartClose)
+        self.addObserver(scene, scene.EndCloseEvent, self.onSceneEndClose)
+        self._panels = PanelStack()
+        yield from self._panels.build(self._uiWidget, self.resourcePath, session)
         self.ui = self._panels.ui
-        uiWidget.setMRMLScene(slicer.mrmlScene)
-        self.addObserver(slicer.mrmlScene, slicer.mrmlScene.StartCloseEvent, self.onSceneStartClose)
-        self.addObserver(slicer.mrmlScene, slicer.mrmlScene.EndCloseEvent, self.onSceneEndClose)
+        self.layout.addWidget(self._uiWidget)
         self.initializeParameterNode()
         # Trials arrive whether or not this module is shown.
         self._timer = qt.QTimer()
@@ -149,6 +169,8 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
         session.work.began.connect(self._workTimer.start)
 
     def cleanup(self) -> None:
+        if self._building is not None:
+            self._building.stop()
         for timer, slot in (
             (self._timer, self.onTimeout),
             (self._workTimer, self.onWorkTimeout),
@@ -158,9 +180,9 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
                 timer.disconnect("timeout()", slot)
         if self._panels is not None:
             self._panels.close()
-        if self.logic is not None:
-            self.logic.session.woken.disconnect(self.wake)
-            self.logic.close()
+        if self._logic is not None:
+            self._logic.session.woken.disconnect(self.wake)
+            self._logic.close()
         self.setParameterNode(None)
         self.removeObservers()
         if self._uiWidget is not None:
@@ -174,8 +196,8 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
         self.wake()
 
     def exit(self) -> None:
-        if self.logic is not None:
-            self.logic.session.layout.giveBack()
+        if self._logic is not None:
+            self._logic.session.layout.giveBack()
         self.setParameterNode(None)
         self.wake()
 
@@ -186,34 +208,34 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
             self._timer.start(self.SOON_MS)
 
     def onTimeout(self) -> None:
-        if self.logic is None:
+        if self._logic is None:
             return
         self._isWoken = False
         try:
-            self.logic.process()
+            self._logic.process()
         finally:
-            restS = self.logic.session.restS(self.parent.isEntered)
+            restS = self._logic.session.restS(self.parent.isEntered)
             if restS is not None and not self._isWoken:
                 self._timer.start(round(1000 * restS))
 
     def onWorkTimeout(self) -> None:
-        if self.logic is None or not self.logic.session.yieldTimeToWork():
+        if self._logic is None or not self._logic.session.yieldTimeToWork():
             self._workTimer.stop()
 
     def onSceneStartClose(self, caller=None, event=None) -> None:
         self.setParameterNode(None)
-        if self.logic is not None:
-            self.logic.session.sceneWillBeCleared()
+        if self._logic is not None:
+            self._logic.session.sceneWillBeCleared()
 
     def onSceneEndClose(self, caller=None, event=None) -> None:
-        if self.logic is not None:
-            self.logic.session.sceneWasCleared()
+        if self._logic is not None:
+            self._logic.session.sceneWasCleared()
         if self.parent.isEntered:
             self.initializeParameterNode()
 
     def initializeParameterNode(self) -> None:
-        if self.logic is not None:
-            self.setParameterNode(self.logic.getParameterNode())
+        if self._logic is not None and self.ui is not None:
+            self.setParameterNode(self._logic.getParameterNode())
 
     def setParameterNode(self, parameterNode) -> None:
         if self._parameterNode is not None:
@@ -274,6 +296,7 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
             widget.enter()
         else:
             slicer.util.selectModule("RASTrainer")
+        self.assertIsNotNone(widget.logic)
         self.assertTrue(widget._timer.isActive())
         self.assertIsNotNone(widget._parameterNodeGuiTag)
         target = slicer.mrmlScene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Target")
@@ -315,6 +338,7 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
     def test_theBuiltInScenarioIsShown(self):
         with self.fixture() as fixture:
             fixture.ui.showScenarioButton.click()
+            fixture.process()
         fixed = slicer.util.getNode("* fiducials")
         self.assertEqual(fixed.GetNumberOfControlPoints(), 15)
 
@@ -333,6 +357,7 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
         with self.fixture() as fixture:
             ui = fixture.ui
             ui.showScenarioButton.click()
+            fixture.process()
             touches = fixture.touches()
             touches[6] += 9.0
             fixture.touch(touches)
@@ -349,6 +374,7 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
         with self.fixture() as fixture:
             ui = fixture.ui
             ui.showScenarioButton.click()
+            fixture.process()
             fixture.touch(fixture.touches())
             ui.placeTargetButton.click()
             ui.planComboBox.currentNode().AddControlPoint(10.0, 20.0, 30.0)
@@ -360,11 +386,13 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
     def test_theSceneMayBeClearedAndEveryNodeDeleted(self):
         with self.fixture() as fixture:
             fixture.ui.showScenarioButton.click()
+            fixture.process()
             fixture.ui.robotCheckBox.checked = True
             fixture.touch(fixture.touches())
             fixture.clearScene()
             self.assertEqual(fixture.ui.residualsTable.rowCount, 0)
             fixture.ui.showScenarioButton.click()
+            fixture.process()
             fixture.touch(fixture.touches())
             for node in list(slicer.util.getNodesByClass("vtkMRMLDisplayableNode")):
                 if node.GetScene() is not None and not node.GetSingletonTag():

@@ -62,12 +62,12 @@ LAYERS = {
         rastrainer_simulator.authoring, rastrainer_simulator.virtual
         rastrainer_simulator.net
         rastrainer_simulator.net.igtl, rastrainer_simulator.net.views
-        rastrainer_simulator.desktop.panels, rastrainer_simulator.replay
-        rastrainer_simulator.desktop, rastrainer_simulator.flow.tutorial
+        rastrainer_simulator.replay
+        rastrainer_simulator.flow.tutorial
         rastrainer_simulator.flow.session
         rastrainer_simulator.flow.pages
         rastrainer_simulator.flow
-        rastrainer_simulator.board, rastrainer_simulator.lti, rastrainer_simulator.rating
+        rastrainer_simulator.board, rastrainer_simulator.rating
         rastrainer_simulator.server
         rastrainer_simulator.cli.doctor
         rastrainer_simulator.cli

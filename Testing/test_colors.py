@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 from coloraide import Color
+from rastrainer_simulator.desktop.panels import theme
 
 from rastrainer.procedure.errors import PLACED_COLOR, PLANNED_COLOR, REGISTERED_COLOR
-from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.presentation.screen import Tone
 from rastrainer_simulator.scene import nodes
 

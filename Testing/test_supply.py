@@ -26,7 +26,7 @@ audit_packages, bill_of_materials, third_party_notices, wheel_page = map(
 )
 
 EXTRAS = {
-    "base.lock": ("lti", "page", "slicer"),
+    "base.lock": ("page", "slicer"),
     "test.lock": ("test",),
     "bench.lock": ("bench",),
     "soak.lock": ("soak",),
@@ -34,7 +34,7 @@ EXTRAS = {
     "docs.lock": ("docs",),
 }
 """What `make lock` makes each lock from, beside the project's own dependencies."""
-PEERS_LOCKS = tuple(REQUIREMENTS / f"{name}.lock" for name in ("ralph", "icp", "openedx"))
+PEERS_LOCKS = tuple(REQUIREMENTS / f"{name}.lock" for name in ("ralph", "icp"))
 """Of peers in the tests, which have their own environments and requirements files."""
 NAME = re.compile(r"^([A-Za-z0-9._-]+)(?:\[([^]]*)\])?")
 

@@ -22,11 +22,7 @@ PAGE_BILL = BUILD / "rastrainer-page.cdx.json"
 
 
 def write_python_bill(lock: Path = LOCK, output: Path = PYTHON_BILL) -> int:
-    """Write the bill of a lock and return how many packages it names.
-
-    Raises:
-        RuntimeError: `cyclonedx-bom` is missing, or has failed.
-    """
+    """Write the bill of a lock and return how many packages it names."""
     output.parent.mkdir(parents=True, exist_ok=True)
     project = ["--pyproject", str(ROOT / "pyproject.toml")]
     form = ["--output-reproducible", "--output-format", "JSON", "--output-file", str(output)]
@@ -36,11 +32,7 @@ def write_python_bill(lock: Path = LOCK, output: Path = PYTHON_BILL) -> int:
 
 
 def write_page_bill(output: Path = PAGE_BILL) -> int:
-    """Write the bill of what goes into the page and return how many packages it names.
-
-    Raises:
-        RuntimeError: there is no npm, or it has failed.
-    """
+    """Write the bill of what goes into the page and return how many packages it names."""
     output.parent.mkdir(parents=True, exist_ok=True)
     node, npm = build_page.node_and_npm()
     path = os.pathsep.join([str(Path(node).parent), os.environ.get("PATH", "")])

@@ -21,11 +21,7 @@ NO_NODE = (
 
 
 def build_page() -> Path:
-    """Return the folder of the built page.
-
-    Raises:
-        RuntimeError: there is no Node.js, or it has failed.
-    """
+    """Return the folder of the built page."""
     if not _is_built():
         node = install_packages()
         _run(node, [node, "build.mjs"])
@@ -33,21 +29,13 @@ def build_page() -> Path:
 
 
 def check_types() -> None:
-    """Have the TypeScript compiler check the page.
-
-    Raises:
-        RuntimeError: it has found something, or there is no Node.js.
-    """
+    """Have the TypeScript compiler check the page."""
     node = install_packages()
     _run(node, [node, str(Path("node_modules", "typescript", "bin", "tsc")), "--noEmit"])
 
 
 def install_packages() -> str:
-    """Install what npm has to, where it is not there yet; return the path of Node.js.
-
-    Raises:
-        RuntimeError: there is no Node.js, or npm has failed.
-    """
+    """Install what npm has to, where it is not there yet; return the path of Node.js."""
     node, npm = node_and_npm()
     if not _is_installed():
         _run(node, [*npm, "ci", "--ignore-scripts", "--loglevel=error"])
@@ -82,11 +70,7 @@ def _is_installed() -> bool:
 
 
 def node_and_npm() -> tuple[str, list[str]]:
-    """Return the path of Node.js, and how npm is called.
-
-    Raises:
-        RuntimeError: there is none.
-    """
+    """Return the path of Node.js, and how npm is called."""
     if has_node():
         return shutil.which("node"), [shutil.which("npm")]
     try:

@@ -60,11 +60,7 @@ def requirements(system: str, machine: str) -> str:
 
 
 def measure(system: str, machine: str, tags: Sequence[str]) -> dict[str, int]:
-    """Return the megabytes of the wheels and of what is in them, less what is never opened.
-
-    Raises:
-        subprocess.CalledProcessError: a wheel cannot be had for this platform.
-    """
+    """Return the megabytes of the wheels and of what is in them, less what is never opened."""
     with tempfile.TemporaryDirectory() as temporary:
         lock = Path(temporary, "requirements.lock")
         lock.write_text(requirements(system, machine), encoding="utf-8")

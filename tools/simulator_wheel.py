@@ -15,11 +15,7 @@ RESOURCES = ROOT / "RASTrainer" / "Resources" / "RASTrainerSimulator"
 
 
 def build_wheel(folder: Path) -> Path:
-    """Build the wheel by the packages of this Python, into a folder, and return its path.
-
-    Raises:
-        subprocess.CalledProcessError: it could not be built.
-    """
+    """Build the wheel by the packages of this Python, into a folder, and return its path."""
     words = ["--no-deps", "--no-build-isolation", "--no-cache-dir", "-q", "-w", str(folder)]
     subprocess.run([sys.executable, "-m", "pip", "wheel", *words, str(ROOT)], check=True)
     (wheel,) = folder.glob("*.whl")

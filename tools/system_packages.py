@@ -22,9 +22,14 @@ OPEN_QT = """
 from PySide6.QtWidgets import QApplication
 QApplication([])
 """
+FIND_BROWSER = """
+from rastrainer_simulator.ops.application_window import application_browser
+raise SystemExit(application_browser() is None)
+"""
 FIND_CHINESE_FONT = """
-from rastrainer_simulator.ops.system_paths import chinese_font
-raise SystemExit(chinese_font() is None)
+import subprocess
+found = subprocess.run(["fc-list", ":lang=zh-cn"], capture_output=True, check=True)
+raise SystemExit(found.stdout == b"")
 """
 OPENIGTLINK_HEADER = Path("/usr/include/openigtlink/igtlMessageHeader.h")
 FONTS = Path("/usr/share/fonts/truetype")
@@ -47,6 +52,8 @@ def missing_packages(target: str) -> list[str]:
         wanted += ["libegl1", "libgl1-mesa-dri", "libxcursor1"]
     if target in ("simulator", "test", "soak") and not _loads("libGLX.so.0"):
         wanted += ["libgl1", "libglx-mesa0"]
+    if target == "simulator" and os.environ.get("DISPLAY") and not _runs(FIND_BROWSER):
+        wanted += ["chromium"]
     if target in ("test", "soak"):
         wanted += _for_tests()
     if target == "soak":

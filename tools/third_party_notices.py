@@ -82,11 +82,7 @@ def write_notices(output: Path = OUTPUT) -> int:
 
 
 def write_page_notices(output: Path) -> None:
-    """Write the notices of what goes into the page; npm has installed it.
-
-    Raises:
-        RuntimeError: it has not.
-    """
+    """Write the notices of what goes into the page; npm has installed it."""
     notices = list(page_notices())
     if not notices:
         raise RuntimeError("The packages of the page are not installed: its notices are missing.")

@@ -29,6 +29,7 @@ from typing import Any
 
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.head.mesh import read_head_mesh
+from rastrainer.json_records import record_to_json
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
@@ -44,7 +45,7 @@ from rastrainer.slicer.scene.error_colors import magnification
 from rastrainer.slicer.scene.nodes import labelsOf, localPoints
 from rastrainer.slicer.scene.scenario_nodes import scenarioLoader, showScenario
 from rastrainer.study.database.study import STUDY_FILE, Study
-from rastrainer.trial.analysis import PublishedScore, RevealedTruth, TrialAnalysis
+from rastrainer.trial.analysis import TrialAnalysis
 from rastrainer.trial.ctps import CTPS_WARNING, read_trials
 from rastrainer.work_progress import allow_any_text
 from rastrainer_headless.connector import headlessKit
@@ -164,71 +165,39 @@ def printEvent(event: str, **values: Any) -> None:
 
 
 def results_json(analysis: TrialAnalysis) -> dict[str, Any]:
-    """Return the numbers of a trial as a JSON object; lengths in mm, times in s."""
-    record = analysis.record
+    """Return the numbers of a trial as a JSON object."""
+    score, procedure, published = analysis.score, analysis.procedure, analysis.published_score
     return {
-        "trial_id": record.trial_id,
-        "trainee": record.trainee,
-        "task": record.task,
-        "mode": record.mode,
-        "scenario": record.scenario,
-        "completion_time_s": record.completion_time_s,
-        "rejected_touches": record.rejected_touches,
-        "undone_touches": record.undone_touches,
-        "labels": list(record.labels),
+        "record": record_to_json(analysis.record, with_defaults=True),
         "fits": {
             kind: _fit_json(fit, analysis.target_errors[kind])
             for kind, fit in analysis.fits.items()
         },
-        "target": {
-            "name": analysis.target_name,
-            "position_ras_mm": list(analysis.expected_tre.target_mm),
-        },
-        "truth": None
-        if analysis.truth is None
-        else _truth_json(analysis.truth, analysis.expected_tre),
-        "score": None if analysis.score is None else analysis.score.to_json(),
+        "targetName": analysis.target_name,
+        "truth": None if analysis.truth is None else record_to_json(analysis.truth),
+        "score": None if score is None else record_to_json(score, with_defaults=True),
         "procedure": None
-        if analysis.procedure is None
+        if procedure is None
         else {
-            "score": analysis.procedure.score.to_json(),
-            "trajectories": [each.to_json() for each in analysis.procedure.analysis.trajectories],
+            "score": record_to_json(procedure.score, with_defaults=True),
+            "trajectories": [each.to_json() for each in procedure.analysis.trajectories],
         },
         "feedback": list(analysis.feedback.sentences),
-        "motion": dict(record.motion),
-        "ctps": None if analysis.published_score is None else _ctps_json(analysis.published_score),
+        "ctps": None
+        if published is None
+        else {**record_to_json(published), "warning": CTPS_WARNING},
     }
 
 
 def _fit_json(fit: Registration, error: TargetError) -> dict[str, Any]:
     return {
-        "type": fit.kind,
-        "fre_mm": fit.fre_mm,
-        "matrix": fit.matrix.tolist(),
-        "residuals_mm": fit.residuals_mm.tolist(),
-        "expected_tre_mm": error.expected_mm,
-        "tre_interval_mm": list(error.interval_mm),
-        "confidence": error.confidence,
-        "warnings": [warning.to_json() for warning in fit.warnings],
-    }
-
-
-def _truth_json(truth: RevealedTruth, expected: TargetError) -> dict[str, Any]:
-    low, high = expected.interval_mm
-    return {
-        "head_to_world": truth.matrix.tolist(),
-        "true_tre_mm": truth.true_tre_mm,
-        "within_interval": low <= truth.true_tre_mm <= high,
-    }
-
-
-def _ctps_json(score: PublishedScore) -> dict[str, Any]:
-    return {
-        "published": score.published,
-        "equation_3": score.equation_3,
-        "mean_ct_s": score.reference.mean_ct_s,
-        "best_rmse_mm": score.reference.best_rmse_mm,
-        "warning": CTPS_WARNING,
+        "freMm": fit.fre_mm,
+        "matrix": fit.matrix.ravel().tolist(),
+        "residualsMm": fit.residuals_mm.tolist(),
+        "targetRas": list(error.target_mm),
+        "expectedTreMm": error.expected_mm,
+        "treIntervalMm": list(error.interval_mm),
+        "warnings": [record_to_json(warning) for warning in fit.warnings],
     }
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
+from rastrainer.json_checks import number, whole_number
 from rastrainer.protocol import PROCEDURE_PHASES, Phase, Proximity, RegistrationMethod
 from rastrainer_simulator.trial_state import (
     FinalRegistration,
@@ -287,13 +288,13 @@ class SimulationState:
 class StartingPoint:
     """Where a simulation starts: after another one's state, or within a trial's journal.
 
-    `tick` and `sim_time` (s) are those of the last step before, `revision` that of the training
+    `tick` and `sim_time_s` are those of the last step before, `revision` that of the training
     state; `camera` is the view, None for the one at the start.
     """
 
-    tick: int = 0
-    sim_time: float = 0.0
-    revision: int = 0
+    tick: Annotated[int, whole_number(0, 2**53)] = 0
+    sim_time_s: Annotated[float, number(0, 1e9, "s")] = 0.0
+    revision: Annotated[int, whole_number(0, 2**53)] = 0
     camera: str | None = None
 
     @classmethod

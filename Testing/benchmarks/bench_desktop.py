@@ -1,12 +1,14 @@
 """From the gamepad's stick to the picture in the window, and what the window does to the loop.
 
-The window is 1920 × 1080 on a display in memory, so the processor draws: the worst case. It is
-opened with its own settings, as a trainee would. Its pictures are also counted at 1280 × 720, and
-`web.pictures` counts those of the page.
+The window is on a display in memory, so the processor draws: the worst case. It is opened as
+`rastrainer simulator --desktop` opens it. Pictures are counted, and the browser's processor time
+for each, while the arm moves, near and from afar, and while the view turns.
 """
 
-import json
+from __future__ import annotations
+
 import math
+import os
 import tempfile
 import time
 from pathlib import Path
@@ -17,13 +19,14 @@ import numpy as np
 from rastrainer.commands import CommandName
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION, Phase
-from rastrainer_simulator.desktop.app import TRIED_FRAMES
 from Testing.benchmarks.row import row
 from Testing.benchmarks.watched_loop import WatchedLoop
 from Testing.end_to_end.lab import Lab
 from Testing.end_to_end.window_process import WindowProcess, wait_until
+from Testing.running_process import started_by
 
-SIZE, SMALL = (1920, 1080), (1280, 720)
+LARGE, SMALL = (1920, 1080), (1280, 720)
+SETTLE_S = 3
 SEED = 5
 PUSH = 0.8
 REST_S = (0.4, 0.6)
@@ -32,8 +35,15 @@ MIDDLE_M = 0.6
 LOOK_S = 0.2
 """Time between two checks of the arm's position."""
 TIMEOUT_S = 20.0
-SETTLED_PICTURES = 2 * TRIED_FRAMES
-"""Pictures of one quality in a row: by then the window has lowered it as far as it will."""
+SETTLED_PICTURES = 40
+"""By then all that draws is compiled."""
+TICKS_A_S = os.sysconf("SC_CLK_TCK")
+# As a dragged mouse turns the view.
+TURN = """() => {
+  window.turning = setInterval(() => {
+    page.connection.send("orbit", { aroundDeg: 2, higherDeg: 0, zoom: 1 });
+  }, 33);
+}"""
 
 
 class Delay(NamedTuple):
@@ -51,10 +61,10 @@ class Swing(NamedTuple):
 
 
 class Drawn(NamedTuple):
-    """How many pictures a second a window has drawn, 1/s, and in which quality."""
+    """How many pictures a second a window has drawn, 1/s, and what each costs, ms of CPU."""
 
     rate: float
-    quality: str
+    cost: float
 
 
 def rows(quick: bool) -> list[dict]:
@@ -70,51 +80,85 @@ def rows(quick: bool) -> list[dict]:
     ):
         _start_trial(lab, slicer)
         alone = _swing(lab, slicer, seconds)
-        window = _open(lab, SIZE)
-        _warm_up(lab, window)
-        random = np.random.default_rng(SEED)
-        delays = [_delay(lab, window, random) for _ in range(pushes)]
-        beside, large = _count(lab, slicer, window, seconds)
-        window.kill()
-        window = _open(lab, SMALL)
-        _resume(lab, slicer)
-        _warm_up(lab, window)
-        _, small = _count(lab, slicer, window, seconds)
+        found = []
+        for size in (LARGE, SMALL):
+            window = lab.open_window(f"window {size[0]}", size)
+            if size is SMALL:
+                _resume(lab, slicer)
+            _warm_up(lab, window)
+            if size is LARGE:
+                random = np.random.default_rng(SEED)
+                delays = [_delay(lab, window, random) for _ in range(pushes)]
+            beside, rows = _count(lab, slicer, window, size, seconds)
+            found += rows
+            window.kill()
     streamed, shown = 1e3 * np.array(delays).T
     return [
         row("desktop.stick to stream", streamed, "ms"),
         row("desktop.stick to picture", shown, "ms"),
-        row(f"desktop.pictures 1920x1080 {large.quality}", [large.rate], "1/s"),
-        row(f"desktop.pictures 1280x720 {small.quality}", [small.rate], "1/s"),
+        *found,
         _on_time_row("window", beside),
         _on_time_row("no window", alone),
     ]
 
 
-def _open(lab: Lab, size: tuple[int, int]) -> WindowProcess:
-    width, height = size
-    return lab.open_window(f"window {width}", "--size", f"{width}x{height}")
-
-
 def _warm_up(lab: Lab, window: WindowProcess) -> None:
-    """Swing the arm until the quality has settled, and all that draws it is compiled."""
-    while len(window.frames()) < SETTLED_PICTURES or len(set(_qualities(window))) > 1:
+    """Swing the arm until all that draws it is compiled."""
+    while len(window.pictures()) < SETTLED_PICTURES:
         _push(lab, _way(lab))
         time.sleep(LOOK_S)
     _push(lab, 0.0)
 
 
-def _qualities(window: WindowProcess) -> list[str]:
-    """Return the quality of each of the last pictures."""
-    return [json.loads(line)["quality"] for line in window.frames()[-SETTLED_PICTURES:]]
-
-
-def _count(lab: Lab, slicer: Client, window: WindowProcess, seconds: int) -> tuple[Swing, Drawn]:
-    drawn = len(window.frames())
-    swung = _swing(lab, slicer, seconds)
-    rate = (len(window.frames()) - drawn) / swung.seconds
+def _count(
+    lab: Lab, slicer: Client, window: WindowProcess, size: tuple[int, int], seconds: int
+) -> tuple[Swing, list[dict]]:
+    """Count pictures and their cost from near, from afar, and while the view turns."""
+    rows = []
+    name = "desktop.pictures {}x{}".format(*size)
+    for camera in ("close-up", "far"):
+        slicer.send_command(CommandName.SET_CAMERA, {"camera": camera})
+        window.page.wait_for_timeout(1000 * SETTLE_S)
+        with _Drawing(window) as drawing:
+            swung = _swing(lab, slicer, seconds)
+        rows += _drawn_rows(f"{name} {camera}", drawing.drawn)
     assert lab.view.state["phase"] == Phase.RUNNING, "The arm did not move all the time."
-    return swung, Drawn(rate, _qualities(window)[-1])
+    window.page.evaluate(TURN)
+    with _Drawing(window) as drawing:
+        window.page.wait_for_timeout(1000 * seconds)
+    window.page.evaluate("clearInterval(window.turning)")
+    return swung, [*rows, *_drawn_rows(f"{name} turning", drawing.drawn)]
+
+
+class _Drawing:
+    """Counts a window's pictures, and its processor time, while the `with` statement lasts."""
+
+    def __init__(self, window: WindowProcess) -> None:
+        self._window = window
+        self.drawn = Drawn(0.0, 0.0)
+
+    def __enter__(self) -> _Drawing:
+        self._before = self._now()
+        return self
+
+    def __exit__(self, *_exception: object) -> None:
+        pictures, used, seconds = np.subtract(self._now(), self._before)
+        self.drawn = Drawn(pictures / seconds, 1e3 * used / max(pictures, 1))
+
+    def _now(self) -> tuple[float, float, float]:
+        processes = [self._window.pid, *started_by(self._window.pid)]
+        used = sum(map(_processor_time, processes))
+        return len(self._window.pictures()), used, time.monotonic()
+
+
+def _processor_time(pid: int) -> float:
+    """Return the processor time of a process so far, s."""
+    fields = Path("/proc", str(pid), "stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / TICKS_A_S
+
+
+def _drawn_rows(name: str, drawn: Drawn) -> list[dict]:
+    return [row(name, [drawn.rate], "1/s"), row(f"{name}, CPU of each", [drawn.cost], "ms")]
 
 
 def _start_trial(lab: Lab, slicer: Client) -> None:
@@ -138,8 +182,8 @@ def _resume(lab: Lab, slicer: Client) -> None:
 def _delay(lab: Lab, window: WindowProcess, random: np.random.Generator) -> Delay:
     """Push the stick once; a picture shows it when the tip is a pixel away from where it was."""
     start = lab.view.pose("tool")[:3, 3]
-    enough, known = _pixel(lab, start), len(window.frames())
-    begin = time.monotonic()
+    enough, known = _pixel(lab, start), len(window.pictures())
+    begin, begin_utc = time.monotonic(), time.time()
     _push(lab, _way(lab))
     while np.linalg.norm(lab.view.pose("tool")[:3, 3] - start) < enough:
         lab.view.next_state()
@@ -148,15 +192,15 @@ def _delay(lab: Lab, window: WindowProcess, random: np.random.Generator) -> Dela
     shown: list[float] = []
 
     def is_shown() -> bool:
-        frames = [json.loads(line) for line in window.frames()[known:]]
-        shown.extend(frame["shown"] for frame in frames if frame["tick"] >= tick)
+        pictures = window.pictures()[known:]
+        shown.extend(picture["shown"] for picture in pictures if picture["tick"] >= tick)
         return bool(shown)
 
     wait_until(is_shown, "a picture of the moved arm")
     _push(lab, 0.0)
     # So that pushes fall anywhere between two ticks, two messages and two pictures.
     time.sleep(random.uniform(*REST_S))
-    return Delay(streamed - begin, shown[0] - begin)
+    return Delay(streamed - begin, shown[0] - begin_utc)
 
 
 def _swing(lab: Lab, slicer: Client, seconds: int) -> Swing:
@@ -182,7 +226,7 @@ def _pixel(lab: Lab, place: np.ndarray) -> float:
     """Return how large a pixel is at a place, m."""
     camera = lab.view.scene["cameras"][lab.view.state["camera"]]
     distance = float(np.linalg.norm(place - camera["position"]))
-    return 2.0 * distance * math.tan(math.radians(camera["viewAngleDeg"]) / 2.0) / SIZE[1]
+    return 2.0 * distance * math.tan(math.radians(camera["viewAngleDeg"]) / 2.0) / LARGE[1]
 
 
 def _on_time_row(name: str, swing: Swing) -> dict:

@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer import transforms
+from rastrainer.json_records import record_from_json
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
@@ -56,11 +57,14 @@ for name in [name for name in sys.modules if name.split(".")[0] == "rastrainer"]
     del sys.modules[name]
 from Testing.slicer.host.installation import Installation
 Installation().add_modules()
-began = time.process_time()
-import rastrainer.slicer.logic.module_session, rastrainer.panels.panel_stack
-ended = time.process_time()
-ours = [name for name in sys.modules if name.split(".")[0] == "rastrainer"]
-print(1e3 * (ended - began), len(ours))
+from rastrainer.slicer.turns import importInTurns
+ours = lambda: sum(name.split(".")[0] == "rastrainer" for name in sys.modules)
+turns, was, before = [], time.process_time(), ours()
+for _ in importInTurns("rastrainer.panels.panel_stack"):
+    turns.append((1e3 * (time.process_time() - was), ours() - before))
+    was, before = time.process_time(), ours()
+milliseconds, modules = zip(*turns)
+print(max(milliseconds), max(modules), sum(milliseconds), sum(modules))
 """
 JOURNALS_DELETED = 10
 LARGER_STUDY = 40, 10
@@ -113,12 +117,15 @@ def _load_rows(step: str, load: SceneLoad) -> list[dict]:
 
 
 def _import_rows() -> list[dict]:
-    """Return what it costs to import the module's session and panels, beside what is imported."""
+    """Return what a turn costs at most that imports a part of the module, beside all turns."""
     found = subprocess.run(
         [sys.executable, "-c", IMPORTS], capture_output=True, check=True, text=True
     )
-    milliseconds, modules = map(float, found.stdout.split())
-    return [row("stalls.imports_at_opening", [milliseconds], "ms", "modules of ours", [modules])]
+    longest, most, milliseconds, modules = map(float, found.stdout.split())
+    return [
+        row("stalls.imports_at_opening", [longest], "ms", IN_ALL, [milliseconds]),
+        row("handed.opening.imports", [most], "modules", IN_ALL, [modules]),
+    ]
 
 
 class _Steps:
@@ -153,7 +160,7 @@ class _Steps:
 
     def _prepare(self) -> None:
         host = self._host
-        host.open()
+        self._watch("opening", host.open)
         for section in SECTIONS:
             host.find(f"{section}CollapsibleButton").collapsed = False
         for group in ("setupGroupBox", "adjustHeadGroupBox"):
@@ -248,7 +255,7 @@ class _Steps:
     def _store(self, path: Path, count: int, trainee: str = TRAINEE, first: int = 0) -> None:
         """Store trials of a trainee in a study: one registration serves for all."""
         with Study.open(path) as study:
-            analysis = analyze_trial(TrialRecord.from_json(self._record(0)), self._colin)
+            analysis = analyze_trial(record_from_json(TrialRecord, self._record(0)), self._colin)
             fits, errors = analysis.fits.values(), analysis.target_errors
             for number in range(first, first + count):
                 record = {**self._record(number), "trainee": trainee}
@@ -291,7 +298,7 @@ class _Steps:
             {
                 "label": label,
                 "positionMm": position.tolist(),
-                "simTime": 6.0 * (place + 1),
+                "simTimeS": 6.0 * (place + 1),
                 "utc": f"2026-03-02T10:00:{place:02d}Z",
             }
             for place, (label, position) in enumerate(zip(LABELS, self._touches, strict=True))

@@ -108,9 +108,9 @@ def _tour(simulation: Simulation) -> np.ndarray:
     random = np.random.default_rng(SEED)
     do(CommandName.START_TASK, task="task-3", trainee="bench", seed=SEED)
     truth = simulation.truth
-    center = truth.in_world(truth.target)
-    for label in truth.fiducials:
-        fiducial = truth.in_world(truth.fiducials[label])
+    center = truth.in_world(truth.target_ras)
+    for label in truth.fiducials_ras:
+        fiducial = truth.in_world(truth.fiducials_ras[label])
         outside = fiducial + 70.0 * (fiducial - center) / np.linalg.norm(fiducial - center)
         move_to(outside)
         move_to(fiducial)

@@ -87,7 +87,7 @@ class _Operation:
         self._do(
             CommandName.START_TASK, task="task-3", trainee="bench", seed=SEED, procedure=PROCEDURE
         )
-        for _ in self._simulation.truth.fiducials:
+        for _ in self._simulation.truth.fiducials_ras:
             self._do(CommandName.CAPTURE)
         self._do(CommandName.REGISTER)
         matrix = transforms.inverse(self._simulation.truth.head_to_world)

@@ -9,6 +9,7 @@ import numpy as np
 
 from rastrainer.journal.folder import SUFFIX
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, stamp
+from rastrainer.json_records import record_to_json
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.trial.record import TouchedPoint, TrialRecord
 from rastrainer.trial.scoring import SAFETY_METRICS
@@ -48,7 +49,7 @@ def _write(folder: Path, number: int, scenario) -> str:
         completion_time_s=90.0 + number % 30,
         points=tuple(
             TouchedPoint(label, tuple(truth.in_world(point + rng.normal(0, 0.7, 3))), n, utc)
-            for n, (label, point) in enumerate(truth.fiducials.items())
+            for n, (label, point) in enumerate(truth.fiducials_ras.items())
         ),
         rejected_touches=0,
         undone_touches=0,
@@ -57,8 +58,10 @@ def _write(folder: Path, number: int, scenario) -> str:
     )
     times = stamp(0, 0.0)
     header = {"kind": "header", "format": FORMAT, "version": FORMAT_VERSION, **times}
-    registered = {"kind": "registered", **times, "record": record.to_json()}
+    registered = {"kind": "registered", **times, "record": record_to_json(record)}
     journal = Journal(folder / f"20240517T{number:06d}Z_{trial_id}{SUFFIX}")
-    journal.write([header, registered | {"truth": truth.to_json(), "seed": number}], sync=False)
+    journal.write(
+        [header, registered | {"truth": record_to_json(truth), "seed": number}], sync=False
+    )
     journal.close()
     return trial_id

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.igtl.client import Client
+from rastrainer.number_text import with_units
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.transforms import MM_PER_M
 from Testing.end_to_end.hands import KeyHands
@@ -20,7 +21,7 @@ from Testing.end_to_end.window_pictures import Photographer
 from Testing.web.place import CarriedTrainee
 
 FOLDER = Path(__file__).parents[2] / "docs" / "pictures"
-WINDOW = ("--size", "1280x720", "--quality", "low", "--picture-quality", "low")
+SIZE = (1280, 720)
 COLORS = 96
 SLIP_AT, SLIP_M = 6, 0.006
 """After so many touches one is off by this much."""
@@ -32,7 +33,7 @@ def main() -> None:
         tempfile.TemporaryDirectory() as folder,
         Lab(Path(folder), "--seed", "7", order="fixed", tutorial="required") as lab,
     ):
-        window = lab.open_window("window", *WINDOW)
+        window = lab.open_window("window", SIZE)
         photographer = Photographer(lab, window, FOLDER, COLORS)
         with Client(port=lab.simulator.port) as client:
             # It only carries the tip: the simulator is to score alone.
@@ -61,7 +62,8 @@ def keep_menus(trainee: CarriedTrainee, photographer: Photographer) -> None:
 
 def keep_tutorial(trainee: CarriedTrainee, photographer: Photographer) -> None:
     trainee.choose("tutorial")
-    trainee.until(lambda: "30 mm" in trainee.view.screen.instruction.text, "the first step")
+    first = with_units("30 mm")
+    trainee.until(lambda: first in trainee.view.screen.instruction.text, "the first step")
     photographer.keep("first-trial-04-tutorial")
     trainee.press("menu", lambda: trainee.menu_name == "tutorial", "the tutorial's menu")
     trainee.choose("leave")

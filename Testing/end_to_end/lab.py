@@ -13,6 +13,7 @@ from typing import IO
 
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.net.limits import LIMITS_FILE
+from Testing.end_to_end.simulator_process import SERVES
 from Testing.end_to_end.stream_trainee import WatchingView
 from Testing.end_to_end.virtual_display import VirtualDisplay, VirtualKeyboard
 from Testing.end_to_end.virtual_gamepad import SimulatorWithGamepad
@@ -24,7 +25,6 @@ SLICER = (sys.executable, "-m", "rastrainer_headless.main")
 TIMEOUT_S = 600
 PATIENT = {"views": {"silent_s": 10, "lost_s": TIMEOUT_S}}
 """A machine that is too busy to draw neither releases what is held nor pauses the trial."""
-VIEWS = "RASTrainer simulator serves views on "
 
 
 class Lab:
@@ -34,7 +34,8 @@ class Lab:
         simulator: the process, and its gamepad.
         display, keyboard: those of the window.
         records: folder of the journals.
-        url, key: by which views join.
+        url: of the page.
+        code, key: by which a browser and other views join.
         view: one that watches.
     """
 
@@ -45,7 +46,7 @@ class Lab:
         self.key = secrets.token_urlsafe(32)
         with ExitStack() as stack:
             self.simulator = stack.enter_context(self._start(*arguments))
-            self.url = self.simulator.next_line().removeprefix(VIEWS).partition(",")[0]
+            self.url, self.code = SERVES.search(self.simulator.next_line()).groups()
             thread = stack.enter_context(LoopThread())
             client = stack.enter_context(ViewClient(thread, self.url, self.key))
             self.view = WatchingView(client)
@@ -71,13 +72,11 @@ class Lab:
     def __exit__(self, *_exception: object) -> None:
         self._stack.close()
 
-    def open_window(self, name: str, *arguments: str) -> WindowProcess:
+    def open_window(self, name: str, size: tuple[int, int] = (1280, 720)) -> WindowProcess:
         """Open a window and wait until it shows the scene."""
-        window = self._stack.enter_context(
-            WindowProcess(self.display, self.url, self.key, self._folder / name, *arguments)
+        return self._stack.enter_context(
+            WindowProcess(self.display, self.url, self.code, self._folder / name, size)
         )
-        window.wait_for_frames()
-        return window
 
     def start_slicer(self, trials: int = 1) -> SlicerProcess:
         """Start Slicer's side, which scores a number of trials and ends."""

@@ -92,6 +92,7 @@ def _keep_views(config: Path) -> None:
     path.write_text(json.dumps({**limits, "views": views}), encoding="utf-8")
 
 
+SERVES = re.compile(r"serves views on (http://\S+), pairing code (\d{6})$")
 LINE = re.compile(
     r"RASTrainer simulator serves views on (http://127\.0\.0\.1:(\d+)), pairing code (\d{6})\n"
 )

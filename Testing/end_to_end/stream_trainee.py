@@ -9,10 +9,9 @@ from contextlib import suppress
 from typing import Protocol
 
 import numpy as np
-
 from rastrainer_simulator.desktop.connection import screen_from_json
-from rastrainer_simulator.desktop.inbox import Viewpoint
-from rastrainer_simulator.desktop.shown_scene import pose_matrix
+from scipy.spatial.transform import Rotation
+
 from rastrainer_simulator.flow.flow import PICTURE_GRACE_S
 from rastrainer_simulator.presentation.screen import Menu, Screen
 from rastrainer_simulator.teleoperation.steering import camera_axes
@@ -79,7 +78,11 @@ class WatchingView:
 
     def pose(self, body: str) -> np.ndarray:
         """Return (4, 4) float, to World in m."""
-        return pose_matrix(self.state["poses"][self._bodies.index(body)])
+        pose = self.state["poses"][self._bodies.index(body)]
+        matrix = np.eye(4)
+        matrix[:3, :3] = Rotation.from_quat(pose[3:]).as_matrix()
+        matrix[:3, 3] = pose[:3]
+        return matrix
 
     def next_state(self) -> None:
         """Wait for the next state."""
@@ -289,7 +292,7 @@ class StreamTrainee:
         first = np.cross(outward, (0.0, 0.0, 1.0))
         first /= np.linalg.norm(first)
         fiducials = np.array([self.place_of(label) for label in self.view.scene["fiducials"]])
-        eye = Viewpoint.from_json(self.view.state["view"]).position
+        eye = np.array(self.view.state["view"]["position"])
         angles = np.arange(0.0, 2.0 * np.pi, np.pi / 8.0)
         sides = np.outer(np.cos(angles), first)
         sides += np.outer(np.sin(angles), np.cross(outward, first))
@@ -387,7 +390,7 @@ class StreamTrainee:
 
     def _stick_axes(self) -> np.ndarray:
         """Return (3, 3) float: right, forward and up as the picture shows them, as rows."""
-        camera = Viewpoint.from_json(self.view.state["view"])
-        line = tuple((camera.focal_point_mm - camera.position_mm).tolist())
-        axes = camera_axes(line, tuple(camera.view_up.tolist()))
+        camera = self.view.state["view"]
+        line = np.subtract(camera["focalPoint"], camera["position"])
+        axes = camera_axes(tuple(line.tolist()), tuple(camera["viewUp"]))
         return np.array([axes.right, axes.forward, axes.up])

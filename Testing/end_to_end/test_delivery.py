@@ -14,6 +14,7 @@ import pytest
 
 from rastrainer.journal.folder import SUFFIX
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, stamp
+from rastrainer.json_records import record_from_json
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic.delivery_queue import AbortedTrialLogic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
@@ -155,7 +156,7 @@ def write_aborted_trials(folder):
     folder.mkdir()
     header = {"kind": "header", "format": FORMAT, "version": FORMAT_VERSION}
     for number in range(1, TRIALS + 1):
-        record = AbortedTrial.from_json(make_aborted(number, touches=number))
+        record = record_from_json(AbortedTrial, make_aborted(number, touches=number))
         journal = Journal(folder / f"20240517T0930{number:02d}Z_{record.trial_id}{SUFFIX}")
         entries = [header | {"trainee": "T-001"}, attempt_entry(record, stamp(1, 0.0))]
         journal.write(entries, sync=False)

@@ -14,7 +14,7 @@ pytestmark = pytest.mark.soak
 
 SPEED = "0.4"
 """Simulated seconds per second: a key is released in time, however late a picture is."""
-SMALL = ("--size", "640x360", "--quality", "low")
+SMALL = (640, 360)
 TRAINEE = "p07"
 KILLED_AFTER = 5
 
@@ -25,13 +25,13 @@ def session(tmp_path_factory) -> dict:
     folder = tmp_path_factory.mktemp("keyboard")
     with Lab(folder, "--speed", SPEED, "--seed", "8", "--no-gamepad") as lab:
         slicer = lab.start_slicer()
-        window = lab.open_window("window", *SMALL)
+        window = lab.open_window("window", SMALL)
         trainee = StreamTrainee(lab.view, KeyHands(lab.keyboard))
         to_task(trainee)
         for number in range(1, KILLED_AFTER + 1):
             trainee.touch(str(number))
         crash = kill_while_moving(lab, trainee, window)
-        lab.open_window("another", *SMALL)
+        lab.open_window("another", SMALL)
         for number in range(KILLED_AFTER + 1, 16):
             trainee.touch(str(number))
         trainee.press("touch", lambda: trainee.menu is not None, "the end of the task")

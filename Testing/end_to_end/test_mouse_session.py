@@ -6,20 +6,13 @@ import math
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import replace
-from itertools import islice
 
 import pytest
-from vtkmodules.vtkRenderingCore import vtkRenderer
 
-from rastrainer_simulator.desktop.overlay import Content, Overlay
-from rastrainer_simulator.desktop.panels.controls_picture import stick_boxes
-from rastrainer_simulator.desktop.picture import own_facts
-from rastrainer_simulator.presentation.screen import PRESS
 from Testing.end_to_end.lab import Lab
 from Testing.end_to_end.stream_trainee import StreamTrainee
 from Testing.end_to_end.virtual_display import VirtualMouse
-from Testing.end_to_end.window_process import TIMEOUT_S, wait_until
+from Testing.end_to_end.window_process import TIMEOUT_S, WindowProcess, wait_until
 
 # A window that the processor draws needs the machine to itself.
 pytestmark = pytest.mark.soak
@@ -27,23 +20,32 @@ pytestmark = pytest.mark.soak
 SIZE = (960, 540)
 SPEED = "0.4"
 """Simulated seconds per second: a stick is released in time, however late a picture is."""
-GRID_PX, HINTS_PX = 10, 100
+BOX = """(item) => {
+  const found = document.querySelector(`[data-item="${item}"], li[data-name="${item}"]`);
+  const isShown = found !== null && found.getClientRects().length > 0;
+  return isShown ? found.getBoundingClientRect().toJSON() : null;
+}"""
+STICK = """(index) => {
+  const box = document.querySelectorAll("#touch-controls .stick")[index].getBoundingClientRect();
+  return [box.left + box.width / 2, box.top + box.height / 2, box.width / 2];
+}"""
 
 
 class WindowMouse:
     """Clicks on what the window shows, and drags one of its sticks at a time."""
 
-    def __init__(self, lab: Lab):
-        self._lab = lab
+    def __init__(self, lab: Lab, window: WindowProcess):
+        self._lab, self._window = lab, window
         self._mouse = VirtualMouse(lab.display)
-        self._corner = self._mouse.window_corner(SIZE[0])
+        # Where the page begins in the display: its window may have a frame.
+        frame = "[screenX + outerWidth - innerWidth, screenY + outerHeight - innerHeight]"
+        self._corner = window.page.evaluate(frame)
         self._dragged: int | None = None
 
     def click(self, item: str) -> None:
         """Click on an item of the menu or on a hint, once it is shown."""
-        found: list[tuple[int, int]] = []
-        wait_until(lambda: found.extend(self._places(item)) or found, f"{item} in the window")
-        self._move(*found[0])
+        wait_until(lambda: self._place(item) is not None, f"{item} in the window")
+        self._move(*self._place(item))
         self._mouse.hold(True)
         self._mouse.hold(False)
 
@@ -64,13 +66,12 @@ class WindowMouse:
             self._let_go()
         if wanted is None:
             return
-        box = stick_boxes(SIZE)[wanted]
-        radius = box.width / 2
+        x, y, radius = self._window.page.evaluate(STICK, wanted)
         if self._dragged is None:
-            self._move(box.left + radius, box.top + radius)
+            self._move(x, y)
             self._mouse.hold(True)
             self._dragged = wanted
-        self._move(box.left + radius * (1 + across), box.top + radius * (1 - along))
+        self._move(x + radius * across, y - radius * along)
 
     def close(self) -> None:
         self._mouse.close()
@@ -88,18 +89,10 @@ class WindowMouse:
     def _move(self, x: float, y: float) -> None:
         self._mouse.move(self._corner[0] + round(x), self._corner[1] + round(y))
 
-    def _places(self, item: str) -> list[tuple[int, int]]:
-        """Return the first pixel of a grid at which a click chooses an item; none without one."""
-        view, screen = self._lab.view, self._lab.view.screen
-        pairing = None if screen.menu is None else view.pairing
-        facts = own_facts(screen.language, view.holder, pairing)
-        overlay = Overlay(vtkRenderer())
-        overlay.show(Content(replace(screen, status=(*screen.status, *facts))), SIZE)
-        # Hints are at the lower edge: to look for them everywhere would keep the stream waiting.
-        top = SIZE[1] - HINTS_PX if item.startswith(PRESS) else 0
-        rows, columns = range(top, SIZE[1], GRID_PX), range(0, SIZE[0], GRID_PX)
-        grid = [(x, y) for y in rows for x in columns]
-        return list(islice((place for place in grid if overlay.item_at(*place) == item), 1))
+    def _place(self, item: str) -> tuple[float, float] | None:
+        """Return the middle of what is clicked to choose an item; None where it is not shown."""
+        box = self._window.page.evaluate(BOX, item)
+        return None if box is None else (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
 
 
 class ClickingInWindow(StreamTrainee):
@@ -147,8 +140,8 @@ def begin(lab, window, trainee, task):
 
 def test_the_mouse_alone_enters_an_id_drives_the_arm_presses_touch_and_opens_the_menu(tmp_path):
     with Lab(tmp_path, "--speed", SPEED, "--seed", "8", "--no-gamepad") as lab:
-        window = lab.open_window("window", "--size", "{}x{}".format(*SIZE), "--quality", "low")
-        mouse = WindowMouse(lab)
+        window = lab.open_window("window", SIZE)
+        mouse = WindowMouse(lab, window)
         trainee = ClickingInWindow(lab.view, mouse)
         enter_id(trainee)
         begin(lab, window, trainee, "trial-run")
@@ -164,5 +157,5 @@ def test_the_mouse_alone_enters_an_id_drives_the_arm_presses_touch_and_opens_the
         trainee.until(lambda: trainee.refused == 1, "the refusal of a touch in the air")
         trainee.press("menu", lambda: trainee.menu is not None, "the menu")
         trainee.choose("resume")
-        window.wait_for_frames()
+        window.wait_for_pictures()
         mouse.close()

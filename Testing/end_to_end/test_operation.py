@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
 import resource
 import signal
 import socket
@@ -139,19 +138,6 @@ def test_no_secret_and_no_pseudonym_is_in_the_log(ended):
     for secret in (code, KEY, TRAINEE):
         assert secret not in written
         assert secret not in errors
-
-
-def test_a_failing_window_is_reported_and_its_log_beside_the_simulators_says_why(tmp_path):
-    environment = {**os.environ, "SDL_VIDEODRIVER": "none-such"}
-    options = ["--view-port", "0", "--no-gamepad", "--desktop"]
-    with SimulatorProcess(tmp_path / "records", *options, env=environment) as simulator:
-        simulator.next_line()
-        assert "computes the robot's kinematics by" in simulator.next_line()
-        assert "continues without its window" in simulator.next_line()
-        assert simulator.stop()[0] == 0
-    (line,) = log_lines(tmp_path, "window.log")
-    assert line["message"].startswith("No window can be opened on this machine: ")
-    assert log_lines(tmp_path)[-1]["message"] == "The simulator has ended."
 
 
 @pytest.mark.soak

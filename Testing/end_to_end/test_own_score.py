@@ -13,6 +13,7 @@ from rastrainer.errors import InputError
 from rastrainer.igtl.client import Client
 from rastrainer.journal.folder import journals_of
 from rastrainer.journal.journal_file import read_journal, stamp
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.study.database.study import Study
@@ -100,13 +101,13 @@ def test_the_result_without_slicer_is_that_of_slicers_study_on_100_seeded_trials
         for record in archive.unacknowledged():
             assert isinstance(record, TrialRecord)
             stored = store_delivered(
-                record.to_json(), study, lambda each: analyze_trial(each, scenario, cohort)
+                record_to_json(record), study, lambda each: analyze_trial(each, scenario, cohort)
             )
             registration = check_arguments(
                 "SubmitRegistration", registration_arguments(stored.analysis)
             )
             answer = archive.answer("SubmitRegistration", registration, stamp(0, 0.0))
-            truth = RevealedTruth.from_json(answer)
+            truth = record_from_json(RevealedTruth, answer)
             scored = scored_with_journal(stored.analysis, truth, scenario, score_references(study))
             study.add_results(record.trial_id, score=scored.score)
             slicers = score_arguments(with_progress(scored, study))

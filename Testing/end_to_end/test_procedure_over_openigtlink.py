@@ -10,6 +10,7 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.journal.journal_file import Integrity, read_journal
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import Phase
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.trial.record import TrialRecord
@@ -208,7 +209,7 @@ def test_the_robot_aligns_the_guide_exactly_with_the_plan(seen):
 
 
 def test_the_record_holds_the_whole_procedure(seen):
-    record = TrialRecord.from_json(seen["offer"])
+    record = record_from_json(TrialRecord, seen["offer"])
     procedure = record.procedure
     assert (procedure.procedure, procedure.kind.value) == ("dbs", "dbs")
     (attempt,) = procedure.attempts

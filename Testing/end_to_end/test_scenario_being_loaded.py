@@ -228,4 +228,4 @@ def test_a_trial_and_a_scenario_wait_while_other_settings_are_applied(
     assert phase(instructor) == "running"
     (journal,) = simulator.records.glob(f"*{SUFFIX}")
     settings = read_journal(journal).header["settings"]
-    assert settings["teleoperation"]["fine_speed"] != load_setup().settings.teleoperation.fine_speed
+    assert settings["teleoperation"]["fineSpeed"] != load_setup().settings.teleoperation.fine_speed

@@ -22,7 +22,7 @@ pytestmark = pytest.mark.soak
 
 SPEEDS = {"gamepad": "2", "keyboard": "0.4"}
 """Simulated seconds per second: a key is released in time, however late a picture is."""
-SMALL = ("--size", "640x360", "--quality", "low")
+SMALL = (640, 360)
 TRAINEE = "P7"
 POINTS = 70
 
@@ -38,7 +38,7 @@ def drawn(tmp_path_factory, request) -> dict:
         options.append("--no-gamepad")
     with Lab(folder, *options, guidance="arrow") as lab:
         if device == "keyboard":
-            lab.open_window("window", *SMALL)
+            lab.open_window("window", SMALL)
             hands = KeyHands(lab.keyboard)
         else:
             hands = GamepadHands(lab.simulator)

@@ -9,6 +9,7 @@ import pytest
 
 from rastrainer.files.point_files import read_markups
 from rastrainer.journal.journal_file import Integrity, read_journal
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic.trial_logic import TrialLogic
@@ -104,7 +105,7 @@ def test_every_traced_point_survives_a_kill_in_the_middle_of_a_stroke(seen):
 
 
 def test_the_record_has_the_landmarks_the_trace_and_little_unintended_contact(seen):
-    record = TrialRecord.from_json(seen["offer"])
+    record = record_from_json(TrialRecord, seen["offer"])
     assert record.method is RegistrationMethod.SURFACE
     assert record.labels == tuple(landmark.name for landmark in LANDMARKS[:3])
     assert 150 < len(record.trace) <= 500
@@ -139,7 +140,7 @@ def test_the_simulator_and_slicer_register_and_score_it_identically_to_the_last_
 def test_slicer_stores_the_trace_and_exports_it(seen, tmp_path):
     with Study.open(seen["slicer"]["study"]) as study:
         stored = study.trial(seen["trial"])
-    assert stored.record == TrialRecord.from_json(seen["offer"])
+    assert stored.record == record_from_json(TrialRecord, seen["offer"])
     names = [path.name for path in write_slicer_files(stored, tmp_path)]
     assert {"traced-world.mrk.json", "traced-ras.mrk.json"} <= set(names)
     written = read_markups(tmp_path / "traced-world.mrk.json").points

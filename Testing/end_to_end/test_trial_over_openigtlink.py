@@ -11,6 +11,7 @@ import pytest
 from rastrainer import transforms
 from rastrainer.head.mesh import outward_normal, read_head_mesh
 from rastrainer.igtl.client import Client
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.trial.record import TrialRecord
@@ -147,7 +148,7 @@ def test_all_fifteen_points_arrive_in_order_and_near_the_fiducials(trial, scenar
 
 def test_finished_trial_is_offered_as_a_valid_record_until_acknowledged(trial):
     first, again = trial["offers"]
-    record = TrialRecord.from_json(first)
+    record = record_from_json(TrialRecord, first)
     assert first == again
     assert record.trial_id == trial["StartTask"]["trialId"]
     assert (record.trainee, record.task) == ("anna", TASK)

@@ -1,7 +1,5 @@
-"""What a set-up from Slicer keeps is enough: trials, the window and planning run on it."""
+"""What a set-up from Slicer keeps is enough: trials and planning run on it."""
 
-import os
-import subprocess
 import sys
 from pathlib import Path
 
@@ -15,8 +13,6 @@ from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.virtual.scripted_trial import play_trial, send_hello
 from Testing.end_to_end.private_packages import SIMULATOR, fill, run, trim
 from Testing.end_to_end.simulator_process import ViewedSimulator
-from Testing.end_to_end.virtual_display import VirtualDisplay
-from Testing.end_to_end.window_process import wait_until
 
 pytestmark = [
     pytest.mark.soak,
@@ -58,7 +54,7 @@ def test_unused_files_are_removed_and_the_rest_fits_in_700_mb(trimmed):
 
 def test_the_doctor_finds_all_trimmed_packages(trimmed):
     done = run(trimmed[0], "doctor")
-    assert "All packages can be loaded" in done.stdout
+    assert "Packages that can be loaded: aiohttp" in done.stdout
     assert "cannot be loaded" not in done.stdout
     assert f"page for browsers and headsets is in {trimmed[0]}" in done.stdout
 
@@ -69,30 +65,6 @@ def test_a_trial_is_played_with_the_trimmed_packages(simulator):
         send_hello(client, "scripted trainee")
         trial = play_trial(client, scenario, "trial-run", "trainee-01", 7)
     assert trial.last_state["nextPoint"] is None
-
-
-def has_drawn(log):
-    return log.exists() and log.read_text() != ""
-
-
-def test_the_window_draws_with_the_trimmed_packages(trimmed, simulator, tmp_path):
-    log = tmp_path / "frames.jsonl"
-    words = ["--connect", simulator.url, "--frame-log", str(log), "--pictures", str(tmp_path)]
-    command = private_command(Path(sys.executable), trimmed[0], SIMULATOR, "window", *words)
-    with VirtualDisplay((640, 480)) as display, (tmp_path / "said.txt").open("w") as said:
-        environment = {
-            **os.environ,
-            "DISPLAY": display.name,
-            "RASTRAINER_VIEW_KEY": KEY,
-            "SDL_AUDIODRIVER": "dummy",
-        }
-        window = subprocess.Popen(command, env=environment, stdout=said, stderr=said)
-        try:
-            wait_until(lambda: has_drawn(log) or window.poll() is not None, "a picture")
-            assert has_drawn(log), (tmp_path / "said.txt").read_text()
-        finally:
-            window.kill()
-            window.wait()
 
 
 def test_a_scenario_is_checked_with_the_trimmed_packages(trimmed):

@@ -85,12 +85,12 @@ def test_the_demo_of_the_wheel_plays_both_trials_in_an_empty_folder(run, install
     assert [name for name in NAMES if not (output / name).exists()] == []
     lines = (output / "results.jsonl").read_text(encoding="utf-8").splitlines()
     trials = [json.loads(line) for line in lines]
-    assert [trial["task"] for trial in trials] == ["trial-run", "task-1"]
+    assert [trial["record"]["task"] for trial in trials] == ["trial-run", "task-1"]
     command = ("-m", "rastrainer_simulator.cli.main")
     points = (str(output / name) for name in ("touches.csv", "fiducials.csv"))
     registered = run(*command, "register", *points, "--json")
     fre_mm = json.loads(registered.stdout)["fre_mm"]
-    assert fre_mm == pytest.approx(trials[-1]["fits"]["rigid"]["fre_mm"])
+    assert fre_mm == pytest.approx(trials[-1]["fits"]["rigid"]["freMm"])
     for name in ("report", "export"):
         done = run(*command, name, str(output / "study.db"), "-o", name)
         assert done.returncode == 0, done.stderr

@@ -23,6 +23,7 @@ KEYSYMS = {
     "ArrowLeft": "Left",
     "ArrowRight": "Right",
     "ShiftLeft": "Shift_L",
+    "ControlLeft": "Control_L",
     "F12": "F12",
 }
 

@@ -6,7 +6,7 @@ hand that looks at a computer which draws large pictures sees late, and rests on
 
 from __future__ import annotations
 
-import shutil
+import io
 import tempfile
 import time
 from pathlib import Path
@@ -17,7 +17,6 @@ from rastrainer.igtl.client import Client
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.setup import DEFAULT_SCENARIO
-from rastrainer_simulator.desktop.viewports import TRANSITION_S
 from rastrainer_simulator.virtual.scripted_trial import play_trial, send_hello
 from Testing.end_to_end.hands import GamepadHands
 from Testing.end_to_end.lab import Lab
@@ -26,8 +25,8 @@ from Testing.end_to_end.window_process import WindowProcess
 from Testing.web.place import CarriedTrainee
 
 FOLDER = Path(__file__).parents[2] / "Screenshots"
-WINDOW = ("--size", "1920x1080", "--quality", "low", "--picture-quality", "high")
-DRAWN_S = 600.0
+SIZE = (1400, 788)
+FLIGHT_S = 0.7
 SEED = 9
 TRAINEE = "P7"
 TOUCHED = 6
@@ -35,10 +34,10 @@ TOUCHED = 6
 
 
 class Photographer:
-    """Has the window save pictures in the best quality."""
+    """Takes pictures of the window."""
 
-    def __init__(self, lab: Lab, window: WindowProcess, folder: Path = FOLDER, colors: int = 0):
-        """Save in a folder; a small picture has only so many colors, 0 for all of them."""
+    def __init__(self, lab: Lab, window: WindowProcess, folder: Path = FOLDER, colors: int = 256):
+        """Save in a folder, with so many colors."""
         self._lab, self._window = lab, window
         self._folder, self._colors = folder, colors
 
@@ -47,14 +46,10 @@ class Photographer:
         if self._lab.view.screen.menu is None:
             # Beside a menu nothing changes, and nothing is drawn again.
             self._window.wait_for_tick(self._lab.view.state["tick"])
-        time.sleep(TRANSITION_S + 0.5)
-        known = set(self._window.folder.glob("*.png"))
-        self._lab.keyboard.tap("F12")
-        kept, path = self._window.next_picture(known, DRAWN_S), self._folder / f"{name}.png"
-        if self._colors:
-            Image.open(kept).convert("RGB").quantize(self._colors).save(path, optimize=True)
-        else:
-            shutil.copyfile(kept, path)
+        time.sleep(FLIGHT_S + 1.5)
+        path = self._folder / f"{name}.png"
+        picture = Image.open(io.BytesIO(self._window.page.screenshot())).convert("RGB")
+        picture.quantize(self._colors).save(path, optimize=True)
         print(name, path.stat().st_size, flush=True)
 
 
@@ -64,7 +59,7 @@ def main() -> None:
         tempfile.TemporaryDirectory() as folder,
         Lab(Path(folder), "--seed", "7", view="never") as lab,
     ):
-        window = lab.open_window("window", *WINDOW)
+        window = lab.open_window("window", SIZE)
         photographer = Photographer(lab, window)
         with Client(port=lab.simulator.port) as client:
             send_hello(client, "trainee")

@@ -82,11 +82,11 @@ def play(hands: str, seed: int, head: str, task: str) -> HandsTrial:
     """Play one trial."""
     played = play_honestly(setup(head), task, seed, SKILLS[hands])
     record, truth = played.record, played.truth
-    fiducials = np.array([truth.fiducials[label] for label in record.labels])
+    fiducials = np.array([truth.fiducials_ras[label] for label in record.labels])
     safety = SafetyMeasures(*(round(float(record.motion[name]), 4) for name in SAFETY_METRICS))
     errors = true_touch_errors(record.positions_mm, truth.head_to_world, fiducials)
     # In the order of the task.
-    order = [record.labels.index(label) for label in truth.fiducials]
+    order = [record.labels.index(label) for label in truth.fiducials_ras]
     time_s = round(record.completion_time_s, 2)
     return HandsTrial(hands, head, task, seed, time_s, safety, errors[order].round(2))
 

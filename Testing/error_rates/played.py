@@ -91,11 +91,11 @@ class Played:
 def measures_of(setup: SimulationSetup, played: PlayedTrial) -> ScoreMeasures:
     """Return what is scored of a trial: of the rigid registration of all its touches."""
     record, truth = played.record, played.truth
-    fiducials = np.array([truth.fiducials[label] for label in record.labels])
+    fiducials = np.array([truth.fiducials_ras[label] for label in record.labels])
     fit = register(record.positions_mm, fiducials)
     tre_mm = region_of(setup.scenario).tre_mm(fit.matrix, truth.head_to_world)
     errors = true_touch_errors(record.positions_mm, truth.head_to_world, fiducials)
-    labels = list(truth.fiducials)
+    labels = list(truth.fiducials_ras)
     normals = fiducial_normals(setup.scenario, record.task)
     normals = normals[[labels.index(label) for label in record.labels]]
     bias_mm = common_bias(errors, normals).length_mm

@@ -10,6 +10,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals_of
 from rastrainer.journal.journal_file import NO_LINE, encode_line, read_journal
+from rastrainer.json_records import record_from_json
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.study.curriculum.curriculum_store import counted_trials
@@ -179,8 +180,8 @@ def sealed(entries):
         lines.append(line)
         if entry["kind"] == "registered":
             record, sha256, truth = entry["record"], previous, entry["truth"]
-    record = TrialRecord.from_json(record | {"journalSha256": sha256})
-    return record, RevealedTruth.from_json(truth | {"trueTreMm": 0.0}), b"".join(lines)
+    record = record_from_json(TrialRecord, record | {"journalSha256": sha256})
+    return record, record_from_json(RevealedTruth, truth | {"trueTreMm": 0.0}), b"".join(lines)
 
 
 def changed(entries, kind, **values):

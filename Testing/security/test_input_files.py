@@ -17,6 +17,7 @@ from rastrainer.errors import InputError
 from rastrainer.files.point_files import read_markups, read_points
 from rastrainer.files.reading import MAX_DEPTH, MAX_ELEMENTS
 from rastrainer.head.volume import read_nrrd, write_nrrd
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.procedure.plan import read_procedure
 from rastrainer.scenario.library import checked_scenario, unpack
 from rastrainer.scenario.scenario import load_scenario
@@ -26,11 +27,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer.trial.ctps import read_notes
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.core.settings import (
-    SimulationSettings,
-    settings_from_json,
-    settings_to_json,
-)
+from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.setup import read_prepared
 from rastrainer_simulator.flow.session.preferences import (
     Preferences,
@@ -267,17 +264,21 @@ def test_a_prepared_file_beside_a_robot_is_trusted_only_if_it_is_ours(tmp_path):
     [float("nan"), float("inf"), 1e300, -1e300, 10**30, True, None, "fast", [1.0], {"a": 1}],
 )
 def test_a_setting_in_a_journal_is_a_reasonable_number_or_refused(value):
-    good = settings_to_json(SimulationSettings())
-    assert settings_from_json(SimulationSettings, json.loads(json.dumps(good)))
+    good = record_to_json(SimulationSettings(), with_defaults=True)
+    assert settings_of(json.loads(json.dumps(good))) == SimulationSettings()
     for group, name in [
-        ("fabrik", "max_iterations"),
-        ("training", "acceptance_radius"),
-        ("teleoperation", "coarse_speed"),
+        ("fabrik", "maxIterations"),
+        ("training", "acceptanceRadius"),
+        ("teleoperation", "coarseSpeed"),
     ]:
         with pytest.raises(InputError, match=name):
-            settings_from_json(SimulationSettings, {group: {name: value}})
-    with pytest.raises(InputError, match="have no __class__"):
-        settings_from_json(SimulationSettings, {"__class__": "os.system"})
+            settings_of({group: {name: value}})
+    with pytest.raises(InputError, match='there is no "__class__"'):
+        settings_of({"__class__": "os.system"})
+
+
+def settings_of(value):
+    return record_from_json(SimulationSettings, value, "The settings", only_known=True)
 
 
 def test_a_scenarios_files_stay_in_its_folder(tmp_path):

@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.report.report import report_html
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
@@ -32,7 +33,7 @@ def machine_played(scenario, tmp_path_factory) -> TrialRecord:
         trial = player.do("StartTask", task=TASK, trainee="anna", seed=5)
         player.do("Abort", trialId=trial["trialId"])
         play(player, scenario, mode="hmd")
-        return TrialRecord.from_json(player.next_offer())
+        return record_from_json(TrialRecord, player.next_offer())
 
 
 @pytest.fixture(scope="module")
@@ -70,7 +71,7 @@ def test_a_machines_trial_is_stored_but_counts_for_no_step_and_the_report_says_w
 ):
     # As if it had been played after the enrollment by any clock.
     record = replace(machine_played, started_utc="2999-01-01T10:00:00Z")
-    study.add_trial(record.to_json())
+    study.add_trial(record_to_json(record))
     progress = StudyProgress(study)
     assert progress.count_played("anna").entries == ()
     with pytest.raises(InputError, match="a client's commands moved the arm"):

@@ -32,10 +32,10 @@ class Eavesdropper(Player):
 
     def _keep(self, message):
         if message.device == "ToolTipToWorld":
-            self.tips[message.metadata["simTime"]] = np.array(message.content.matrix)[:3, 3]
+            self.tips[message.metadata["simTimeS"]] = np.array(message.content.matrix)[:3, 3]
         elif message.device == "SimState":
             state = json.loads(message.content.text)
-            self.states[f"{state['simTime']:.6f}"] = state
+            self.states[f"{state['simTimeS']:.6f}"] = state
 
     def readings(self) -> Readings:
         """Return the distances in the free that were told, to the micrometer."""

@@ -15,6 +15,7 @@ import pytest
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.message import Transform
 from rastrainer.journal.journal_file import read_journal
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import FREE, PROTOCOL_VERSION, DeviceName
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.protocol.steps import StudyStep
@@ -117,7 +118,7 @@ def place(loop_thread, tmp_path_factory):
     ):
         view = GhostWatch(client)
         trial = play(player, scenario)["StartTask"]["trialId"]
-        record = TrialRecord.from_json(player.next_offer())
+        record = record_from_json(TrialRecord, player.next_offer())
         player.do("SubmitRegistration", **registration_of(player, trial, scenario))
         player.do("TrialScored", trialId=trial, **SCORE)
         yield SimpleNamespace(

@@ -140,7 +140,7 @@ def make_record(scenario):
             {
                 "label": label,
                 "positionMm": position.tolist(),
-                "simTime": 6.0 * (row + 1),
+                "simTimeS": 6.0 * (row + 1),
                 "utc": f"2026-03-02T10:00:{row:02d}Z",
             }
             for row, (label, position) in enumerate(zip(LABELS, touched, strict=True))

@@ -27,6 +27,7 @@ def main() -> None:
     }
     host.find("scenarioCollapsibleButton").collapsed = False
     host.press("showScenarioButton")
+    host.finish_work()
     seen["fiducials"] = host.scene.GetFirstNodeByName("Task 1 fiducials") is not None
     host.close()
     print(json.dumps(seen | {"errors": host.errors}))

@@ -10,6 +10,7 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, NO_LINE, encode_line
+from rastrainer.json_records import record_from_json
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.slicer.scene.robot_description import readArmChain
 from rastrainer.study.database.study import Study
@@ -47,7 +48,7 @@ def write_recorded_trial(
         "format": FORMAT,
         "version": FORMAT_VERSION,
         "tick": 0,
-        "simTime": START_S + TICK_S,
+        "simTimeS": START_S + TICK_S,
         "trialId": trial_id,
         "trainee": trainee,
         "task": "task-1",
@@ -55,13 +56,13 @@ def write_recorded_trial(
     }
     entries = [header]
     for number, (time, posture, tip) in enumerate(zip(times, q, tips, strict=True)):
-        stamp = {"tick": 5 * number, "simTime": START_S + time}
+        stamp = {"tick": 5 * number, "simTimeS": START_S + time}
         sample = {"q": posture.tolist(), "tipMm": tip.tolist(), "clearanceMm": 30.0 - 5.0 * time}
         entries.append({"kind": "sample", **stamp, **sample})
         if round(time / TICK_S) % (250 * touch_every_s) == 0:
             count = round(time) // touch_every_s
             touch = {"label": str(count), "positionMm": tip.tolist(), "kept": count}
-            stamp = {"tick": 5 * number, "simTime": START_S + time + TICK_S}
+            stamp = {"tick": 5 * number, "simTimeS": START_S + time + TICK_S}
             entries.append({"kind": "touch", **stamp, **touch})
         elif number < traced:
             point = {"positionMm": tip.tolist(), "kept": number + 1}
@@ -85,7 +86,9 @@ def scored_analysis(
     motion = dict.fromkeys(SAFETY_METRICS, 0.0) | dict(record.get("motion", {}))
     pose = scenario.perturbed_head_to_world(seed)
     truth = RevealedTruth(tuple(pose.ravel().tolist()), true_tre_mm)
-    return analyze_trial(TrialRecord.from_json({**record, "motion": motion}), scenario, truth=truth)
+    return analyze_trial(
+        record_from_json(TrialRecord, {**record, "motion": motion}), scenario, truth=truth
+    )
 
 
 def store_trial_on_colin(host: Host, record: dict[str, Any], seed: int) -> np.ndarray:

@@ -13,6 +13,7 @@ from rastrainer import transforms
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
 from Testing.slicer.host.opened_journals import OpenedJournals
+from Testing.slicer.host.scene_load import SceneLoad
 from Testing.slicer.recorded_trial import write_recorded_trial
 
 pytestmark = pytest.mark.usefixtures("own_processes")
@@ -96,3 +97,15 @@ def test_a_trial_that_is_not_scored_still_gets_feedback(connected, simulator, re
         lambda: feedback().startswith(("Point ", "No touch ")), "the feedback is shown"
     )
     assert len(journals.pids()) == 1
+
+
+def test_a_trial_is_shown_in_turns_of_few_nodes_each(connected, simulator, record):
+    host = connected
+    with SceneLoad(host.scene) as load:
+        simulator.send_command("TrialCompleted", record)
+        host.wait_until(lambda: host.find("trialComboBox").count, "it is scored")
+        host.finish_work()
+    assert host.scene.GetFirstNodeByName("Task 1 fiducials") is not None
+    # A table of the scene comes with its plot and that with its series.
+    assert load.most.nodes <= 4
+    assert load.total.nodes >= 18

@@ -11,6 +11,7 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.igtl.content import Point, Points
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import DeviceName
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.nodes import Role, findNode, labelsOf, worldPoints
@@ -98,12 +99,12 @@ def test_a_trial_is_played_and_its_files_are_written(colin_record, tmp_path, cap
     (line,) = (tmp_path / "results.jsonl").read_text().splitlines()
     written = json.loads(line)
     assert trial["results"] == written
-    assert written["truth"]["true_tre_mm"] < 2.0
-    assert written["ctps"]["equation_3"] == written["ctps"]["published"] / 2
+    assert written["truth"]["trueTreMm"] < 2.0
+    assert written["ctps"]["equation3"] == written["ctps"]["published"] / 2
     (output,) = lines_of(text, "output")
     assert all(Path(output[name]).stat().st_size > 1000 for name in ("scene", "picture", "study"))
     with Study.open(tmp_path / "study.db") as study:
-        assert study.trial(TRIAL).true_tre_mm == written["truth"]["true_tre_mm"]
+        assert study.trial(TRIAL).true_tre_mm == written["truth"]["trueTreMm"]
     check_saved_scene(tmp_path / "trial.mrb", written)
 
 
@@ -112,13 +113,14 @@ def check_saved_scene(path, results):
     application.load(path)
     scene = application.scene
     transform = findNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
-    np.testing.assert_allclose(matrixOf(transform), results["fits"]["rigid"]["matrix"], atol=1e-9)
+    matrix = np.reshape(results["fits"]["rigid"]["matrix"], (4, 4))
+    np.testing.assert_allclose(matrixOf(transform), matrix, atol=1e-9)
     assert isApplied(transform)
     touched = scene.GetFirstNode("CapturedPoints", "vtkMRMLMarkupsFiducialNode")
     fixed = transform.GetNodeReference(FIXED_REFERENCE)
     assert labelsOf(touched) == labelsOf(fixed)
     residuals = np.linalg.norm(worldPoints(touched) - worldPoints(fixed), axis=1)
-    np.testing.assert_allclose(residuals, results["fits"]["rigid"]["residuals_mm"], atol=2e-3)
+    np.testing.assert_allclose(residuals, results["fits"]["rigid"]["residualsMm"], atol=2e-3)
     head = findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
     assert head.GetPolyData().GetNumberOfPolys() > 40_000
     images = findNode(scene, "vtkMRMLScalarVolumeNode", Role.HEAD_VOLUME)
@@ -137,7 +139,7 @@ def test_files_are_written_for_a_trial_whose_true_error_was_not_revealed(
     captions = []
     monkeypatch.setattr(headless, "writeResidualPicture", lambda *words: captions.extend(words[-1]))
     scenario = load_scenario(COLIN)
-    analysis = analyze_trial(TrialRecord.from_json(colin_record), scenario)
+    analysis = analyze_trial(record_from_json(TrialRecord, colin_record), scenario)
     files = writeOutput(tmp_path, HeadlessScene(), scenario, analysis)
     assert results_json(analysis)["truth"] is None
     assert Path(files["scene"]).stat().st_size > 1000

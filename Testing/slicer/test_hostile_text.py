@@ -149,6 +149,7 @@ def test_the_reachability_of_a_plan_is_shown_unchanged(connected, simulator):
     host = connected
     simulator.responder = lambda _name, _arguments: {"reachable": False, "reason": HOSTILE}
     host.press("showScenarioButton")
+    host.finish_work()
     colin = load_scenario(asset_path("scenarios", "colin27"))
     noise = np.random.default_rng(3).normal(0.0, 0.6, (15, 3))
     touches = transforms.apply(

@@ -89,6 +89,7 @@ def test_the_button_restores_the_mri_if_others_are_shown_or_the_scene_was_cleare
     other = host.scene.AddNewNodeByClass(VOLUME, "Another MRI")
     slicer.util.setSliceViewerLayers(background=other)
     host.press("showScenarioButton")
+    host.finish_work()
     composite = slicer.app.layoutManager().sliceWidget("Red").mrmlSliceCompositeNode()
     assert composite.GetBackgroundVolumeID() == images(host).GetID()
     host.clear_scene()

@@ -11,6 +11,7 @@ PROGRAM = """
 import builtins, json, sys, tempfile
 from pathlib import Path
 from Testing.slicer.host.host import MODULE_FILE, Host
+from Testing.slicer.host.values import Slot
 
 imported, original = [], builtins.__import__
 
@@ -32,15 +33,17 @@ for name in ours():
     del sys.modules[name]
 builtins.__import__ = record
 host = Host(Path(tempfile.mkdtemp()) / "slicer")
+counts = []
 try:
     started = ours()
     at_start = imported[:]
+    Slot.watchers.append(lambda: counts.append(len(ours())))
     host.open()
     errors = host.errors[:]
 finally:
     host.close()
 print(json.dumps({"at_start": at_start, "started": started, "imported": imported,
-                  "opened": ours(), "errors": errors}))
+                  "opened": ours(), "errors": errors, "counts": counts}))
 """
 HEAVY = ("numpy", "scipy", "vtk", "vtkmodules")
 """Slicer imports numpy and scipy when they are first used, and each of VTK's modules with the first
@@ -94,3 +97,10 @@ def test_opening_the_module_imports_nothing_that_only_a_button_or_a_process_need
     # Each package's own file, and what judges a trainee's standing, is needed.
     needed = {"rastrainer.statistics", "rastrainer.statistics.competence"}
     assert [n for n in found["opened"] if n.startswith(prefixes) and n not in needed] == []
+
+
+def test_the_module_opens_in_turns_of_few_imports_each(found):
+    counts = [len(found["started"]), *found["counts"]]
+    assert counts[-1] == len(found["opened"])
+    # A module comes with its packages, and with what it imports within a function.
+    assert max(after - before for before, after in zip(counts, counts[1:], strict=False)) <= 6

@@ -245,6 +245,7 @@ def test_a_canceled_preview_leaves_nothing_behind(host):
 def test_canceling_a_search_for_another_head_keeps_the_one_that_is_shown(host):
     volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "MRI")
     host.press("showScenarioButton")
+    host.finish_work()
     unfold(host, "otherHeadGroupBox")
     host.choose("headModelComboBox", volume)
     before = nodes(host)

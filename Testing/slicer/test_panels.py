@@ -87,6 +87,7 @@ def add_trial(panels, make_record, colin):
 def touched(panels, colin):
     """The scene of a trial with its touches, (15, 3) float, World, mm."""
     panels.press("showScenarioButton")
+    panels.finish_work()
     return transforms.apply(
         colin.perturbed_head_to_world(3),
         colin.task("task-1").fiducials + np.random.default_rng(3).normal(0.0, 0.6, (15, 3)),
@@ -275,6 +276,7 @@ def test_an_unusable_address_is_refused_without_repeating_its_password(panels):
 def test_head_fiducials_and_robot_are_shown_and_another_model_can_be_the_head(panels):
     panels.choose("taskComboBox", "Task 2")
     panels.press("showScenarioButton")
+    panels.finish_work()
     assert panels.text("startTaskButton") == "Start Task 2"
     fixed = findNode(panels.scene, "vtkMRMLMarkupsFiducialNode", Role.FIXED_FIDUCIALS)
     assert fixed.GetName() == "Task 2 fiducials"

@@ -12,6 +12,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
 from rastrainer import transforms
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.procedure.record import ProcedureRecord, RecordedAttempt, UsedRegistration
 from rastrainer.registration.registration import register
@@ -159,7 +160,7 @@ def carried_out(seed):
         instruments,
         {"running": 100.0},
     ).to_json()
-    trial = TrialRecord.from_json(json.loads(json.dumps(record)))
+    trial = record_from_json(TrialRecord, json.loads(json.dumps(record)))
     stored = StoredTrial(trial, {}, None, None, tuple(head_to_world.ravel().tolist()))
     return procedure, fiducials, stored
 
@@ -196,7 +197,7 @@ def test_vtk_and_slicer_compute_the_same_errors_from_the_exported_files(
     for seed in range(procedures):
         procedure, fiducials, stored = carried_out(seed)
         write_slicer_files(stored, tmp_path)
-        exported = json.loads(json.dumps(stored.record.to_json()))
+        exported = json.loads(json.dumps(record_to_json(stored.record)))
         truth = np.reshape(stored.head_to_world, (4, 4))
         ours = analyze_procedure(stored.record.procedure, procedure, meshes, truth)
         targets = []

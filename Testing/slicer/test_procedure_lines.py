@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from rastrainer_simulator.desktop.panels.theme import TONES
 from vtk.util.numpy_support import vtk_to_numpy
 
 from rastrainer import transforms
@@ -15,7 +16,6 @@ from rastrainer.slicer.scene.procedure_lines import (
     showPlannedLines,
     showProcedureErrors,
 )
-from rastrainer_simulator.desktop.panels.theme import TONES
 from rastrainer_simulator.flow.session.plan_marks import PLACED, PLANNED, SHOWN
 from Testing.domain.procedure.made_up_procedure import made_up_meshes, made_up_procedure, trajectory
 from Testing.domain.procedure.procedure_records import recorded, rotation

@@ -61,8 +61,9 @@ def volume(scene, values, spacing):
     return node
 
 
-def test_showing_a_scenario_places_the_robots_world_as_planned(scene, logic):
+def test_showing_a_scenario_places_the_robots_world_as_planned(scene, logic, work):
     logic.show("ball", "task-1")
+    in_turns(work)
     transform = findNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
     assert isApplied(transform)
     assert not logic.isRobotShown
@@ -116,8 +117,24 @@ def test_a_robot_whose_files_are_missing_is_reported(scene, scenario, work, tmp_
     assert not logic.isRobotShown
 
 
-def test_the_skin_of_a_volume_becomes_the_head(scene, logic):
+def test_a_scene_that_is_cleared_while_a_scenario_comes_stays_empty(scene, logic, work):
     logic.show("ball", "task-1")
+    work.process()
+    scene.Clear(0)
+    work.forgetScene()
+    in_turns(work)
+    assert findNode(scene, "vtkMRMLMarkupsFiducialNode", Role.TARGET) is None
+
+
+def test_an_unknown_task_is_reported_before_anything_is_shown(scene, logic, work):
+    with pytest.raises(InputError, match="no such task"):
+        logic.show("ball", "task-9")
+    assert not work.isBusy
+
+
+def test_the_skin_of_a_volume_becomes_the_head(scene, logic, work):
+    logic.show("ball", "task-1")
+    in_turns(work)
     former = findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
     grid = np.indices((50, 50, 50)) - 25.0
     ball = (np.linalg.norm(grid, axis=0) < 20).astype(np.float32) * 100.0
@@ -145,8 +162,9 @@ def test_the_skin_of_a_volume_becomes_the_head(scene, logic):
         ),
     ],
 )
-def test_a_broken_volume_is_reported_and_the_head_stays(scene, logic, broken, sentence):
+def test_a_broken_volume_is_reported_and_the_head_stays(scene, logic, work, broken, sentence):
     logic.show("ball", "task-1")
+    in_turns(work)
     shown = findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
     with pytest.raises(InputError, match=sentence):
         logic.useHead(volume(scene, broken, 3.0))

@@ -49,6 +49,13 @@ def test_a_scenario_comes_one_surface_and_one_view_at_a_time(opened, colin):
     assert load.total.views > 1
 
 
+def test_the_nodes_of_a_scenario_come_a_few_in_each_turn(opened):
+    load = shown(opened, lambda: opened.press("showScenarioButton"))
+    # A list of points, its display, and the planned pose.
+    assert load.most.nodes <= 3
+    assert load.total.nodes >= 12
+
+
 def test_the_robot_comes_one_link_at_a_time_and_is_told_of_once(opened):
     load = shown(opened, lambda: opened.check("robotCheckBox"))
     cells = [robotNode(opened.scene, n).GetPolyData().GetNumberOfCells() for n in range(8)]

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.json_records import record_from_json
 from rastrainer.slicer.logic.study_logic import StudyLogic
 from rastrainer.slicer.logic.trainee_logic import TraineeLogic
 from rastrainer.study.database.aborted_trials import AbortedTrials
@@ -343,7 +344,7 @@ def test_a_trial_of_an_unselected_trainee_counts_and_the_simulator_is_sent_the_n
         completedUtc=STARTED,
     )
     enrolled.trainees.study.add_trial(record)
-    enrolled.logic.countTrial(TrialRecord.from_json(record))
+    enrolled.logic.countTrial(record_from_json(TrialRecord, record))
     enrolled.room.run_until(lambda: sent_step(enrolled).get("task") == "task-2")
     assert sent_step(enrolled)["trainee"] == "T001"
 
@@ -427,7 +428,7 @@ def test_the_simulator_waits_until_an_aborted_trial_has_its_reason(enrolled):
     started = datetime.now(timezone.utc).isoformat()
     aborted = make_aborted(trainee="T001", mode=step.mode, task=step.task, startedUtc=started)
     AbortedTrials(enrolled.trainees.study).add(aborted)
-    enrolled.logic.countTrial(AbortedTrial.from_json(aborted))
+    enrolled.logic.countTrial(record_from_json(AbortedTrial, aborted))
     room = enrolled.room
     room.run_until(lambda: sent_step(enrolled).get("kind") == "repeat")
     assert sent_step(enrolled)["task"] == step.task

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from rastrainer.json_records import record_from_json
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.questionnaires import SSQ
@@ -118,7 +119,7 @@ def test_an_aborted_trial_is_played_again_only_with_a_reason(begun):
     )
     with Study.open(begun.find("studyPathLineEdit").currentPath) as study:
         AbortedTrials(study).add(record)
-    begun.widget.logic.session.aborted.kept.emit(AbortedTrial.from_json(record))
+    begun.widget.logic.session.aborted.kept.emit(record_from_json(AbortedTrial, record))
     begun.process_events()
     assert "aborted with 15 of 15 points touched" in begun.text("stepText")
     text = "Aborted: 1, of them 1 after all touches"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import re
 import secrets
 import subprocess
 import sys
@@ -22,7 +21,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.flow.session.chosen_trial import FIRST_ID
 from Testing.end_to_end.onto_skin import lowered
-from Testing.end_to_end.simulator_process import SimulatorProcess
+from Testing.end_to_end.simulator_process import SERVES, SimulatorProcess
 from Testing.end_to_end.stream_trainee import StreamTrainee, WatchingView
 from Testing.end_to_end.virtual_gamepad import SimulatorWithGamepad
 from Testing.simulator.net.igtl.servers import LoopThread
@@ -30,7 +29,6 @@ from Testing.simulator.net.views.served import ViewClient
 from Testing.web.chromium import wait_for
 
 SLICER = (sys.executable, "-m", "rastrainer_headless.main")
-SERVES = re.compile(r"serves views on (http://\S+), pairing code (\d{6})$")
 TRAINEE = "P7"
 PATIENCE_S = 300
 WITHOUT_GRAPHICS = {"silent_s": 10, "lost_s": 20, "gone_s": 300}

@@ -19,6 +19,7 @@ from PIL import Image
 from playwright.sync_api import Browser, Locator, Page, sync_playwright
 
 from rastrainer import transforms
+from rastrainer.json_records import record_from_json
 from rastrainer.report.report import write_report
 from rastrainer.scenario.scenario import Scenario, Task, load_scenario
 from rastrainer.study.database.study import Study
@@ -76,7 +77,7 @@ def _add_trial(
     )
     for point, label, position in zip(record["points"], task.labels, touched, strict=True):
         point["label"], point["positionMm"] = label, position.tolist()
-    analysis = analyze_trial(TrialRecord.from_json(record), scenario)
+    analysis = analyze_trial(record_from_json(TrialRecord, record), scenario)
     study.add_trial(record, analysis.fits.values(), analysis.target_errors, analysis.score)
     target = scenario.target_position[None]
     there = transforms.apply(analysis.rigid.matrix @ head_to_world, target)

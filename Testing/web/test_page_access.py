@@ -329,7 +329,8 @@ def test_a_scrolled_list_shows_the_item_in_focus_and_its_help(told_page, served,
 
 TORN = """() => [...document.querySelectorAll("#menu dd")].flatMap((value) => {
   const text = value.firstChild.data;
-  return [...text.matchAll(/\\d\\s(?:mm|s|%)/gu)].filter(({ index, 0: found }) => {
+  const whole = /\\d\\s(?:mm|s|%)|(?:m[aá]x\\.|最大)\\s\\d|\\d+[.,]?\\d*[)）]/gu;
+  return [...text.matchAll(whole)].filter(({ index, 0: found }) => {
     const range = document.createRange();
     range.setStart(value.firstChild, index);
     range.setEnd(value.firstChild, index + found.length);
@@ -338,7 +339,7 @@ TORN = """() => [...document.querySelectorAll("#menu dd")].flatMap((value) => {
 })"""
 
 
-def test_no_number_is_torn_from_its_unit_on_a_phone(told_page, served, loop, outside):
+def test_no_number_is_torn_from_its_unit_or_limit_on_a_phone(told_page, served, loop, outside):
     resize(told_page, *SIZES["phone"])
     for language in LANGUAGES:
         presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, Preferences())

@@ -77,7 +77,10 @@ SEEN_THROUGH = """
   const drawn = [];
   const before = renderer.render;
   const isClear = ([, meshes]) => meshes.some(([mesh]) => mesh.material.transparent);
-  renderer.render = () => drawn.push([...model.arm].filter(isClear).map(([name]) => name));
+  renderer.render = (_scene, { layers }) => {
+    const drawsArm = layers.isEnabled(0);
+    if (drawsArm) drawn.push([...model.arm].filter(isClear).map(([name]) => name));
+  };
   const translucent = { view: ["link_5", "tool"], inset: ["link_6"], worn: [] };
   page.isDue = true;
   page.drawFlat(page.flat, 1, model, { ...page.state, translucent });

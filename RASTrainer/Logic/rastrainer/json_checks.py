@@ -14,7 +14,7 @@ import sys
 import uuid
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
-from typing import Any, TypeGuard, TypeVar
+from typing import Annotated, Any, TypeGuard, TypeVar
 
 import numpy as np
 
@@ -215,6 +215,10 @@ def number(minimum: float, maximum: float, unit: str = "") -> Callable[[Any], fl
     return check
 
 
+Setting = Annotated[float, number(-10_000, 10_000)]
+"""No length, angle or speed is larger; with a larger one, a simulation would only never end."""
+
+
 def whole_number(minimum: int, maximum: int) -> Callable[[Any], int]:
     """Accept an integer from `minimum` to `maximum`."""
 
@@ -254,6 +258,18 @@ def point(limit: float, unit: str = "mm") -> Callable[[Any], np.ndarray]:
     return check
 
 
+def transform() -> Callable[[Any], np.ndarray]:
+    """Accept 16 numbers, row by row: (4, 4) float, read-only."""
+    check_numbers = numbers(16, 1e6)
+
+    def check(value: Any) -> np.ndarray:
+        matrix = np.reshape(check_numbers(value), (4, 4))
+        matrix.setflags(write=False)
+        return matrix
+
+    return check
+
+
 @dataclass(frozen=True)
 class SizeCheck:
     """A check of how many values a list or an object has; each value needs one of its own."""
@@ -269,8 +285,8 @@ def list_of(minimum: int = 0, maximum: int = sys.maxsize, what: str = "items") -
 
     def check(value: Any) -> tuple[Any, ...]:
         if not isinstance(value, (list, tuple)) or not minimum <= len(value) <= maximum:
-            size = "" if maximum == sys.maxsize else f" of {minimum} to {maximum} {what}"
-            raise ValueError(f"a list{size}")
+            count = f"{minimum} to {maximum}" if minimum else f"at most {maximum}"
+            raise ValueError("a list" if maximum == sys.maxsize else f"a list of {count} {what}")
         return tuple(value)
 
     return SizeCheck(check)

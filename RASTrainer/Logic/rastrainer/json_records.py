@@ -182,12 +182,14 @@ def _builder(kind: Any, name: str) -> Reader | None:
 
 
 def _plain(value: Any, with_defaults: bool) -> Any:
+    if value.__class__ in (float, int, str):
+        return value
     if is_dataclass(value):
         return record_to_json(value, with_defaults)
     if isinstance(value, Enum):
         return value.value
-    if isinstance(value, (np.ndarray, np.generic)):
-        return value.tolist()
+    if isinstance(value, np.ndarray):
+        return value.ravel().tolist()
     if isinstance(value, Mapping):
         return {str(key): _plain(item, with_defaults) for key, item in value.items()}
     if isinstance(value, (tuple, list)):

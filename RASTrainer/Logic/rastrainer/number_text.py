@@ -6,11 +6,12 @@ import re
 
 _BEFORE_UNIT = re.compile(
     r"(?<=\d) (?=[%/]|(?:mm|cm|s|min|MB|of 100)(?![\w’']))|(?<=\d /) (?=\d)|(?<=,) (?=(?:mm|s)\b)"
+    r"|(?<=m[aá]x\.) (?=\d)|(?<=最大) (?=\d)"
 )
 
 
 def with_units(text: str) -> str:
-    """Return a text in which no line ends between a number, or a name, and its unit."""
+    """Return a text in which no line ends between a number, or a name, and its unit or limit."""
     return _BEFORE_UNIT.sub("\N{NO-BREAK SPACE}", text)
 
 

@@ -74,12 +74,14 @@ class AbortReason(str, Enum):
     TRAINEE = "trainee"
     CLIENT = "client"
     PRACTICE_OVER = "practice over"
-    NOT_RESUMED = "not gone on with"
+    ABANDONED = "abandoned"
 
 
 COMMANDED_ABORTS = (AbortReason.TRAINEE, AbortReason.CLIENT, AbortReason.PRACTICE_OVER)
 """In the simulator's menu, by a client's command, or at the end of a trial run's time. The other
 reason is for a trial interrupted by the end of the simulator and not resumed before another."""
+NUMBER_LIMIT = 1_000_000_000
+"""Of a trial, among those of its simulator's folder."""
 MIN_ABORTED_S = 10.0
 """An aborted trial without any touch is stored if it took longer than this."""
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import significant
@@ -15,7 +14,16 @@ from rastrainer.study.protocol.steps import mode_order
 from rastrainer.study.protocol.study_protocol import StudyProtocol, read_study_protocol
 from rastrainer.trial.score_reference import score_reference
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli.options import text_table
+from rastrainer_simulator.cli.options import (
+    Command,
+    flag,
+    group,
+    number,
+    option,
+    output,
+    path,
+    text_table,
+)
 from rastrainer_simulator.virtual.outcome_model import OutcomeModel, rejection_rates
 from rastrainer_simulator.virtual.population import ModeEffect, Population
 from rastrainer_simulator.virtual.scripted_trainee import Skill
@@ -27,103 +35,7 @@ TRIAL_TIME_SD = 0.12
 MAX_TRAINEES = 100_000
 
 
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add the subcommand to the parser of `rastrainer`."""
-    parser = subparsers.add_parser(
-        "simulate-cohort",
-        help="simulate a study of virtual trainees whose parameters you set",
-        description=(
-            "Play a study's trials with seeded virtual trainees, faster than real time, on all "
-            "cores, and store them like a real study (study.db, for rastrainer report). After an "
-            "interruption the same command resumes. With --power, draw many studies from a model "
-            "of times and errors instead, and print how often the tests find the effect."
-        ),
-    )
-    parser.add_argument("--trainees", type=int, default=20, metavar="N", help="how many")
-    parser.add_argument(
-        "--protocol", type=Path, metavar="FILE", help="of the study (default: the published one)"
-    )
-    parser.add_argument("--seed", type=int, default=0, help="of everything that is drawn")
-    parser.add_argument(
-        "-o", "--output", type=Path, metavar="DIR", help="an empty folder, or one to resume"
-    )
-    parser.add_argument("--records", action="store_true", help="write the journals too")
-    parser.add_argument("--power", type=int, metavar="STUDIES", help="number of studies to draw")
-    _add_skills(parser)
-    _add_engine(parser)
-    parser.set_defaults(run=run)
-
-
-def _add_skills(parser: argparse.ArgumentParser) -> None:
-    skills = parser.add_argument_group("the trainees")
-    skills.add_argument(
-        "--speed", type=float, default=120.0, metavar="MM/S", help="of the tip between points"
-    )
-    skills.add_argument("--aim", type=float, default=0.8, metavar="MM", help="SD along each axis")
-    skills.add_argument(
-        "--hmd-speed", type=float, default=1.0, metavar="FACTOR", help="of the speed in the headset"
-    )
-    skills.add_argument(
-        "--hmd-aim", type=float, default=1.0, metavar="FACTOR", help="of the SD in the headset"
-    )
-    skills.add_argument(
-        "--hmd-bias",
-        type=float,
-        nargs=3,
-        default=(0.0, 0.0, 0.0),
-        metavar=("X", "Y", "Z"),
-        help="systematic error of the aim in the headset, mm",
-    )
-    skills.add_argument("--spread", type=float, default=0.15, help="between trainees")
-    skills.add_argument(
-        "--interaction", type=float, default=0.05, help="between trainees and modes"
-    )
-    skills.add_argument("--tempo-spread", type=float, default=0.0, help="between trials")
-    skills.add_argument(
-        "--learning",
-        type=float,
-        default=0.15,
-        metavar="EXPONENT",
-        help="of the time over the trials",
-    )
-    skills.add_argument(
-        "--accuracy-learning", type=float, default=0.0, metavar="EXPONENT", help="of the scatter"
-    )
-    skills.add_argument(
-        "--trade-off",
-        type=float,
-        default=0.0,
-        metavar="EXPONENT",
-        help="of a trial's tempo in its scatter",
-    )
-    skills.add_argument(
-        "--lapses",
-        type=float,
-        metavar="SHARE",
-        help="of trials in which a touch slips and is undone (default: all played trials)",
-    )
-
-
-def _add_engine(parser: argparse.ArgumentParser) -> None:
-    engine = parser.add_argument_group("the engine")
-    engine.add_argument(
-        "--engine", choices=("processes", "dask"), default="processes", help="what plays the trials"
-    )
-    engine.add_argument(
-        "--workers", type=int, metavar="N", help="that play at once (default: one per core)"
-    )
-    engine.add_argument("--address", metavar="URL", help="of a Dask scheduler")
-    engine.add_argument("--step", type=float, default=0.05, metavar="S", help="of the simulation")
-    engine.add_argument(
-        "--scenario",
-        type=Path,
-        metavar="DIR",
-        help="whose head and tasks are used (default: Colin27)",
-    )
-
-
 def run(arguments: argparse.Namespace) -> int:
-    """Simulate the cohort and return the exit status."""
     if not 2 <= arguments.trainees <= MAX_TRAINEES or arguments.seed < 0:
         raise InputError(f"A cohort has 2 to {MAX_TRAINEES} trainees, and its seed is 0 or above.")
     protocol = read_study_protocol(arguments.protocol or asset_path(*SHIPPED_PROTOCOL))
@@ -251,3 +163,63 @@ def _power(protocol: StudyProtocol, arguments: argparse.Namespace) -> str:
         f"drawn from a model of outcomes (not played)\norder of the modes {order}\n"
         + text_table(header, rows)
     )
+
+
+SKILLS = group(
+    "the trainees",
+    number("--speed", 120.0, "of the tip between points", metavar="MM/S"),
+    number("--aim", 0.8, "SD along each axis", metavar="MM"),
+    number("--hmd-speed", 1.0, "of the speed in the headset", metavar="FACTOR"),
+    number("--hmd-aim", 1.0, "of the SD in the headset", metavar="FACTOR"),
+    option(
+        "--hmd-bias",
+        type=float,
+        nargs=3,
+        default=(0.0, 0.0, 0.0),
+        metavar=("X", "Y", "Z"),
+        help="systematic error of the aim in the headset, mm",
+    ),
+    number("--spread", 0.15, "between trainees"),
+    number("--interaction", 0.05, "between trainees and modes"),
+    number("--tempo-spread", 0.0, "between trials"),
+    number("--learning", 0.15, "of the time over the trials", metavar="EXPONENT"),
+    number("--accuracy-learning", 0.0, "of the scatter", metavar="EXPONENT"),
+    number("--trade-off", 0.0, "of a trial's tempo in its scatter", metavar="EXPONENT"),
+    option(
+        "--lapses",
+        type=float,
+        metavar="SHARE",
+        help="of trials in which a touch slips and is undone (default: all played trials)",
+    ),
+)
+ENGINE = group(
+    "the engine",
+    option(
+        "--engine", choices=("processes", "dask"), default="processes", help="what plays the trials"
+    ),
+    option("--workers", type=int, metavar="N", help="that play at once (default: one per core)"),
+    option("--address", metavar="URL", help="of a Dask scheduler"),
+    number("--step", 0.05, "of the simulation", metavar="S"),
+    path("--scenario", "DIR", "whose head and tasks are used (default: Colin27)"),
+)
+COMMANDS = (
+    Command(
+        "simulate-cohort",
+        "simulate a study of virtual trainees whose parameters you set",
+        run,
+        (
+            number("--trainees", 20, "how many", metavar="N"),
+            path("--protocol", "FILE", "of the study (default: the published one)"),
+            number("--seed", 0, "of everything that is drawn"),
+            output("an empty folder, or one to resume"),
+            flag("--records", "write the journals too"),
+            option("--power", type=int, metavar="STUDIES", help="number of studies to draw"),
+            SKILLS,
+            ENGINE,
+        ),
+        "Play a study's trials with seeded virtual trainees, faster than real time, on all cores, "
+        "and store them like a real study (study.db, for rastrainer report). After an interruption "
+        "the same command resumes. With --power, draw many studies from a model of times and "
+        "errors instead, and print how often the tests find the effect.",
+    ),
+)

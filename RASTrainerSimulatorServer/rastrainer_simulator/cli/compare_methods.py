@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,7 +20,17 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.tidy_csv import csv_text
 from rastrainer.trial.touch_registration import GivenPoints
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli.options import add_json, add_study, json_text, text_table
+from rastrainer_simulator.cli.options import (
+    JSON,
+    Command,
+    json_text,
+    number,
+    option,
+    output,
+    path,
+    study,
+    text_table,
+)
 from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE
 from rastrainer_simulator.virtual.method_trials import (
     MethodResult,
@@ -45,41 +54,7 @@ COLORS = {"expected TRE": "#0b6fa4", "true TRE": "#d1661b"}
 MOST_TRIALS = 10_000
 
 
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add the command to a command line; `arguments.run(arguments)` runs it."""
-    parser = subparsers.add_parser(
-        "compare-methods",
-        help="register the same trials by every method and compare residual, expected and true TRE",
-        description=(
-            "Without STUDY, trials are simulated on the scenario, with the noise of "
-            "docs/registration-methods.md. With it, its played trials are registered by every "
-            "method that their points allow."
-        ),
-    )
-    add_study(parser, nargs="?")
-    parser.add_argument("--scenario", type=Path, metavar="DIR", help="default: Colin27")
-    parser.add_argument("--task", help="of simulated trials; default: the scenario's last one")
-    parser.add_argument("--trials", type=int, default=20, help="number of simulated trials")
-    parser.add_argument("--seed", type=int, default=0, help="of the first")
-    parser.add_argument(
-        "--skin-shift",
-        type=float,
-        default=0.0,
-        metavar="MM",
-        help="between imaging and operation, RMS; default: none",
-    )
-    parser.add_argument(
-        "--indentation", type=float, default=0.0, metavar="MM", help="of the skin under the tip"
-    )
-    parser.add_argument(
-        "-o", "--output", type=Path, metavar="DIR", help="write CSV, JSON, text and a picture"
-    )
-    add_json(parser)
-    parser.set_defaults(run=run)
-
-
 def run(arguments: argparse.Namespace) -> int:
-    """Print the comparison and return the exit status."""
     folder = arguments.scenario or asset_path("scenarios", "colin27")
     scenario = load_scenario(folder)
     notes: list[str] = [NOTE]
@@ -89,8 +64,9 @@ def run(arguments: argparse.Namespace) -> int:
         found = _played(arguments.study, scenario, notes)
     if not any(found.values()):
         raise InputError(f"No trial in {arguments.study} can be registered on {scenario.name}.")
-    text = "\n".join([comparison_text(found), "", *notes])
-    values = {"scenario": scenario.name, **comparison_json(found), "notes": notes}
+    methods = compared(found)
+    text = "\n".join([comparison_text(methods), "", *notes])
+    values = {"scenario": scenario.name, "methods": methods, "notes": notes}
     if arguments.output is not None:
         make_empty_folder(arguments.output)
         as_json = json_text(values)
@@ -112,8 +88,8 @@ def _simulated(arguments: argparse.Namespace, scenario: Scenario, notes: list[st
         raise InputError(f"--seed must not be negative, as {arguments.seed} is.")
     task = arguments.task or scenario.tasks[-1].name
     scenario.task(task)
-    study = MethodStudy(scenario, task, arguments.skin_shift, arguments.indentation)
-    possible = study.possible()
+    trials = MethodStudy(scenario, task, arguments.skin_shift, arguments.indentation)
+    possible = trials.possible()
     left_out = [method.value for method in METHODS if method not in possible]
     if left_out:
         notes.append(
@@ -127,16 +103,16 @@ def _simulated(arguments: argparse.Namespace, scenario: Scenario, notes: list[st
         + "."
     )
     seeds = range(arguments.seed, arguments.seed + arguments.trials)
-    return {m: [(str(seed), study.trial(m, seed)) for seed in seeds] for m in possible}
+    return {m: [(str(seed), trials.trial(m, seed)) for seed in seeds] for m in possible}
 
 
 def _played(place: StudyPlace, scenario: Scenario, notes: list[str]) -> Found:
     mesh, targets = read_head_mesh(scenario.head_mesh), targets_of(scenario)
     found: dict[RegistrationMethod, list[tuple[str, MethodResult]]] = {}
     others = 0
-    with Study.open_for_reading(place) as study:
-        names = [one.pseudonym for kept in (False, True) for one in study.trainees(archived=kept)]
-        trials = [trial for name in names for trial in study.history(name)]
+    with Study.open_for_reading(place) as opened:
+        names = [one.pseudonym for kept in (False, True) for one in opened.trainees(archived=kept)]
+        trials = [trial for name in names for trial in opened.history(name)]
     for trial in trials:
         if trial.record.scenario != scenario.name:
             others += 1
@@ -153,40 +129,41 @@ def _played(place: StudyPlace, scenario: Scenario, notes: list[str]) -> Found:
     return found
 
 
-def comparison_text(found: Found) -> str:
-    """Return the table for people."""
-    rows = []
+def compared(found: Found) -> dict[str, dict[str, Any]]:
+    """Return what each method reached, by its name; unknown values are None."""
+    methods = {}
     for method, trials in found.items():
         results = [result for _, result in trials]
         residual, expected, true, held = mean_of(results)
-        low, high = _interval(results)
+        ends = np.median([e.interval_mm for one in results for e in one.errors], axis=0)
+        methods[method.value] = {
+            "trials": len(results),
+            "residual_mm": residual,
+            "expected_tre_mm": expected,
+            "interval_mm": ends.tolist(),
+            "true_tre_mm": true,
+            "interval_holds_share": held,
+            "warned_trials": sum(bool(result.warnings) for result in results),
+        }
+    return methods
+
+
+def comparison_text(methods: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return the table for people."""
+    rows = []
+    for name, found in methods.items():
+        low, high = found["interval_mm"]
+        true, held = found["true_tre_mm"], found["interval_holds_share"]
         rows.append(
             [
-                *(method.value, str(len(results)), fixed(residual, 2), fixed(expected, 2)),
+                *(name, str(found["trials"])),
+                *(fixed(found[key], 2) for key in ("residual_mm", "expected_tre_mm")),
                 f"{fixed(low, 2)} to {fixed(high, 2)}",
                 "unknown" if true is None else fixed(true, 2),
                 "–" if held is None else f"{fixed(100 * held, 0)} %",
             ]
         )
     return text_table(HEADER, rows)
-
-
-def comparison_json(found: Found) -> dict[str, Any]:
-    """Return the same as a JSON object; unknown values are None."""
-    methods = {}
-    for method, trials in found.items():
-        results = [result for _, result in trials]
-        residual, expected, true, held = mean_of(results)
-        methods[method.value] = {
-            "trials": len(results),
-            "residual_mm": residual,
-            "expected_tre_mm": expected,
-            "interval_mm": list(_interval(results)),
-            "true_tre_mm": true,
-            "interval_holds_share": held,
-            "warned_trials": sum(bool(result.warnings) for result in results),
-        }
-    return {"methods": methods}
 
 
 def comparison_csv(found: Found) -> str:
@@ -200,9 +177,9 @@ def comparison_csv(found: Found) -> str:
         for name, result in trials:
             true = [""] * len(result.errors) if result.true_mm is None else result.true_mm.tolist()
             codes = " ".join(warning.code for warning in result.warnings)
-            for number, error in enumerate(result.errors):
-                numbers = [result.residual_mm, error.expected_mm, *error.interval_mm, true[number]]
-                first = [name, method.value, number + 1, result.points]
+            for target, error in enumerate(result.errors):
+                numbers = [result.residual_mm, error.expected_mm, *error.interval_mm, true[target]]
+                first = [name, method.value, target + 1, result.points]
                 rows.append([*first, *numbers, codes])
     return csv_text(header, rows)
 
@@ -223,6 +200,29 @@ def picture(found: Found) -> str:
     return grouped_bars("Target registration error (mm)", names, series, "method")
 
 
-def _interval(results: Sequence[MethodResult]) -> tuple[float, float]:
-    ends = np.median([e.interval_mm for one in results for e in one.errors], axis=0)
-    return float(ends[0]), float(ends[1])
+COMMANDS = (
+    Command(
+        "compare-methods",
+        "register the same trials by every method and compare residual, expected and true TRE",
+        run,
+        (
+            study(nargs="?"),
+            path("--scenario", "DIR", "default: Colin27"),
+            option("--task", help="of simulated trials; default: the scenario's last one"),
+            number("--trials", 20, "number of simulated trials"),
+            number("--seed", 0, "of the first"),
+            number(
+                "--skin-shift",
+                0.0,
+                "between imaging and operation, RMS; default: none",
+                metavar="MM",
+            ),
+            number("--indentation", 0.0, "of the skin under the tip", metavar="MM"),
+            output("write CSV, JSON, text and a picture"),
+            JSON,
+        ),
+        "Without STUDY, trials are simulated on the scenario, with the noise of "
+        "docs/registration-methods.md. With it, its played trials are registered by every method "
+        "that their points allow.",
+    ),
+)

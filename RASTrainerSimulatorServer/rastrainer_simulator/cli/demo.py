@@ -34,6 +34,7 @@ from rastrainer.trial.ctps import CTPS_WARNING
 from rastrainer.trial.procedure_outcome import procedure_outcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.cli.options import Command, number, path
 from rastrainer_simulator.core.setup import DEFAULT_SCENARIO
 
 TASKS = (TRIAL_RUN, "task-1")
@@ -43,23 +44,6 @@ TRAINEE = "virtual-01"
 TOUCHES, FIDUCIALS = "touches.csv", "fiducials.csv"
 BAR_WIDTH = 30
 SLICER_TIMEOUT_S = 60.0
-
-
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add the subcommand to the parser of `rastrainer`."""
-    parser = subparsers.add_parser(
-        "demo", help="play two trials with a virtual trainee and show the results"
-    )
-    parser.add_argument(
-        "--output",
-        type=Path,
-        default=Path("rastrainer-demo"),
-        metavar="DIR",
-        help="folder to write into",
-    )
-    parser.add_argument("--seed", type=int, default=2026, help="of the trainee and the head's pose")
-    parser.add_argument("--speed", type=float, default=10.0, help="simulated seconds a second")
-    parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -72,10 +56,6 @@ def play_demo(output: Path, seed: int, speed: float) -> None:
 
     An `output` that is not empty is renamed, never overwritten. The virtual trainee consents to
     research, so that the study can be reported and exported.
-
-    Raises:
-        InputError: the package that plays Slicer's part is not installed; nothing was done then.
-        RASTrainerError: a part could not be started or failed; the sentence names its log.
     """
     check_slicers_side()
     started = time.monotonic()
@@ -93,10 +73,10 @@ def play_demo(output: Path, seed: int, speed: float) -> None:
     trials = [json.loads(line) for line in lines]
     _draw_robot(output / "robot.png", scenario, states[-1], trials[-1])
     _write_points(output, scenario, record)
-    head_to_world = np.array(trials[-1]["truth"]["head_to_world"])
+    head_to_world = np.reshape(trials[-1]["truth"]["headToWorld"], (4, 4))
     _draw_procedure(output / "procedure.png", scenario, record, head_to_world)
     for trial in trials:
-        print("\n" + trial_summary(trial, scenario.task(trial["task"]).title))
+        print("\n" + trial_summary(trial, scenario.task(trial["record"]["task"]).title))
     print("\n" + procedure_summary(record, scenario, head_to_world))
     print(f"\nWritten to {output} in {time.monotonic() - started:.0f} s: {_listing(output)}.")
 
@@ -229,11 +209,11 @@ def _draw_robot(
     from rastrainer_simulator.scene.scene_glb import scene_nodes
 
     robot = load_robot()
-    task = scenario.task(trial["task"])
+    task = scenario.task(trial["record"]["task"])
     head = read_head_mesh(scenario.head_mesh)
     moment = SceneMoment(
         link_to_world=make_kinematics(robot).links(state["q"]),
-        head_to_world=np.array(trial["truth"]["head_to_world"]),
+        head_to_world=np.reshape(trial["truth"]["headToWorld"], (4, 4)),
         head_base=head.base,
         touched=frozenset(task.labels),
         proximity=Proximity(state["proximity"]),
@@ -276,28 +256,25 @@ def _listing(folder: Path) -> str:
 
 def trial_summary(trial: Mapping[str, Any], title: str) -> str:
     """Return a summary of one trial for people; `trial` is a line of results.jsonl."""
-    truth, target = trial["truth"], trial["target"]["name"]
-    rigid = trial["fits"]["rigid"]
-    low, high = rigid["tre_interval_mm"]
-    where = (
-        "below" if truth["true_tre_mm"] < low else "above" if truth["true_tre_mm"] > high else "in"
-    )
-    undone, refused = trial["undone_touches"], trial["rejected_touches"]
+    record, target, rigid = trial["record"], trial["targetName"], trial["fits"]["rigid"]
+    true_mm, (low, high) = trial["truth"]["trueTreMm"], rigid["treIntervalMm"]
+    where = "below" if true_mm < low else "above" if true_mm > high else "in"
+    undone, refused = record["undoneTouches"], record["rejectedTouches"]
     lines = [
-        f"{title}, {trial['trainee']}, {trial['mode']}",
-        _line("Completion time (CT)", trial["completion_time_s"], "s"),
+        f"{title}, {record['trainee']}, {record['mode']}",
+        _line("Completion time (CT)", record["completionTimeS"], "s"),
         f"  Touches: {undone} undone, {refused} refused",
-        *(_line(f"FRE, {kind}", fit["fre_mm"], "mm") for kind, fit in trial["fits"].items()),
+        *(_line(f"FRE, {kind}", fit["freMm"], "mm") for kind, fit in trial["fits"].items()),
         _line(
             f"Expected TRE, {target}",
-            rigid["expected_tre_mm"],
+            rigid["expectedTreMm"],
             f"mm, 95 % interval from {low:.2f} to {high:.2f}",
         ),
         f"    {INTERVAL_NOTE}",
-        _line(f"True TRE, {target}", truth["true_tre_mm"], f"mm, {where} that interval"),
+        _line(f"True TRE, {target}", true_mm, f"mm, {where} that interval"),
         *_scores(trial["score"], trial["ctps"]),
         "  Residual of each fiducial, rigid (mm)",
-        *_residuals(trial["labels"], rigid["residuals_mm"]),
+        *_residuals([point["label"] for point in record["points"]], rigid["residualsMm"]),
     ]
     lines += [f"  Warning: {warning['message']}" for warning in rigid["warnings"]]
     return "\n".join(lines)
@@ -330,11 +307,11 @@ def _line(name: str, value: float, unit_and_remark: str) -> str:
 
 
 def _scores(score: Mapping[str, Any], ctps: Mapping[str, Any]) -> list[str]:
-    time, accuracy = score["time_desirability"], score["accuracy_desirability"]
+    time, accuracy = score["timeDesirability"], score["accuracyDesirability"]
     return [
         _line("Score", score["score"], f"of 100: time {time:.2f}, accuracy {accuracy:.2f}"),
         _line("CTPS as in the paper's tables", ctps["published"], "against the paper's cohort"),
-        _line("CTPS by the paper's equation 3", ctps["equation_3"], "half of it"),
+        _line("CTPS by the paper's equation 3", ctps["equation3"], "half of it"),
         f"    {CTPS_WARNING}",
     ]
 
@@ -344,3 +321,17 @@ def _residuals(labels: Sequence[str], residuals_mm: Sequence[float]) -> list[str
     bars = ["▇" * max(1, round(20 * residual / longest)) for residual in residuals_mm]
     rows = zip(labels, residuals_mm, bars, strict=True)
     return [f"    {label:>3}  {residual:5.2f}  {bar}" for label, residual, bar in rows]
+
+
+COMMANDS = (
+    Command(
+        "demo",
+        "play two trials with a virtual trainee and show the results",
+        run,
+        (
+            path("--output", "DIR", "folder to write into", default=Path("rastrainer-demo")),
+            number("--seed", 2026, "of the trainee and the head's pose"),
+            number("--speed", 10.0, "simulated seconds a second"),
+        ),
+    ),
+)

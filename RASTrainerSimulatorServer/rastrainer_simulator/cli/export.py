@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
-from pathlib import Path
+from urllib.parse import urlsplit
 
 from rastrainer.errors import InputError
 from rastrainer.files.writing import make_empty_folder, write_text
 from rastrainer.journal.recording import read_trajectory
-from rastrainer.json_checks import accepted
+from rastrainer.number_text import counted
+from rastrainer.protocol import Mode, RegistrationMethod
 from rastrainer.report.published_tables import with_ctps
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
@@ -25,46 +26,25 @@ from rastrainer.study.tidy_csv import (
     touches_csv,
     trials_csv,
 )
-from rastrainer_simulator.cli.options import add_config, add_incomplete, add_study, read_known_study
+from rastrainer_simulator.cli.options import (
+    INCOMPLETE,
+    Command,
+    option,
+    output,
+    path,
+    read_known_study,
+    study,
+)
+from rastrainer_simulator.export.grades import PLATFORMS, RULES, grade, grades_csv
 from rastrainer_simulator.export.trial_files import write_motion_bids, write_slicer_files
 from rastrainer_simulator.export.xapi import HOME_PAGE, statements_text
-from rastrainer_simulator.net.record_store import home_page_url, read_record_store_settings
 
 FORMATS = ("csv", "bids", "xapi", "slicer")
 
 
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add the command to a command line; `arguments.run(arguments)` runs it."""
-    parser = subparsers.add_parser(
-        "export",
-        help="export a study: tidy CSV, Motion-BIDS, xAPI, Slicer's files",
-        description=(
-            "Write a study into an empty folder, a folder a format. Trainees appear by their "
-            "pseudonyms, and only those who consented to research."
-        ),
-    )
-    add_study(parser)
-    parser.add_argument(
-        "-o", "--output", type=Path, required=True, metavar="DIR", help="an empty folder"
-    )
-    parser.add_argument(
-        "--format", action="append", choices=FORMATS, help="may be repeated; default: all"
-    )
-    parser.add_argument(
-        "--records", type=Path, metavar="DIR", help="the simulator's journals, for Motion-BIDS"
-    )
-    parser.add_argument(
-        "--home-page",
-        metavar="URL",
-        help=f"of the lab's system, for xAPI (default: as set, or {HOME_PAGE})",
-    )
-    add_config(parser)
-    add_incomplete(parser)
-    parser.set_defaults(run=run)
-
-
 def run(arguments: argparse.Namespace) -> int:
-    """Write the export and return the exit status."""
+    if arguments.grades:
+        return _export_grades(arguments)
     formats = arguments.format or [f for f in FORMATS if f != "bids" or arguments.records]
     if "bids" in formats and arguments.records is None:
         raise InputError("Motion-BIDS needs the journals: give their folder with --records.")
@@ -77,6 +57,26 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _export_grades(arguments: argparse.Namespace) -> int:
+    with Study.open_for_reading(arguments.study) as opened:
+        found = {
+            trainee.pseudonym: grade(
+                opened.past_trials(trainee.pseudonym),
+                arguments.task,
+                arguments.mode,
+                RegistrationMethod(arguments.method),
+                arguments.rule,
+            )
+            for trainee in opened.trainees()
+        }
+    grades = {name: score for name, score in found.items() if score is not None}
+    make_empty_folder(arguments.output)
+    written = arguments.output / f"{arguments.grades}.csv"
+    write_text(written, grades_csv(grades, arguments.grades))
+    print(f"{written}: grades of {len(grades)} of {counted(len(found), 'trainee')}")
+    return 0
+
+
 def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
     folder = arguments.output / name
     if name == "bids":
@@ -86,16 +86,20 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
         return f"{count} of {len(data.trials)} trials"
     make_empty_folder(folder)
     if name == "csv":
-        write_text(folder / "trials.csv", trials_csv(data.trials))
-        write_text(folder / "touches.csv", touches_csv(_stored(data, arguments.study)))
-        write_text(folder / "procedures.csv", procedures_csv(data.trials))
-        write_text(folder / "aborted.csv", aborted_csv(data.aborted))
-        write_text(folder / "aborted_touches.csv", aborted_touches_csv(data.aborted))
-        write_text(folder / "scores.csv", scores_csv(data))
-        write_text(folder / "answers.csv", answers_csv(data))
-        write_text(folder / "ratings.csv", ratings_csv(data))
+        tables = {
+            "trials": trials_csv(data.trials),
+            "touches": touches_csv(_stored(data, arguments.study)),
+            "procedures": procedures_csv(data.trials),
+            "aborted": aborted_csv(data.aborted),
+            "aborted_touches": aborted_touches_csv(data.aborted),
+            "scores": scores_csv(data),
+            "answers": answers_csv(data),
+            "ratings": ratings_csv(data),
+        }
+        for table, text in tables.items():
+            write_text(folder / f"{table}.csv", text)
     elif name == "xapi":
-        write_text(folder / "statements.json", statements_text(data, _home_page(arguments)))
+        write_text(folder / "statements.json", statements_text(data, arguments.home_page))
     else:
         for trial, stored in _stored(data, arguments.study):
             write_slicer_files(stored, folder / trial.trial_id)
@@ -103,10 +107,14 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
     return f"{len(data.trials)} trials, {len(data.aborted)} aborted ones"
 
 
-def _home_page(arguments: argparse.Namespace) -> str:
-    if arguments.home_page:
-        return accepted(home_page_url, arguments.home_page, "--home-page")
-    return read_record_store_settings(arguments.config).home_page or HOME_PAGE
+def _home_page(value: str) -> str:
+    """Accept the address of a lab's own system, from which IRIs are made."""
+    parts = urlsplit(value)
+    # What stands before an "@", such as a password, would be in every statement.
+    is_safe = not any(sign in value for sign in "@?# ") and parts.hostname
+    if parts.scheme not in ("https", "http") or not is_safe:
+        raise argparse.ArgumentTypeError("give an address such as https://lab.example.org")
+    return value.rstrip("/")
 
 
 def _stored(data: StudyData, place: StudyPlace) -> Iterator[tuple[TrialRow, StoredTrial]]:
@@ -114,6 +122,49 @@ def _stored(data: StudyData, place: StudyPlace) -> Iterator[tuple[TrialRow, Stor
     known = [trial for trial in data.trials if trial.trial_id]
     if not known:
         return
-    with Study.open_for_reading(place) as study:
+    with Study.open_for_reading(place) as opened:
         for trial in known:
-            yield trial, study.trial(trial.trial_id)
+            yield trial, opened.trial(trial.trial_id)
+
+
+COMMANDS = (
+    Command(
+        "export",
+        "export a study: tidy CSV, Motion-BIDS, xAPI, Slicer's files, grades",
+        run,
+        (
+            study(),
+            output("an empty folder", required=True),
+            option(
+                "--format", action="append", choices=FORMATS, help="may be repeated; default: all"
+            ),
+            path("--records", "DIR", "the simulator's journals, for Motion-BIDS"),
+            option(
+                "--home-page",
+                type=_home_page,
+                default=HOME_PAGE,
+                metavar="URL",
+                help="of the lab's system, which makes pseudonyms unique among labs, for xAPI",
+            ),
+            option("--grades", choices=PLATFORMS, help="write only what this platform imports"),
+            option("--task", metavar="TASK", help="whose trials give the grade (default: any)"),
+            option(
+                "--mode",
+                choices=[each.value for each in Mode],
+                help="whose trials give the grade (default: both)",
+            ),
+            option(
+                "--method",
+                choices=[each.value for each in RegistrationMethod],
+                default=RegistrationMethod.FIDUCIALS.value,
+                metavar="METHOD",
+                help="of registration, whose trials give the grade",
+            ),
+            option("--rule", choices=RULES, default="best", help="which acceptable trial gives it"),
+            INCOMPLETE,
+        ),
+        "Write a study into an empty folder, a folder a format. Trainees appear by their "
+        "pseudonyms, and only those who consented to research. With --grades, write only the "
+        "grades of a course: of all active trainees, whether they consented or not.",
+    ),
+)

@@ -13,11 +13,14 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer.study.database.database import StudyPlace
 from rastrainer_simulator.cli.options import (
+    CONFIG,
     STUDY_HELP,
-    add_config,
-    add_study,
+    Command,
     announce,
     check_ports,
+    flag,
+    number,
+    study,
 )
 from rastrainer_simulator.ops.instructor_pin import PIN_WORDS, InstructorPin
 from rastrainer_simulator.ops.system_paths import config_folder
@@ -25,42 +28,14 @@ from rastrainer_simulator.ops.system_paths import config_folder
 DEFAULT_BOARD_PORT = 18955
 
 
-def add_board_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add `board`: a teacher's page of live tiles of several simulators."""
-    parser = subparsers.add_parser(
-        "board",
-        help="watch several simulators in one page of live tiles",
-        description=(
-            "Serves a teacher's board to browsers on this computer until Ctrl-C: who trains where, "
-            "task, point, time, contact and last score of each seat, and each seat's scene; with "
-            "a study, also where every trainee stands in the curriculum. The seats' addresses and "
-            "keys stay on this computer."
-        ),
-    )
-    add_study(
-        parser,
-        "--study",
-        help_text=f"also show the class of this study, which is only read: {STUDY_HELP}",
-    )
-    parser.add_argument(
-        "--port",
-        type=int,
-        default=DEFAULT_BOARD_PORT,
-        help="for browsers on this computer, 0 for any free one",
-    )
-    add_config(parser)
-    parser.set_defaults(run=run_board)
-
-
-def run_board(arguments: argparse.Namespace) -> int:
-    """Serve the board until it is stopped, and return the exit status."""
+def serve_board(arguments: argparse.Namespace) -> int:
     check_ports(arguments)
     config = arguments.config or config_folder()
     asyncio.run(_serve(config, arguments.port, arguments.study))
     return 0
 
 
-async def _serve(config: Path, port: int, study: StudyPlace | None) -> None:
+async def _serve(config: Path, port: int, place: StudyPlace | None) -> None:
     from rastrainer_simulator.board.board_server import BoardServer
     from rastrainer_simulator.board.seats import SeatClient
     from rastrainer_simulator.ops.processes import stop_on_signals
@@ -71,7 +46,7 @@ async def _serve(config: Path, port: int, study: StudyPlace | None) -> None:
             config,
             client,
             lambda code: tell(f"has a new pairing code for browsers: {code}"),
-            study=study,
+            study=place,
         )
         try:
             with stop_on_signals(stop):
@@ -84,26 +59,7 @@ async def _serve(config: Path, port: int, study: StudyPlace | None) -> None:
             await board.close()
 
 
-def add_instructor_pin_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add `instructor-pin`: set the PIN that a seat asks its instructors for."""
-    parser = subparsers.add_parser(
-        "instructor-pin",
-        help="set the PIN that instructors need at this seat",
-        description=(
-            f"Asks for a PIN of {PIN_WORDS}, twice, or reads it from a pipe. With it, a teacher's "
-            "board may pause this simulator, show the trainee a sentence and start a replay; and "
-            "at the simulator, settings, order of tasks and another view's taking the control "
-            "are locked until it is entered. Without a PIN, no board can do anything, and "
-            "nothing is locked."
-        ),
-    )
-    parser.add_argument("--remove", action="store_true", help="have no PIN any more")
-    add_config(parser)
-    parser.set_defaults(run=run_instructor_pin)
-
-
-def run_instructor_pin(arguments: argparse.Namespace) -> int:
-    """Set or remove the PIN, and return the exit status."""
+def set_pin(arguments: argparse.Namespace) -> int:
     pin = InstructorPin(arguments.config or config_folder())
     if arguments.remove:
         pin.set("")
@@ -124,3 +80,35 @@ def _asked() -> str:
     if getpass.getpass("PIN again: ") != first:
         raise InputError("The two PINs differ.")
     return first
+
+
+COMMANDS = (
+    Command(
+        "board",
+        "watch several simulators in one page of live tiles",
+        serve_board,
+        (
+            study(
+                "--study", f"also show the class of this study, which is only read: {STUDY_HELP}"
+            ),
+            number(
+                "--port", DEFAULT_BOARD_PORT, "for browsers on this computer, 0 for any free one"
+            ),
+            CONFIG,
+        ),
+        "Serves a teacher's board to browsers on this computer until Ctrl-C: who trains where, "
+        "task, point, time, contact and last score of each seat, and each seat's scene; with a "
+        "study, also where every trainee stands in the curriculum. The seats' addresses and keys "
+        "stay on this computer.",
+    ),
+    Command(
+        "instructor-pin",
+        "set the PIN that instructors need at this seat",
+        set_pin,
+        (flag("--remove", "have no PIN any more"), CONFIG),
+        f"Asks for a PIN of {PIN_WORDS}, twice, or reads it from a pipe. With it, a teacher's "
+        "board may pause this simulator, show the trainee a sentence and start a replay; and at "
+        "the simulator, settings, order of tasks and another view's taking the control are locked "
+        "until it is entered. Without a PIN, no board can do anything, and nothing is locked.",
+    ),
+)

@@ -9,38 +9,28 @@ from typing import TYPE_CHECKING
 
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
-from rastrainer_simulator.cli.options import add_json, add_study, json_text, text_table
+from rastrainer_simulator.cli.options import (
+    JSON,
+    Command,
+    flag,
+    json_text,
+    option,
+    path,
+    study,
+    text_table,
+)
 
 if TYPE_CHECKING:
     from rastrainer.study.database.study import Study
 
 
-def add_verify_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add `verify`: is a trial's journal intact, cut short or altered?"""
-    parser = subparsers.add_parser(
-        "verify",
-        help="check whether journals of trials are intact, cut short or altered",
-        description="Exit status: 0 all intact (and those of the study's trials), 1 one cut short, "
-        "altered or another, 2 one not a journal. Whether a trial was played as its journal says "
-        "is found by `rastrainer replay --verify`.",
-    )
-    parser.add_argument("journals", nargs="+", type=Path, metavar="JOURNAL")
-    add_study(
-        parser,
-        "--study",
-        help_text="whose trials must be those of the journals; a file or an address",
-    )
-    parser.set_defaults(run=run_verify)
-
-
-def run_verify(arguments: argparse.Namespace) -> int:
-    """Print one line for each journal and return the exit status."""
+def verify(arguments: argparse.Namespace) -> int:
     if arguments.study is None:
         return max([_verify(path) for path in arguments.journals])
     from rastrainer.study.database.study import Study
 
-    with Study.open_for_reading(arguments.study) as study:
-        return max([_verify(path, study) for path in arguments.journals])
+    with Study.open_for_reading(arguments.study) as opened:
+        return max([_verify(path, opened) for path in arguments.journals])
 
 
 def _verify(path: Path, study: Study | None = None) -> int:
@@ -66,21 +56,7 @@ def _differs(reading: JournalReading, study: Study) -> str:
     return "; the trial in the study is not from this journal"
 
 
-def add_measure_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add `measure`: the motion metrics of a trial, from its journal."""
-    parser = subparsers.add_parser(
-        "measure",
-        help="compute the motion metrics of a trial from its journal",
-        description="The numbers are those of the trial's record, to the last bit.",
-    )
-    parser.add_argument("journal", type=Path, metavar="JOURNAL")
-    parser.add_argument("--explain", action="store_true", help="explain each metric")
-    add_json(parser)
-    parser.set_defaults(run=run_measure)
-
-
-def run_measure(arguments: argparse.Namespace) -> int:
-    """Print the metrics and return the exit status."""
+def measure(arguments: argparse.Namespace) -> int:
     # Only here: to verify a journal, no metric need be imported.
     from rastrainer.journal.recording import Recording
     from rastrainer.motion.trial_motion import trial_motion
@@ -97,3 +73,26 @@ def run_measure(arguments: argparse.Namespace) -> int:
     if arguments.explain:
         print("\n".join(f"\n{d.title}: {d.definition} Source: {d.source}." for d in known))
     return 0
+
+
+COMMANDS = (
+    Command(
+        "verify",
+        "check whether journals of trials are intact, cut short or altered",
+        verify,
+        (
+            option("journals", nargs="+", type=Path, metavar="JOURNAL"),
+            study("--study", "whose trials must be those of the journals; a file or an address"),
+        ),
+        "Exit status: 0 all intact (and those of the study's trials), 1 one cut short, altered or "
+        "another, 2 one not a journal. Whether a trial was played as its journal says is found by "
+        "`rastrainer replay --verify`.",
+    ),
+    Command(
+        "measure",
+        "compute the motion metrics of a trial from its journal",
+        measure,
+        (path("journal", "JOURNAL"), flag("--explain", "explain each metric"), JSON),
+        "The numbers are those of the trial's record, to the last bit.",
+    ),
+)

@@ -1,11 +1,11 @@
-"""The command `rastrainer`: its parser, and which function adds each subcommand."""
+"""The command `rastrainer`: its parser, and where each command is."""
 
 from __future__ import annotations
 
 import argparse
-import pkgutil
 import sys
 from collections.abc import Sequence
+from importlib import import_module
 from typing import Any
 
 import rastrainer
@@ -13,32 +13,30 @@ from rastrainer.errors import RASTrainerError
 from rastrainer.files.reading import failure_reason, printable_name
 from rastrainer.work_progress import allow_any_text
 
-# By name, so that `rastrainer register` does not wait for the robot to be imported.
-SUBCOMMANDS = {
-    "register": "rastrainer_simulator.cli.register:add_parser",
-    "compare-methods": "rastrainer_simulator.cli.compare_methods:add_parser",
-    "score": "rastrainer_simulator.cli.results:add_score_parser",
-    "measure": "rastrainer_simulator.cli.journals:add_measure_parser",
-    "pass-mark": "rastrainer_simulator.cli.training_goals:add_pass_mark_parser",
-    "curriculum": "rastrainer_simulator.cli.training_goals:add_curriculum_parser",
-    "report": "rastrainer_simulator.cli.results:add_report_parser",
-    "export": "rastrainer_simulator.cli.export:add_parser",
-    "send-statements": "rastrainer_simulator.cli.send_statements:add_parser",
-    "copy-study": "rastrainer_simulator.cli.study_management:add_copy_study_parser",
-    "delete-trainee": "rastrainer_simulator.cli.study_management:add_delete_trainee_parser",
-    "scenario": "rastrainer_simulator.cli.scenario:add_parser",
-    "simulator": "rastrainer_simulator.cli.simulator:add_simulator_parser",
-    "board": "rastrainer_simulator.cli.instructor:add_board_parser",
-    "lti": "rastrainer_simulator.cli.lti:add_parser",
-    "instructor-pin": "rastrainer_simulator.cli.instructor:add_instructor_pin_parser",
-    "window": "rastrainer_simulator.cli.simulator:add_window_parser",
-    "doctor": "rastrainer_simulator.cli.doctor_command:add_parser",
-    "replay": "rastrainer_simulator.cli.replays:add_replay_parser",
-    "rate": "rastrainer_simulator.cli.replays:add_rate_parser",
-    "verify": "rastrainer_simulator.cli.journals:add_verify_parser",
-    "simulate-cohort": "rastrainer_simulator.cli.cohort:add_parser",
-    "demo": "rastrainer_simulator.cli.demo:add_parser",
+MODULES = {
+    "register": "rastrainer_simulator.cli.register",
+    "compare-methods": "rastrainer_simulator.cli.compare_methods",
+    "score": "rastrainer_simulator.cli.results",
+    "measure": "rastrainer_simulator.cli.journals",
+    "pass-mark": "rastrainer_simulator.cli.training_goals",
+    "curriculum": "rastrainer_simulator.cli.training_goals",
+    "report": "rastrainer_simulator.cli.results",
+    "export": "rastrainer_simulator.cli.export",
+    "copy-study": "rastrainer_simulator.cli.study_management",
+    "delete-trainee": "rastrainer_simulator.cli.study_management",
+    "scenario": "rastrainer_simulator.cli.scenario",
+    "simulator": "rastrainer_simulator.cli.simulator",
+    "board": "rastrainer_simulator.cli.instructor",
+    "instructor-pin": "rastrainer_simulator.cli.instructor",
+    "doctor": "rastrainer_simulator.cli.doctor",
+    "replay": "rastrainer_simulator.cli.replays",
+    "rate": "rastrainer_simulator.cli.replays",
+    "verify": "rastrainer_simulator.cli.journals",
+    "simulate-cohort": "rastrainer_simulator.cli.cohort",
+    "demo": "rastrainer_simulator.cli.demo",
 }
+"""Which module has each command among its `COMMANDS`. Only that one is imported, so that
+`rastrainer register` does not wait for the robot."""
 
 
 class _HelpWithDefaults(argparse.HelpFormatter):
@@ -91,9 +89,9 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"%(prog)s {rastrainer.__version__}")
     subparsers = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
-    named = [word for word in words if word in SUBCOMMANDS][:1]
-    for name in named or SUBCOMMANDS:
-        pkgutil.resolve_name(SUBCOMMANDS[name])(subparsers)
+    for name in [word for word in words if word in MODULES][:1] or MODULES:
+        module = import_module(MODULES[name])
+        next(each for each in module.COMMANDS if each.name == name).add_to(subparsers)
     return parser
 
 

@@ -1,10 +1,11 @@
-"""What several commands share: options, the study they name, errors, and output."""
+"""What a command is: its name, its arguments, its function; and what several commands share."""
 
 from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,8 +16,85 @@ from rastrainer.study.database.database import EXAMPLE, StudyPlace, study_place
 if TYPE_CHECKING:
     from rastrainer.study.study_data import StudyData
 
-DEFAULT_RECORDS = "~/RASTrainer/trials"
-STUDY_HELP = f"a study's file, or its address in PostgreSQL, such as {EXAMPLE}"
+Argument = Callable[[Any], object]
+"""Adds itself to a parser of argparse, or to a group of one."""
+
+
+@dataclass(frozen=True)
+class Command:
+    """A command of `rastrainer`, or an action of one.
+
+    Attributes:
+        run: Returns the exit status; None where one of the `actions` is run.
+        description: Above the arguments in the command's own help.
+    """
+
+    name: str
+    help: str
+    run: Callable[[argparse.Namespace], int] | None = None
+    arguments: Sequence[Argument] = ()
+    description: str | None = None
+    actions: Sequence[Command] = ()
+
+    def add_to(self, subparsers: argparse._SubParsersAction) -> None:
+        parser = subparsers.add_parser(self.name, help=self.help, description=self.description)
+        for add in self.arguments:
+            add(parser)
+        parser.set_defaults(run=self.run)
+        if self.actions:
+            of_actions = parser.add_subparsers(title="what to do", required=True, metavar="ACTION")
+            for action in self.actions:
+                action.add_to(of_actions)
+
+
+def option(*names: str, **settings: Any) -> Argument:
+    """Return an argument with the names and settings that argparse knows."""
+    return lambda parser: parser.add_argument(*names, **settings)
+
+
+def path(name: str, metavar: str, help_text: str | None = None, **settings: Any) -> Argument:
+    return option(name, type=Path, metavar=metavar, help=help_text, **settings)
+
+
+def output(help_text: str, **settings: Any) -> Argument:
+    return option("-o", "--output", type=Path, metavar="DIR", help=help_text, **settings)
+
+
+def number(name: str, default: float, help_text: str, **settings: Any) -> Argument:
+    """Return an option with a number, which is of the type of its default."""
+    return option(name, type=type(default), default=default, help=help_text, **settings)
+
+
+def flag(name: str, help_text: str) -> Argument:
+    return option(name, action="store_true", help=help_text)
+
+
+def switch(name: str, help_text: str) -> Argument:
+    """Return a flag that is set unless its opposite, `--no-…`, is given."""
+    action = argparse.BooleanOptionalAction
+    return option(name, action=action, default=True, help=help_text)
+
+
+def group(title: str, *options: Argument) -> Argument:
+    """Return options that the help shows below a title of their own."""
+
+    def add(parser: argparse.ArgumentParser) -> None:
+        added = parser.add_argument_group(title)
+        for add_option in options:
+            add_option(added)
+
+    return add
+
+
+def one_of(*options: Argument) -> Argument:
+    """Return options of which at most one can be given."""
+
+    def add(parser: argparse.ArgumentParser) -> None:
+        added = parser.add_mutually_exclusive_group()
+        for add_option in options:
+            add_option(added)
+
+    return add
 
 
 def path_of_user(text: str) -> Path:
@@ -28,47 +106,6 @@ def path_of_user(text: str) -> Path:
         raise argparse.ArgumentTypeError(str(error)) from None
 
 
-def add_config(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--config", type=Path, metavar="DIR", help="folder of your settings (default: the usual)"
-    )
-
-
-def add_records(parser: argparse.ArgumentParser) -> None:
-    """Add the folder of the trials' journals to a command's parser."""
-    parser.add_argument(
-        "--records",
-        type=path_of_user,
-        metavar="DIR",
-        default=DEFAULT_RECORDS,
-        help="folder of the trials' journals",
-    )
-
-
-def add_json(parser: argparse.ArgumentParser) -> None:
-    """Add output for other programs to a command's parser."""
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
-
-
-def check_ports(arguments: argparse.Namespace) -> None:
-    """Raise `InputError` if a given `--port` or `--view-port` is invalid; 0 is any free one."""
-    for option in ("port", "view_port"):
-        port = getattr(arguments, option, None)
-        if port is not None and not 0 <= port < 65536:
-            raise InputError(f"--{option.replace('_', '-')} must be a number from 0 to 65535.")
-
-
-def add_study(
-    parser: argparse.ArgumentParser,
-    name: str = "study",
-    metavar: str = "STUDY",
-    help_text: str = STUDY_HELP,
-    nargs: str | None = None,
-) -> None:
-    """Add where a study is to a command's parser: a `StudyPlace`."""
-    parser.add_argument(name, type=_place, metavar=metavar, help=help_text, nargs=nargs)
-
-
 def _place(text: str) -> StudyPlace:
     try:
         return study_place(text)
@@ -77,13 +114,34 @@ def _place(text: str) -> StudyPlace:
         raise argparse.ArgumentTypeError(str(error)) from None
 
 
-def add_incomplete(parser: argparse.ArgumentParser) -> None:
-    """Add the option to a command's parser."""
-    parser.add_argument(
-        "--incomplete",
-        action="store_true",
-        help="accept a virtual cohort that was not played to its end",
-    )
+STUDY_HELP = f"a study's file, or its address in PostgreSQL, such as {EXAMPLE}"
+
+
+def study(
+    name: str = "study", help_text: str = STUDY_HELP, metavar: str = "STUDY", **settings: Any
+) -> Argument:
+    """Return the argument that says where a study is: a `StudyPlace`."""
+    return option(name, type=_place, metavar=metavar, help=help_text, **settings)
+
+
+CONFIG = path("--config", "DIR", "folder of your settings (default: the usual)")
+RECORDS = option(
+    "--records",
+    type=path_of_user,
+    metavar="DIR",
+    default="~/RASTrainer/trials",
+    help="folder of the trials' journals",
+)
+JSON = flag("--json", "print one JSON object")
+INCOMPLETE = flag("--incomplete", "accept a virtual cohort that was not played to its end")
+
+
+def check_ports(arguments: argparse.Namespace) -> None:
+    """Raise `InputError` if a given `--port` or `--view-port` is invalid; 0 is any free one."""
+    for name in ("port", "view_port"):
+        port = getattr(arguments, name, None)
+        if port is not None and not 0 <= port < 65536:
+            raise InputError(f"--{name.replace('_', '-')} must be a number from 0 to 65535.")
 
 
 def read_known_study(arguments: argparse.Namespace) -> StudyData:
@@ -108,15 +166,20 @@ def json_text(value: Any) -> str:
     return json.dumps(value, allow_nan=False, indent=1)
 
 
-def text_table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Return lines of aligned columns: the first to the left, the others to the right."""
-    lines = [header, *rows]
-    widths = [max(len(line[column]) for line in lines) for column in range(len(header))]
-    aligned = [
+def aligned(lines: Sequence[Sequence[str]], left: int) -> list[str]:
+    """Return rows of cells as lines; `left` columns are aligned to the left, the others right."""
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    return [
         "  ".join(
-            cell.rjust(width) if column else cell.ljust(width)
-            for column, (cell, width) in enumerate(zip(line, widths, strict=True))
+            cell.ljust(width) if place < left else cell.rjust(width)
+            for place, (cell, width) in enumerate(zip(line, widths, strict=True))
         ).rstrip()
         for line in lines
     ]
-    return "\n".join([aligned[0], "-" * (sum(widths) + 2 * len(widths) - 2), *aligned[1:]])
+
+
+def text_table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Return a table with a line below its header; the first column is aligned to the left."""
+    head, *others = aligned([header, *rows], 1)
+    width = max(map(len, (head, *others)))
+    return "\n".join([head, "-" * width, *others])

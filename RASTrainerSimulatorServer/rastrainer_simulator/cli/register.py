@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
-from dataclasses import dataclass
-from pathlib import Path
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,8 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.files.point_files import read_point_numbers, read_points
 from rastrainer.files.point_list import PointList, pair
-from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.json_records import record_to_json
 from rastrainer.registration.fits import KINDS, RIGID
 from rastrainer.registration.localization_error import (
     LocalizationError,
@@ -26,7 +26,15 @@ from rastrainer.registration.registration import Registration, register
 from rastrainer.registration.surface_error import knowledge_of, surface_target_error
 from rastrainer.registration.surface_match import SurfaceMatch, match_surface
 from rastrainer.registration.target_error import INTERVAL_NOTE, TargetError, target_error
-from rastrainer_simulator.cli.options import add_json, json_text, text_table
+from rastrainer_simulator.cli.options import (
+    JSON,
+    Command,
+    json_text,
+    one_of,
+    option,
+    path,
+    text_table,
+)
 
 FRE_NOTE = (
     "FRE is the error at the fiducials; it does not predict the error at a target in a single case."
@@ -63,65 +71,13 @@ class StatedErrors:
         return cls(fle_mm, error, expected_fre(registration, error), misfit)
 
 
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add the command to a command line; `arguments.run(arguments)` runs it."""
-    parser = subparsers.add_parser(
-        "register",
-        help="register moving points to fixed points",
-        description=(
-            "Register two files of points: CSV with the header label,x,y,z (mm), or Slicer's "
-            ".mrk.json, .fcsv or exported table. Points are paired by label, or by order where the "
-            "labels are left out; what is deselected or not placed in Slicer is not used. "
-            "With --surface they are landmarks, and a trace over the skin is matched to a head."
-        ),
-    )
-    parser.add_argument("moving", metavar="MOVING", help="the points to be mapped")
-    parser.add_argument("fixed", metavar="FIXED", help="the points to map them to")
-    parser.add_argument("--type", choices=KINDS, default=RIGID, help="of the transform")
-    parser.add_argument(
-        "--target",
-        nargs=3,
-        type=float,
-        metavar=("X", "Y", "Z"),
-        help="point in the fixed space (mm) whose error is estimated; default: the centroid",
-    )
-    weighting = parser.add_mutually_exclusive_group()
-    weighting.add_argument(
-        "--fle",
-        metavar="FILE.csv",
-        help=(
-            "weight each point by 1/FLE² (rigid only): a CSV file with the header label,fle, the "
-            "RMS localization error of each point in mm; may be MOVING itself with that column"
-        ),
-    )
-    weighting.add_argument(
-        "--weights",
-        metavar="FILE.csv",
-        help=(
-            "weight the points (rigid only): a CSV file with the header label,weight; only the "
-            "ratios matter, and the size of the errors is estimated from the residuals"
-        ),
-    )
-    parser.add_argument(
-        "--surface",
-        metavar="TRACE",
-        help="points drawn over the skin, in the frame of MOVING: CSV, .mrk.json or .ply",
-    )
-    parser.add_argument(
-        "--head", type=Path, metavar="HEAD.ply", help="the head's mesh for --surface, RAS mm"
-    )
-    add_json(parser)
-    parser.set_defaults(run=run)
-
-
 def run(arguments: argparse.Namespace) -> int:
-    """Print the registration and return the exit status."""
     left_out: dict[str, tuple[str, ...]] = {}
 
-    def read(path: str) -> PointList:
-        points = read_points(path)
+    def read(name: str) -> PointList:
+        points = read_points(name)
         if points.left_out:
-            left_out[path] = points.left_out_names
+            left_out[name] = points.left_out_names
         return points
 
     if arguments.surface is None:
@@ -134,8 +90,8 @@ def run(arguments: argparse.Namespace) -> int:
         print(json_text({**answer, "left_out": left_out}))
         return 0
     print(text)
-    for path, names in left_out.items():
-        print(f"Left out of {path}, deselected or not placed in Slicer: {', '.join(names)}")
+    for name, names in left_out.items():
+        print(f"Left out of {name}, deselected or not placed in Slicer: {', '.join(names)}")
     return 0
 
 
@@ -162,7 +118,7 @@ def registration_json(
         "labels": list(registration.labels),
         "residuals_mm": registration.residuals_mm.tolist(),
         "residual_vectors_mm": registration.residual_vectors_mm.tolist(),
-        "warnings": [warning.to_json() for warning in registration.warnings],
+        "warnings": [record_to_json(warning) for warning in registration.warnings],
         "weights": None if weights is None else weights.tolist(),
         "weighted_fre_mm": registration.weighted_fre_mm,
         "stated": None
@@ -172,17 +128,7 @@ def registration_json(
             "expected_fre_mm": stated.expected_fre_mm,
             "misfit_probability": stated.misfit,
         },
-        "expected_tre": None
-        if error is None
-        else {
-            "target_mm": list(error.target_mm),
-            "expected_mm": error.expected_mm,
-            "independent_mm": error.independent_mm,
-            "interval_mm": list(error.interval_mm),
-            "confidence": error.confidence,
-            "fle_mm": error.fle_mm,
-            "note": INTERVAL_NOTE,
-        },
+        "expected_tre": None if error is None else {**asdict(error), "note": INTERVAL_NOTE},
     }
 
 
@@ -202,15 +148,8 @@ def registration_text(
     if stated is not None:
         lines.append(f"     {stated.expected_fre_mm:.3f} mm to be expected from the stated FLE")
     if error is not None:
-        x, y, z = error.target_mm
-        low, high = error.interval_mm
-        lines += [
-            f"TRE  {error.expected_mm:.3f} mm expected at ({x:.1f}, {y:.1f}, {z:.1f}), "
-            f"{error.confidence:.0%} interval from {low:.3f} to {high:.3f} mm",
-            INTERVAL_NOTE,
-        ]
-    lines += [FRE_NOTE, "", "Moving to fixed (mm)"]
-    lines += ["  ".join(f"{value:12.6f}" for value in row) for row in registration.matrix]
+        lines += [f"TRE  {_expected(error)}", INTERVAL_NOTE]
+    lines += [FRE_NOTE, "", "Moving to fixed (mm)", *_matrix_lines(registration.matrix)]
     lines += ["", _residual_table(registration, stated)]
     warnings = [warning.message for warning in registration.warnings]
     if stated is not None and stated.misfit < MISFIT_LEVEL:
@@ -223,25 +162,31 @@ def registration_text(
     return "\n".join(lines)
 
 
+def _expected(error: TargetError) -> str:
+    x, y, z = error.target_mm
+    low, high = error.interval_mm
+    return (
+        f"{error.expected_mm:.3f} mm expected at ({x:.1f}, {y:.1f}, {z:.1f}), "
+        f"{error.confidence:.0%} interval from {low:.3f} to {high:.3f} mm"
+    )
+
+
+def _matrix_lines(matrix: np.ndarray) -> list[str]:
+    return ["  ".join(f"{value:12.6f}" for value in row) for row in matrix]
+
+
 def _residual_table(registration: Registration, stated: StatedErrors | None) -> str:
-    header, columns = ["Point", "Residual (mm)", "x", "y", "z"], []
+    header, last = ["Point", "Residual (mm)", "x", "y", "z"], None
     if stated is not None:
-        header.append("FLE (mm)")
-        columns = [f"{value:g}" for value in stated.fle_mm]
+        header, last = [*header, "FLE (mm)"], stated.fle_mm
     elif registration.weights is not None:
-        header.append("Weight")
-        columns = [f"{value:g}" for value in registration.weights]
+        header, last = [*header, "Weight"], registration.weights
+    lengths, vectors = registration.residuals_mm, registration.residual_vectors_mm
     rows = [
-        [label, f"{length:.3f}", *(f"{value:+.3f}" for value in vector)]
-        for label, length, vector in zip(
-            registration.labels,
-            registration.residuals_mm,
-            registration.residual_vectors_mm,
-            strict=True,
-        )
+        [label, f"{lengths[row]:.3f}", *(f"{value:+.3f}" for value in vectors[row])]
+        + ([] if last is None else [f"{last[row]:g}"])
+        for row, label in enumerate(registration.labels)
     ]
-    if columns:
-        rows = [[*row, cell] for row, cell in zip(rows, columns, strict=True)]
     return text_table(header, rows)
 
 
@@ -277,21 +222,17 @@ def match_files(
 
     The points MOVING and FIXED, three landmarks or more, give the start.
     """
-    for option in ("type", "fle", "weights"):
-        if getattr(arguments, option) not in (None, "rigid"):
-            raise InputError(f"--surface matches rigidly and unweighted: leave out --{option}.")
-    mesh = _head(arguments.head)
+    for name in ("type", "fle", "weights"):
+        if getattr(arguments, name) not in (None, "rigid"):
+            raise InputError(f"--surface matches rigidly and unweighted: leave out --{name}.")
+    if arguments.head is None:
+        raise InputError("--surface needs the head: give its mesh with --head HEAD.ply.")
+    mesh = read_head_mesh(arguments.head)
     labels, moving, fixed = pair(read(arguments.moving), read(arguments.fixed))
     trace = read(arguments.surface).points
     match = match_surface(trace, mesh, register(moving, fixed, labels=labels).matrix)
     target = mesh.middle if arguments.target is None else np.array(arguments.target)
     return match, surface_target_error(knowledge_of(match), target)
-
-
-def _head(path: Path | None) -> HeadMesh:
-    if path is None:
-        raise InputError("--surface needs the head: give its mesh with --head HEAD.ply.")
-    return read_head_mesh(path)
 
 
 def match_json(match: SurfaceMatch, error: TargetError) -> dict[str, Any]:
@@ -309,29 +250,20 @@ def match_json(match: SurfaceMatch, error: TargetError) -> dict[str, Any]:
         "slide_mm": match.slide.distance_mm,
         "slide_place": match.slide.place,
         "residuals_mm": match.residuals_mm.tolist(),
-        "warnings": [warning.to_json() for warning in match.warnings],
-        "expected_tre": {
-            "target_mm": list(error.target_mm),
-            "expected_mm": error.expected_mm,
-            "interval_mm": list(error.interval_mm),
-            "confidence": error.confidence,
-            "note": RESIDUAL_NOTE,
-        },
+        "warnings": [record_to_json(warning) for warning in match.warnings],
+        "expected_tre": {**asdict(error), "note": RESIDUAL_NOTE},
     }
 
 
 def match_text(match: SurfaceMatch, error: TargetError) -> str:
     """Return a match as text for people, with units and warnings."""
-    x, y, z = error.target_mm
-    low, high = error.interval_mm
     slide = match.slide
     lines = [
         f"Surface registration of {len(match.residuals_mm)} points",
         "",
         f"Residual  {match.rms_mm:.3f} mm (root mean square of the points that count, "
         f"{match.inlier_share:.0%})",
-        f"TRE       {error.expected_mm:.3f} mm expected at ({x:.1f}, {y:.1f}, {z:.1f}), "
-        f"{error.confidence:.0%} interval from {low:.3f} to {high:.3f} mm",
+        f"TRE       {_expected(error)}",
         f"Slide     {slide.distance_mm:.1f} mm at most in the brain, {slide.way}; largest at the "
         f"{slide.place} of the head",
         f"Starts    {match.best_starts} of {match.starts} ended here; "
@@ -339,8 +271,57 @@ def match_text(match: SurfaceMatch, error: TargetError) -> str:
         RESIDUAL_NOTE,
         "",
         "Trace to head (mm)",
+        *_matrix_lines(match.matrix),
     ]
-    lines += ["  ".join(f"{value:12.6f}" for value in row) for row in match.matrix]
     if match.warnings:
         lines += ["", *(f"Warning: {warning.message}" for warning in match.warnings)]
     return "\n".join(lines)
+
+
+COMMANDS = (
+    Command(
+        "register",
+        "register moving points to fixed points",
+        run,
+        (
+            option("moving", metavar="MOVING", help="the points to be mapped"),
+            option("fixed", metavar="FIXED", help="the points to map them to"),
+            option("--type", choices=KINDS, default=RIGID, help="of the transform"),
+            option(
+                "--target",
+                nargs=3,
+                type=float,
+                metavar=("X", "Y", "Z"),
+                help="point in the fixed space (mm) whose error is estimated; default: the "
+                "centroid",
+            ),
+            one_of(
+                option(
+                    "--fle",
+                    metavar="FILE.csv",
+                    help="weight each point by 1/FLE² (rigid only): a CSV file with the header "
+                    "label,fle, the RMS localization error of each point in mm; may be MOVING "
+                    "itself with that column",
+                ),
+                option(
+                    "--weights",
+                    metavar="FILE.csv",
+                    help="weight the points (rigid only): a CSV file with the header label,weight; "
+                    "only the ratios matter, and the size of the errors is estimated from the "
+                    "residuals",
+                ),
+            ),
+            option(
+                "--surface",
+                metavar="TRACE",
+                help="points drawn over the skin, in the frame of MOVING: CSV, .mrk.json or .ply",
+            ),
+            path("--head", "HEAD.ply", "the head's mesh for --surface, RAS mm"),
+            JSON,
+        ),
+        "Register two files of points: CSV with the header label,x,y,z (mm), or Slicer's "
+        ".mrk.json, .fcsv or exported table. Points are paired by label, or by order where the "
+        "labels are left out; what is deselected or not placed in Slicer is not used. With "
+        "--surface they are landmarks, and a trace over the skin is matched to a head.",
+    ),
+)

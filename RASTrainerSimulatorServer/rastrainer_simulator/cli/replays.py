@@ -7,49 +7,36 @@ import json
 import random
 from dataclasses import asdict
 from functools import partial
-from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.study.database.study import Study
 from rastrainer.study.ratings import FORMS, RatingStore, find_form
-from rastrainer_simulator.cli.options import add_records, add_study, announce, check_ports
+from rastrainer_simulator.cli.options import (
+    RECORDS,
+    Command,
+    announce,
+    check_ports,
+    flag,
+    number,
+    option,
+    path,
+    study,
+    switch,
+)
 
 REPLAYS = 20
 
 
-def add_replay_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add `replay`: show a recorded trial, or simulate it again and compare."""
-    parser = subparsers.add_parser(
-        "replay",
-        help="show a recorded trial, or simulate it again and compare it bit by bit",
-        description="Shows the trial in the window and to every view; Escape ends it. "
-        "Exit status: 0 shown, or equal to the last bit; 1 something differs; 2 not replayable.",
-    )
-    parser.add_argument("journal", type=Path, metavar="JOURNAL")
-    parser.add_argument(
-        "--scenario", type=Path, metavar="DIR", help="the scenario it was recorded with"
-    )
-    parser.add_argument(
-        "--verify",
-        action="store_true",
-        help="simulate the trial again and compare it with the journal instead of showing it",
-    )
-    parser.add_argument("--json", action="store_true", help="print the report of --verify as JSON")
-    _add_playback(parser)
-    parser.set_defaults(run=run_replay)
-
-
-def run_replay(arguments: argparse.Namespace) -> int:
-    """Show the trial, or print the result of the comparison, and return the exit status."""
+def replay(arguments: argparse.Namespace) -> int:
     if not arguments.verify:
         return _show(arguments)
     # Only here: the robot and the scenario take time to import.
     from rastrainer_simulator.record.trial_context import setup_of
-    from rastrainer_simulator.replay.resimulation import replay
+    from rastrainer_simulator.replay import resimulation
 
     reading = read_journal(arguments.journal)
-    report = replay(reading, setup_of(reading.header, arguments.scenario))
+    report = resimulation.replay(reading, setup_of(reading.header, arguments.scenario))
     if arguments.json:
         whole = {**asdict(report), "identical": report.is_identical, "journal": reading.sentence}
         print(json.dumps(whole, indent=2, allow_nan=False))
@@ -82,46 +69,7 @@ def _summary(sentence: str, report) -> str:
     return "\n".join(lines)
 
 
-def add_rate_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add `rate`: mark replays on rating forms, without knowing whose they are."""
-    parser = subparsers.add_parser(
-        "rate",
-        help="mark replays of a study's trials on GEARS and OSATS forms, blinded",
-        description=(
-            "Shows the replays of trials in the window and to every view, under shuffled numbers, "
-            "without trainee, date, score or mode, and takes a rater's marks, which are kept in "
-            "the study. All raters get the same trials, each in another order. Work can be left "
-            "at any time; the same command takes it up. The study's report shows how far raters "
-            "agree."
-        ),
-    )
-    add_study(parser)
-    parser.add_argument(
-        "--rater", required=True, metavar="NAME", help="a pseudonym of who rates, such as R1"
-    )
-    add_records(parser)
-    parser.add_argument(
-        "--replays",
-        type=int,
-        default=REPLAYS,
-        metavar="N",
-        help="how many trials are drawn for all raters",
-    )
-    parser.add_argument(
-        "--form",
-        action="append",
-        choices=list(FORMS),
-        help="may be given several times (default: all)",
-    )
-    parser.add_argument(
-        "--scenario", type=Path, metavar="DIR", help="the scenario they were recorded with"
-    )
-    _add_playback(parser)
-    parser.set_defaults(run=run_rate)
-
-
-def run_rate(arguments: argparse.Namespace) -> int:
-    """Let the rater work, report the progress, and return the exit status."""
+def rate(arguments: argparse.Namespace) -> int:
     check_ports(arguments)
     if arguments.replays < 1:
         raise InputError("--replays must be at least 1.")
@@ -131,9 +79,9 @@ def run_rate(arguments: argparse.Namespace) -> int:
 
     tell = partial(announce, "rating")
     forms = [find_form(name) for name in dict.fromkeys(arguments.form or FORMS)]
-    with Study.open(arguments.study, must_exist=True) as study:
-        store = RatingStore(study)
-        trials = trials_to_show(study, arguments.records)
+    with Study.open(arguments.study, must_exist=True) as opened:
+        store = RatingStore(opened)
+        trials = trials_to_show(opened, arguments.records)
         order = store.assign(arguments.rater, trials, arguments.replays, random.SystemRandom())
         work = RatingWork(store, arguments.rater, order, forms)
         tell(f"has {len(order)} replays for {arguments.rater}, {work.rated} rated")
@@ -143,8 +91,54 @@ def run_rate(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _add_playback(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--view-port", type=int, metavar="PORT", help="where views are served")
-    parser.add_argument(
-        "--window", action=argparse.BooleanOptionalAction, default=True, help="open the window"
-    )
+PLAYBACK = (
+    option("--view-port", type=int, metavar="PORT", help="where views are served"),
+    switch("--window", "open the window"),
+)
+COMMANDS = (
+    Command(
+        "replay",
+        "show a recorded trial, or simulate it again and compare it bit by bit",
+        replay,
+        (
+            path("journal", "JOURNAL"),
+            path("--scenario", "DIR", "the scenario it was recorded with"),
+            flag(
+                "--verify",
+                "simulate the trial again and compare it with the journal instead of showing it",
+            ),
+            flag("--json", "print the report of --verify as JSON"),
+            *PLAYBACK,
+        ),
+        "Shows the trial in the window and to every view; Escape ends it. Exit status: 0 shown, or "
+        "equal to the last bit; 1 something differs; 2 not replayable.",
+    ),
+    Command(
+        "rate",
+        "mark replays of a study's trials on GEARS and OSATS forms, blinded",
+        rate,
+        (
+            study(),
+            option(
+                "--rater",
+                required=True,
+                metavar="NAME",
+                help="a pseudonym of who rates, such as R1",
+            ),
+            RECORDS,
+            number("--replays", REPLAYS, "how many trials are drawn for all raters", metavar="N"),
+            option(
+                "--form",
+                action="append",
+                choices=list(FORMS),
+                help="may be given several times (default: all)",
+            ),
+            path("--scenario", "DIR", "the scenario they were recorded with"),
+            *PLAYBACK,
+        ),
+        "Shows the replays of trials in the window and to every view, under shuffled numbers, "
+        "without trainee, date, score or mode, and takes a rater's marks, which are kept in the "
+        "study. All raters get the same trials, each in another order. Work can be left at any "
+        "time; the same command takes it up. The study's report shows how far raters agree.",
+    ),
+)

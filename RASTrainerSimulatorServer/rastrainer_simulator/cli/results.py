@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
@@ -16,44 +15,22 @@ from rastrainer.trial.ctps import (
     trials_by_mode,
 )
 from rastrainer_simulator.cli.options import (
+    INCOMPLETE,
+    JSON,
     STUDY_HELP,
-    add_incomplete,
-    add_json,
-    add_study,
+    Argument,
+    Command,
     json_text,
+    option,
+    output,
+    path,
     read_known_study,
+    study,
     text_table,
 )
 
 
-def add_score_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add `score`: the paper's score of every trial of a study."""
-    parser = subparsers.add_parser(
-        "score",
-        help="score the trials of a study as the paper does (CTPS)",
-        description=(
-            "Score the trials of a CSV file with the header mode,subject,task,ct,rmse (s and mm) "
-            "with CTPS, separately for each mode."
-        ),
-    )
-    parser.add_argument("trials", type=Path, metavar="TRIALS.csv", help="one trial a row")
-    parser.add_argument(
-        "--mean-ct",
-        action="append",
-        default=[],
-        metavar="[MODE=]SECONDS",
-        help=(
-            "use this mean completion time instead of the trials' own, or of the one that notes "
-            "beside the file (TRIALS.json) give; "
-            "without MODE for all modes; may be given once for each mode"
-        ),
-    )
-    add_json(parser)
-    parser.set_defaults(run=run_score)
-
-
-def run_score(arguments: argparse.Namespace) -> int:
-    """Print the scores and return the exit status."""
+def score(arguments: argparse.Namespace) -> int:
     modes = trials_by_mode(read_trials(arguments.trials))
     notes = read_notes(arguments.trials.with_suffix(".json"))
     means = {
@@ -72,15 +49,9 @@ def run_score(arguments: argparse.Namespace) -> int:
 
 def _scores_json(scores: CohortScores) -> dict[str, Any]:
     """Return the scores of one mode as a JSON object; undefined values are None."""
+    names = ("overall", "equation_3_overall", "tasks", "subjects", "sd_population", "sd_sample")
     return {
-        "overall": scores.overall,
-        "equation_3_overall": scores.equation_3_overall,
-        "tasks": scores.tasks,
-        "subjects": scores.subjects,
-        "sd_population": scores.sd_population,
-        "sd_sample": scores.sd_sample,
-        "pearson_r": scores.pearson_r,
-        "r_squared": scores.r_squared,
+        **{name: getattr(scores, name) for name in (*names, "pearson_r", "r_squared")},
         "mean_ct": scores.reference.mean_ct_s,
         "best_rmse": scores.reference.best_rmse_mm,
         "trials": len(scores.trials),
@@ -112,36 +83,7 @@ def _or_dash(value: float | None, digits: int) -> str:
     return "-" if value is None else f"{value:.{digits}f}"
 
 
-CSV_HEADER = "mode,subject,task,ct,rmse"
-
-
-def add_report_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add `report`: a study as a printable page."""
-    parser = subparsers.add_parser(
-        "report",
-        help="write a study's report: tables, charts, tests, limits",
-        description=(
-            "Write report.html, which needs no other file and prints on A4, and trials.csv. "
-            "Trainees who did not consent to research are left out."
-        ),
-    )
-    add_study(parser, help_text=f"{STUDY_HELP}; or a CSV file with the header {CSV_HEADER}")
-    parser.add_argument(
-        "-o", "--output", type=Path, required=True, metavar="DIR", help="folder to write into"
-    )
-    parser.add_argument(
-        "--mean-ct",
-        action="append",
-        default=[],
-        metavar="[MODE=]SECONDS",
-        help="a mean completion time for CTPS instead of the trials' own; see rastrainer score",
-    )
-    add_incomplete(parser)
-    parser.set_defaults(run=run_report)
-
-
-def run_report(arguments: argparse.Namespace) -> int:
-    """Write the report and return the exit status."""
+def report(arguments: argparse.Namespace) -> int:
     # Only here: what `score` needs is imported much faster.
     from rastrainer.report.report import write_report
 
@@ -158,7 +100,6 @@ def _mean_times(given: list[str], modes: list[str]) -> dict[str, float]:
 
     Args:
         given: `MODE=SECONDS`, or `SECONDS` for all modes; the later one counts.
-        modes: The modes of the trials.
     """
     means: dict[str, float] = {}
     for text in given:
@@ -175,3 +116,45 @@ def _mean_times(given: list[str], modes: list[str]) -> dict[str, float]:
             ) from None
         means.update(dict.fromkeys([mode] if separator else modes, value))
     return means
+
+
+def _mean_ct(help_text: str) -> Argument:
+    return option(
+        "--mean-ct", action="append", default=[], metavar="[MODE=]SECONDS", help=help_text
+    )
+
+
+CSV_HEADER = "mode,subject,task,ct,rmse"
+COMMANDS = (
+    Command(
+        "score",
+        "score the trials of a study as the paper does (CTPS)",
+        score,
+        (
+            path("trials", "TRIALS.csv", "one trial a row"),
+            _mean_ct(
+                "use this mean completion time instead of the trials' own, or of the one that "
+                "notes beside the file (TRIALS.json) give; without MODE for all modes; may be "
+                "given once for each mode"
+            ),
+            JSON,
+        ),
+        f"Score the trials of a CSV file with the header {CSV_HEADER} (s and mm) with CTPS, "
+        "separately for each mode.",
+    ),
+    Command(
+        "report",
+        "write a study's report: tables, charts, tests, limits",
+        report,
+        (
+            study(help_text=f"{STUDY_HELP}; or a CSV file with the header {CSV_HEADER}"),
+            output("folder to write into", required=True),
+            _mean_ct(
+                "a mean completion time for CTPS instead of the trials' own; see rastrainer score"
+            ),
+            INCOMPLETE,
+        ),
+        "Write report.html, which needs no other file and prints on A4, and trials.csv. Trainees "
+        "who did not consent to research are left out.",
+    ),
+)

@@ -11,104 +11,26 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.files.writing import write_json
 from rastrainer.json_records import record_to_json
+from rastrainer.procedure.plan import Procedure, read_procedure
 from rastrainer.scenario.library import list_scenarios, unpack
 from rastrainer.scenario.writer import require_new
 from rastrainer.work_progress import print_progress, print_warning
+from rastrainer_simulator.cli.options import Command, flag, path
 from rastrainer_simulator.cli.scenario_options import (
-    add_head_options,
-    add_library,
-    add_options,
-    add_output,
-    add_plan,
-    add_procedure,
+    HEAD_OPTIONS,
+    LIBRARY,
+    OPTIONS,
+    OUTPUT,
+    PLAN,
     head_arguments,
     options_of,
-    procedure_of,
+    procedure_option,
     targets_of,
     title_of,
     trajectory_of,
 )
 
 ALL_RIGHT = "Set-up, plan and fiducials can be used."
-
-
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add the subcommand to the parser of `rastrainer`."""
-    parser = subparsers.add_parser(
-        "scenario",
-        help="make a scenario of a head MRI or CT, check, pack and list scenarios",
-        description="Makes and checks scenarios. Not for clinical use.",
-    )
-    parts = parser.add_subparsers(title="what to do", required=True, metavar="ACTION")
-    build = parts.add_parser("build", help="make a scenario of a volume")
-    build.add_argument("volume", type=Path, metavar="VOLUME", help="NRRD, NIfTI or DICOM folder")
-    add_head_options(build)
-    build.add_argument("--no-skull", action="store_true", help="leave the skull out")
-    build.add_argument("--no-volume", action="store_true", help="leave the images out")
-    add_options(build)
-    build.set_defaults(run=_build)
-    tasks = parts.add_parser("tasks", help="propose tasks on a head that was made elsewhere")
-    tasks.add_argument("draft", type=Path, metavar="DRAFT", help="folder with the head's draft")
-    add_options(tasks)
-    tasks.set_defaults(run=_tasks)
-    preview = parts.add_parser("preview", help="draw the head in a volume, to adjust it")
-    preview.add_argument("volume", type=Path, metavar="VOLUME")
-    preview.add_argument("picture", type=Path, metavar="PNG")
-    add_head_options(preview)
-    preview.set_defaults(run=_preview)
-    check = parts.add_parser("check", help="list the errors of a scenario; status 1 if any")
-    check.add_argument("folder", type=Path, metavar="DIR")
-    check.set_defaults(run=_check)
-    plan = parts.add_parser("plan", help="copy a scenario with other targets or trajectory")
-    plan.add_argument("folder", type=Path, metavar="DIR")
-    add_output(plan)
-    add_plan(plan)
-    add_procedure(plan, "added, or in the place of the one of the same name")
-    plan.set_defaults(run=_plan)
-    plan.add_argument(
-        "--landmarks",
-        type=Path,
-        metavar="MRK_JSON",
-        help="placed landmarks, in the order of touching, in the place of the scenario's own",
-    )
-    landmarks = parts.add_parser(
-        "landmarks", help="check placed landmarks on a head, or propose them; status 1 if wrong"
-    )
-    landmarks.add_argument("folder", type=Path, metavar="DIR")
-    landmarks.add_argument("file", type=Path, metavar="MRK_JSON")
-    landmarks.add_argument("--propose", action="store_true", help="write a proposal to MRK_JSON")
-    landmarks.set_defaults(run=_landmarks)
-    lines = parts.add_parser(
-        "lines", help="measure the planned lines of procedures; status 1 if any is wrong"
-    )
-    lines.add_argument("folder", type=Path, metavar="DIR")
-    add_procedure(lines, "measured in the place of the scenario's own")
-    lines.add_argument("--json", type=Path, metavar="FILE", help="write everything there, too")
-    lines.set_defaults(run=_lines)
-    packing = parts.add_parser(
-        "pack", help="write a scenario as one zip file, without face, title and source"
-    )
-    packing.add_argument("folder", type=Path, metavar="DIR")
-    packing.add_argument("package", type=Path, metavar="ZIP")
-    packing.add_argument(
-        "--picture",
-        type=Path,
-        metavar="PNG",
-        help="only draw the head before and after; write no zip file",
-    )
-    packing.add_argument("--yes", action="store_true", help="the picture was looked at")
-    packing.add_argument(
-        "--keep-face", action="store_true", help="the patient can then be recognized"
-    )
-    packing.add_argument("--keep-names", action="store_true", help="title, name and source, too")
-    packing.set_defaults(run=_pack)
-    unpacking = parts.add_parser("unpack", help="unpack a scenario into your library")
-    unpacking.add_argument("package", type=Path, metavar="ZIP")
-    add_library(unpacking)
-    unpacking.set_defaults(run=_unpack)
-    listing = parts.add_parser("list", help="list the available scenarios")
-    add_library(listing)
-    listing.set_defaults(run=_list)
 
 
 def _build(arguments: argparse.Namespace) -> int:
@@ -179,7 +101,7 @@ def _check(arguments: argparse.Namespace) -> int:
 def _lines(arguments: argparse.Namespace) -> int:
     from rastrainer_simulator.authoring.procedure_plan import line_table, measure_procedures
 
-    measured = measure_procedures(arguments.folder, procedure_of(arguments))
+    measured = measure_procedures(arguments.folder, _procedure_of(arguments))
     print("\n".join(line_table(measured)))
     if arguments.json is not None:
         write_json(arguments.json, [record_to_json(each, with_defaults=True) for each in measured])
@@ -197,7 +119,7 @@ def _plan(arguments: argparse.Namespace) -> int:
         targets_of(arguments),
         trajectory_of(arguments),
         print_warning,
-        procedure_of(arguments),
+        _procedure_of(arguments),
         None if arguments.landmarks is None else read_placed_landmarks(arguments.landmarks),
     )
     print(f"{scenario.title} is in {arguments.output}.")
@@ -266,6 +188,102 @@ def _list(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _procedure_of(arguments: argparse.Namespace) -> Procedure | None:
+    return None if arguments.procedure is None else read_procedure(arguments.procedure)
+
+
 def _clean_up_when_terminated() -> None:
     """Exit like an error on SIGTERM, by which Slicer cancels, so that everything is cleaned up."""
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+
+
+FOLDER = path("folder", "DIR")
+ACTIONS = (
+    Command(
+        "build",
+        "make a scenario of a volume",
+        _build,
+        (
+            path("volume", "VOLUME", "NRRD, NIfTI or DICOM folder"),
+            *HEAD_OPTIONS,
+            flag("--no-skull", "leave the skull out"),
+            flag("--no-volume", "leave the images out"),
+            *OPTIONS,
+        ),
+    ),
+    Command(
+        "tasks",
+        "propose tasks on a head that was made elsewhere",
+        _tasks,
+        (path("draft", "DRAFT", "folder with the head's draft"), *OPTIONS),
+    ),
+    Command(
+        "preview",
+        "draw the head in a volume, to adjust it",
+        _preview,
+        (path("volume", "VOLUME"), path("picture", "PNG"), *HEAD_OPTIONS),
+    ),
+    Command("check", "list the errors of a scenario; status 1 if any", _check, (FOLDER,)),
+    Command(
+        "plan",
+        "copy a scenario with other targets or trajectory",
+        _plan,
+        (
+            FOLDER,
+            *OUTPUT,
+            *PLAN,
+            procedure_option("added, or in the place of the one of the same name"),
+            path(
+                "--landmarks",
+                "MRK_JSON",
+                "placed landmarks, in the order of touching, in the place of the scenario's own",
+            ),
+        ),
+    ),
+    Command(
+        "landmarks",
+        "check placed landmarks on a head, or propose them; status 1 if wrong",
+        _landmarks,
+        (FOLDER, path("file", "MRK_JSON"), flag("--propose", "write a proposal to MRK_JSON")),
+    ),
+    Command(
+        "lines",
+        "measure the planned lines of procedures; status 1 if any is wrong",
+        _lines,
+        (
+            FOLDER,
+            procedure_option("measured in the place of the scenario's own"),
+            path("--json", "FILE", "write everything there, too"),
+        ),
+    ),
+    Command(
+        "pack",
+        "write a scenario as one zip file, without face, title and source",
+        _pack,
+        (
+            FOLDER,
+            path("package", "ZIP"),
+            path("--picture", "PNG", "only draw the head before and after; write no zip file"),
+            flag("--yes", "the picture was looked at"),
+            flag("--keep-face", "the patient can then be recognized"),
+            flag("--keep-names", "title, name and source, too"),
+        ),
+    ),
+    Command(
+        "unpack",
+        "unpack a scenario into your library",
+        _unpack,
+        (path("package", "ZIP"), LIBRARY),
+    ),
+    Command("list", "list the available scenarios", _list, (LIBRARY,)),
+)
+
+
+COMMANDS = (
+    Command(
+        "scenario",
+        "make a scenario of a head MRI or CT, check, pack and list scenarios",
+        description="Makes and checks scenarios. Not for clinical use.",
+        actions=ACTIONS,
+    ),
+)

@@ -10,13 +10,20 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import RAS_LIMIT_MM
-from rastrainer.procedure.plan import Procedure, read_procedure
 from rastrainer.scenario.library import USER_LIBRARY
 from rastrainer.scenario.points import PlannedTarget, PlannedTrajectory
 from rastrainer.scenario.scenario import UNKNOWN_LICENSE
 from rastrainer.scenario.setup import SetUp, read_setup
 from rastrainer.scenario.writer import scenario_name
-from rastrainer_simulator.cli.options import path_of_user
+from rastrainer_simulator.cli.options import (
+    Argument,
+    flag,
+    number,
+    option,
+    output,
+    path,
+    path_of_user,
+)
 
 if TYPE_CHECKING:
     from rastrainer_simulator.authoring.make import ScenarioOptions
@@ -24,86 +31,71 @@ if TYPE_CHECKING:
 LONGEST_TITLE, LONGEST_NAME, LONGEST_TEXT = 80, 60, 4000
 
 
-def add_head_options(parser: argparse.ArgumentParser) -> None:
-    """Add how the head is found in a volume to an action's parser."""
-    parser.add_argument(
-        "--threshold", type=float, help="value that separates air from skin (default: estimated)"
-    )
-    parser.add_argument(
-        "--cut", type=float, metavar="S", help="height of the flat base, mm superior"
-    )
-    parser.add_argument(
+HEAD_OPTIONS = (
+    option(
+        "--threshold",
+        type=float,
+        help="value that separates air from skin (default: estimated)",
+    ),
+    option("--cut", type=float, metavar="S", help="height of the flat base, mm superior"),
+    option(
         "--orientation",
         metavar="LAS",
         help="how the axes of a file run that states none: to the left, anterior, superior",
-    )
-
-
-def add_library(parser: argparse.ArgumentParser) -> None:
-    """Add the folder of the user's own scenarios to an action's parser."""
-    parser.add_argument(
-        "--library",
-        type=path_of_user,
-        default=f"~/{USER_LIBRARY}",
-        metavar="DIR",
-        help="folder of your scenarios",
-    )
-
-
-def add_output(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR", help="a new one")
-    parser.add_argument("--title", help="default: the name of the new folder")
-
-
-def add_procedure(parser: argparse.ArgumentParser, what: str) -> None:
-    """Add a procedure's file to an action's parser; `what` says what becomes of it."""
-    parser.add_argument(
-        "--procedure",
-        type=Path,
-        metavar="JSON",
-        help=f"a procedure as in scenario.json, its meshes in the folder no-go beside it: {what}",
-    )
-
-
-def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add what a new scenario is made with to an action's parser."""
-    add_output(parser)
-    add_plan(parser)
-    parser.add_argument("--source", help="where the images come from (default: the volume's name)")
-    parser.add_argument("--license", default=UNKNOWN_LICENSE, help="under which it may be used")
-    parser.add_argument("--setup", type=Path, metavar="JSON", help="head, table and robot base")
-    parser.add_argument("--seed", type=int, default=1, help="of the proposed tasks")
-    parser.add_argument(
-        "--tasks",
-        nargs="+",
-        type=Path,
-        default=[],
-        metavar="MRK_JSON",
-        help="manually placed fiducials: the trial run, Task 1, Task 2 …",
-    )
-    parser.add_argument(
-        "--check",
-        action="store_true",
-        help="only check whether set-up, plan and placed fiducials can be used",
-    )
-
-
-def add_plan(parser: argparse.ArgumentParser) -> None:
-    """Add targets and a trajectory to an action's parser."""
-    parser.add_argument(
+    ),
+)
+"""How the head is found in a volume."""
+LIBRARY = option(
+    "--library",
+    type=path_of_user,
+    default=f"~/{USER_LIBRARY}",
+    metavar="DIR",
+    help="folder of your scenarios",
+)
+OUTPUT = (
+    output("a new one", required=True),
+    option("--title", help="default: the name of the new folder"),
+)
+PLAN = (
+    option(
         "--target",
         nargs=4,
         action="append",
         default=[],
         metavar=("NAME", "R", "A", "S"),
         help="a planned target, RAS mm; may be repeated: the error is reported at the first",
-    )
-    parser.add_argument(
+    ),
+    option(
         "--trajectory",
         nargs=7,
         metavar=("NAME", "ER", "EA", "ES", "TR", "TA", "TS"),
         help="a planned trajectory from entry to target, RAS mm",
-    )
+    ),
+)
+OPTIONS = (
+    *OUTPUT,
+    *PLAN,
+    option("--source", help="where the images come from (default: the volume's name)"),
+    option("--license", default=UNKNOWN_LICENSE, help="under which it may be used"),
+    path("--setup", "JSON", "head, table and robot base"),
+    number("--seed", 1, "of the proposed tasks"),
+    option(
+        "--tasks",
+        nargs="+",
+        type=Path,
+        default=[],
+        metavar="MRK_JSON",
+        help="manually placed fiducials: the trial run, Task 1, Task 2 …",
+    ),
+    flag("--check", "only check whether set-up, plan and placed fiducials can be used"),
+)
+"""What a new scenario is made with; `options_of` reads them."""
+
+
+def procedure_option(what: str) -> Argument:
+    """Return the argument of a procedure's file; `what` says what becomes of it."""
+    text = f"a procedure as in scenario.json, its meshes in the folder no-go beside it: {what}"
+    return path("--procedure", "JSON", text)
 
 
 def options_of(arguments: argparse.Namespace, source: str) -> ScenarioOptions:
@@ -154,11 +146,6 @@ def head_arguments(arguments: argparse.Namespace) -> list[str]:
     named = ("threshold", "cut", "orientation")
     given = ((name, getattr(arguments, name)) for name in named)
     return [f"--{name}={value}" for name, value in given if value is not None]
-
-
-def procedure_of(arguments: argparse.Namespace) -> Procedure | None:
-    """Return the procedure of a command line; raise `InputError` if it cannot be used."""
-    return None if arguments.procedure is None else read_procedure(arguments.procedure)
 
 
 def _text(option: str, text: str, longest: int) -> str:

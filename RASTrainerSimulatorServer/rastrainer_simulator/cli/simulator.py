@@ -1,26 +1,28 @@
-"""Commands that run the simulator and its desktop window: `rastrainer simulator`, `window`."""
+"""The command that runs the simulator: `rastrainer simulator`."""
 
 from __future__ import annotations
 
 import argparse
 import asyncio
-import os
-import re
 import secrets
 from functools import partial
-from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DEFAULT_VIEW_PORT
 from rastrainer_simulator.cli.options import (
-    add_config,
-    add_records,
+    CONFIG,
+    RECORDS,
+    Command,
     announce,
     check_ports,
-    path_of_user,
+    flag,
+    number,
+    option,
+    path,
+    switch,
 )
 from rastrainer_simulator.ops.log_files import keep_logs
-from rastrainer_simulator.ops.processes import VIEW_KEY_VARIABLE, has_display
+from rastrainer_simulator.ops.processes import has_display
 from rastrainer_simulator.ops.system_paths import log_folder
 
 FASTEST = 1000.0
@@ -31,89 +33,7 @@ NO_DISPLAY = (
 )
 
 
-def add_simulator_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add `simulator`: the robot, the head and the trial, for Slicer and the views."""
-    parser = subparsers.add_parser(
-        "simulator",
-        help="run the simulator, which Slicer and the views connect to",
-        description="Serves OpenIGTLink and the views until Ctrl-C. Not for clinical use.",
-    )
-    parser.add_argument("--host", default=DEFAULT_HOST, help="address to listen on")
-    parser.add_argument(
-        "--port",
-        type=int,
-        default=DEFAULT_PORT,
-        help="port to listen on, 0 for any free one",
-    )
-    parser.add_argument(
-        "--connect", metavar="HOST:PORT", help="connect to a listening Slicer instead"
-    )
-    parser.add_argument(
-        "--view-port",
-        type=int,
-        help="port for the desktop window and the browser, 0 for any free one (default: "
-        f"{DEFAULT_VIEW_PORT}, or any free one where that is taken)",
-    )
-    parser.add_argument(
-        "--lan",
-        action="store_true",
-        help="serve browsers and headsets in the local network, too, by https with a certificate "
-        "made on this computer",
-    )
-    parser.add_argument(
-        "--no-views", action="store_true", help="serve OpenIGTLink only, no window and no browser"
-    )
-    parser.add_argument("--speed", type=float, default=1.0, help="simulated seconds a second")
-    parser.add_argument(
-        "--seed",
-        type=int,
-        help="of the heads' poses, for tests: no study counts such trials (default: none; the "
-        "poses cannot be predicted)",
-    )
-    add_records(parser)
-    parser.add_argument(
-        "--scenario", type=Path, metavar="DIR", help="a scenario of your own (default: Colin27)"
-    )
-    parser.add_argument(
-        "--robot-meshes", type=Path, metavar="DIR", help="the robot's official meshes"
-    )
-    parser.add_argument(
-        "--desktop",
-        action="store_true",
-        help="open the trainee's window; the simulator ends when it is closed",
-    )
-    parser.add_argument(
-        "--gamepad",
-        action=argparse.BooleanOptionalAction,
-        default=True,
-        help="read the gamepads of this computer",
-    )
-    add_config(parser)
-    parser.add_argument(
-        "--resume",
-        action=argparse.BooleanOptionalAction,
-        default=True,
-        help="resume the newest trial where it was interrupted; it is paused until it is "
-        "resumed or aborted",
-    )
-    parser.add_argument(
-        "--own-score",
-        action=argparse.BooleanOptionalAction,
-        default=True,
-        help="score a trial outside of a study in the simulator where no Slicer is connected when "
-        "it ends",
-    )
-    parser.add_argument(
-        "--log-folder",
-        type=Path,
-        metavar="DIR",
-        help="folder of the logs (default: the usual, or logs in that of --config)",
-    )
-    parser.set_defaults(run=run_simulator)
-
-
 def run_simulator(arguments: argparse.Namespace) -> int:
-    """Run the simulator until it is stopped, and return the exit status."""
     _check(arguments)
     connect_to = None if arguments.connect is None else _address(arguments.connect)
     # Only here: the robot and the scenario take time to import.
@@ -149,12 +69,10 @@ def run_simulator(arguments: argparse.Namespace) -> int:
 
 def _check(arguments: argparse.Namespace) -> None:
     check_ports(arguments)
-    if arguments.no_views and arguments.view_port is not None:
-        raise InputError("--view-port and --no-views exclude each other.")
-    if arguments.no_views and arguments.lan:
-        raise InputError("--lan and --no-views exclude each other.")
-    if arguments.no_views and arguments.desktop:
-        raise InputError("--desktop and --no-views exclude each other.")
+    has_port = arguments.view_port is not None
+    others = {"view-port": has_port, "lan": arguments.lan, "desktop": arguments.desktop}
+    for name in (name for name, is_given in others.items() if is_given and arguments.no_views):
+        raise InputError(f"--{name} and --no-views exclude each other.")
     if arguments.desktop and not has_display():
         raise InputError(NO_DISPLAY)
     if not 0.0 < arguments.speed <= FASTEST:
@@ -170,98 +88,59 @@ def _address(text: str) -> tuple[str, int]:
     return host, int(port)
 
 
-DEFAULT_URL = "http://127.0.0.1:18945"
-LEAST_SIDE, MAX_SIDE = 320, 16_384
-
-
-def add_window_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add `window`: the desktop window of a simulator."""
-    parser = subparsers.add_parser(
-        "window",
-        help="open the desktop window of a running simulator",
-        description="Shows the robot, the head and the menus of a simulator that is running, and "
-        "sends it the user's input. F11: full screen; F12: save a picture. Not for clinical use.",
-    )
-    parser.add_argument(
-        "--connect",
-        metavar="URL",
-        default=DEFAULT_URL,
-        help="where the simulator serves views",
-    )
-    parser.add_argument("--code", help="the pairing code that the simulator shows")
-    parser.add_argument("--size", metavar="WxH", help="of the window, in pixels")
-    parser.add_argument("--fullscreen", action="store_true", help="fill the display")
-    parser.add_argument(
-        "--quality",
-        choices=("auto", "high", "medium", "low"),
-        default="auto",
-        help="light and shadows (default: what the machine can afford)",
-    )
-    parser.add_argument(
-        "--pictures",
-        type=path_of_user,
-        metavar="DIR",
-        default="~/RASTrainer/pictures",
-        help="folder of the pictures that F12 keeps",
-    )
-    parser.add_argument(
-        "--picture-quality",
-        choices=("high", "medium", "low"),
-        default="high",
-        help="light and shadows of these pictures",
-    )
-    parser.add_argument(
-        "--log-folder", type=Path, metavar="DIR", help="folder of the logs (default: the usual)"
-    )
-    parser.add_argument("--frame-log", type=Path, help=argparse.SUPPRESS)
-    parser.set_defaults(run=run_window)
-
-
-def run_window(arguments: argparse.Namespace) -> int:
-    """Show the window until it is closed and return the exit status.
-
-    Raises:
-        InputError: an argument cannot be used, or there is no such simulator.
-        RASTrainerError: there is no display.
-    """
-    size = None if arguments.size is None else _size(arguments.size)
-    if not re.match(r"https?://[^/\s]+/?$", arguments.connect):
-        raise InputError("--connect must be an address, such as http://127.0.0.1:18945.")
-    key = os.environ.get(VIEW_KEY_VARIABLE, "")
-    if not key and arguments.code is None:
-        raise InputError("--code must be the pairing code that the simulator shows.")
-    os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
-    # Only here: VTK takes time to import.
-    from rastrainer_simulator.desktop.app import DesktopWindow, WindowOptions
-    from rastrainer_simulator.desktop.connection import pair
-    from rastrainer_simulator.desktop.viewports import Quality
-
-    if arguments.code is not None:
-        key = asyncio.run(pair(arguments.connect, arguments.code))
-    options = WindowOptions(
-        url=arguments.connect,
-        key=key,
-        size=size,
-        is_fullscreen=arguments.fullscreen,
-        quality=None if arguments.quality == "auto" else Quality(arguments.quality),
-        pictures=arguments.pictures,
-        picture_quality=Quality(arguments.picture_quality),
-        frame_log=arguments.frame_log,
-    )
-    with keep_logs(arguments.log_folder or log_folder(), "window"):
-        if not has_display():
-            raise InputError("No window can be opened on this machine: there is no display.")
-        asyncio.run(DesktopWindow(options).run())
-    return 0
-
-
-def _size(text: str) -> tuple[int, int]:
-    width, _x, height = text.lower().partition("x")
-    if width.isdecimal() and height.isdecimal():
-        size = int(width), int(height)
-        if min(size) >= LEAST_SIDE and max(size) <= MAX_SIDE:
-            return size
-    raise InputError(
-        "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, "
-        f"each from {LEAST_SIDE} to {MAX_SIDE}."
-    )
+COMMANDS = (
+    Command(
+        "simulator",
+        "run the simulator, which Slicer and the views connect to",
+        run_simulator,
+        (
+            option("--host", default=DEFAULT_HOST, help="address to listen on"),
+            number("--port", DEFAULT_PORT, "port to listen on, 0 for any free one"),
+            option("--connect", metavar="HOST:PORT", help="connect to a listening Slicer instead"),
+            option(
+                "--view-port",
+                type=int,
+                help="port for the browser, 0 for any free one (default: "
+                f"{DEFAULT_VIEW_PORT}, or any free one where that is taken)",
+            ),
+            flag(
+                "--lan",
+                "serve browsers and headsets in the local network, too, by https with a "
+                "certificate made on this computer",
+            ),
+            flag("--no-views", "serve OpenIGTLink only, no page for browsers"),
+            number("--speed", 1.0, "simulated seconds a second"),
+            option(
+                "--seed",
+                type=int,
+                help="of the heads' poses, for tests: no study counts such trials (default: none; "
+                "the poses cannot be predicted)",
+            ),
+            RECORDS,
+            path("--scenario", "DIR", "a scenario of your own (default: Colin27)"),
+            path("--robot-meshes", "DIR", "the robot's official meshes"),
+            flag(
+                "--desktop",
+                "open the page in a window of its own; the simulator ends when it is closed",
+            ),
+            switch("--gamepad", "read the gamepads of this computer"),
+            CONFIG,
+            switch(
+                "--resume",
+                "resume the newest trial where it was interrupted; it is paused until it is "
+                "resumed or aborted",
+            ),
+            switch(
+                "--own-score",
+                "score a trial outside of a study in the simulator where no Slicer is connected "
+                "when it ends",
+            ),
+            path(
+                "--log-folder",
+                "DIR",
+                "folder of the logs (default: the usual, or logs in that of --config)",
+            ),
+        ),
+        "Serves OpenIGTLink and the views until Ctrl-C. Not for clinical use.",
+    ),
+)

@@ -5,52 +5,29 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 from itertools import zip_longest
-from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import counted
-from rastrainer.study.database.database import Connection, path_beside_study
+from rastrainer.study.database.database import Connection
 from rastrainer.study.database.schema import Table, study_tables
 from rastrainer.study.database.study import Study
-from rastrainer.study.platform_links import PlatformLinks
 from rastrainer.study.trainee_data import erase_trainee
-from rastrainer_simulator.cli.options import add_study
+from rastrainer_simulator.cli.options import Command, flag, option, path, study
 
 COUNTER = "trainee_numbers"
 """The one table that a new study has a row in."""
 
 
-def add_copy_study_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add `copy-study`: a study from a file into PostgreSQL, or back."""
-    parser = subparsers.add_parser(
-        "copy-study",
-        help="copy a study from its file into PostgreSQL, or back",
-        description=(
-            "Copy all trainees, trials, results and ratings, compare them with the original to the "
-            "last bit, and leave the original as it is. Nobody should train meanwhile: what comes "
-            "later is not copied."
-        ),
-    )
-    add_study(parser, "source", "FROM", "the study: a file, or an address of PostgreSQL")
-    add_study(parser, "target", "TO", "an empty database of PostgreSQL, or a file to be made")
-    parser.set_defaults(run=run_copy_study)
-
-
 def run_copy_study(arguments: argparse.Namespace) -> int:
-    """Copy, print the number of rows, and return the exit status."""
     if str(arguments.source) == str(arguments.target):
         raise InputError("FROM and TO are the same study.")
     with Study.open_for_reading(arguments.source) as source, Study.open(arguments.target) as target:
         counts = copy_study(source, target)
-        links = PlatformLinks(path_beside_study(source.database.place))
-        users = links.copy_to(PlatformLinks(path_beside_study(target.database.place)))
     print(
         f"{arguments.target}: {counted(counts['trainees'], 'trainee')}, "
         f"{counted(counts['trials'], 'trial')}, {counted(sum(counts.values()), 'row')} in all, "
         "each compared with its original"
     )
-    if users:
-        print(f"{counted(users, 'user')} of learning platforms copied with it")
     return 0
 
 
@@ -58,10 +35,6 @@ def copy_study(source: Study, target: Study) -> dict[str, int]:
     """Copy all rows in one transaction, compare them, and return their number by table.
 
     The numbers of rows stay, and with them the order of storing; every float keeps each bit.
-
-    Raises:
-        InputError: the target holds something, or has other values afterward; it stays empty.
-        StudyUnreachableError: a server cannot be reached.
     """
     counts = {}
     with source.database.reading() as given, target.database.writing() as taken:
@@ -96,30 +69,9 @@ def _count(connection: Connection, table: Table) -> int:
     return connection.execute(f"SELECT count(*) FROM {table.name}").fetchone()[0]
 
 
-def add_delete_trainee_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add `delete-trainee`: one trainee, completely and permanently."""
-    parser = subparsers.add_parser(
-        "delete-trainee",
-        help="delete a trainee from a study and from the journals, for good",
-        description=(
-            "Nothing of the trainee is left in the database, the journals or later exports. "
-            "Earlier exports, backups and printed reports are yours to delete. Exit status: 0 all "
-            "is deleted, 1 journals may be left, 2 nothing was deleted."
-        ),
-    )
-    add_study(parser)
-    parser.add_argument("pseudonym", metavar="PSEUDONYM")
-    parser.add_argument(
-        "--records", type=Path, metavar="DIR", help="the folder of the simulator's journals"
-    )
-    parser.add_argument("--yes", action="store_true", help="really delete")
-    parser.set_defaults(run=run_delete_trainee)
-
-
 def run_delete_trainee(arguments: argparse.Namespace) -> int:
-    """Delete the trainee and return the exit status."""
-    with Study.open(arguments.study, must_exist=True) as study:
-        count = len(study.history(arguments.pseudonym))
+    with Study.open(arguments.study, must_exist=True) as opened:
+        count = len(opened.history(arguments.pseudonym))
         if not arguments.yes:
             raise InputError(
                 f"{arguments.pseudonym} has {count} trials, which would be lost for good; add "
@@ -130,8 +82,38 @@ def run_delete_trainee(arguments: argparse.Namespace) -> int:
                 f"The journals of {arguments.pseudonym} would be left; name the folder of the "
                 "simulator's journals with --records (an empty one if there are none)."
             )
-        erased = erase_trainee(study, arguments.pseudonym, arguments.records)
+        erased = erase_trainee(opened, arguments.pseudonym, arguments.records)
     print(f"{arguments.pseudonym}: {erased.trials} trials and {erased.journals} journals deleted")
     for sentence in erased.warnings:
         print(sentence)
     return 1 if erased.warnings else 0
+
+
+COMMANDS = (
+    Command(
+        "copy-study",
+        "copy a study from its file into PostgreSQL, or back",
+        run_copy_study,
+        (
+            study("source", "the study: a file, or an address of PostgreSQL", "FROM"),
+            study("target", "an empty database of PostgreSQL, or a file to be made", "TO"),
+        ),
+        "Copy all trainees, trials, results and ratings, compare them with the original to the "
+        "last bit, and leave the original as it is. Nobody should train meanwhile: what comes "
+        "later is not copied.",
+    ),
+    Command(
+        "delete-trainee",
+        "delete a trainee from a study and from the journals, for good",
+        run_delete_trainee,
+        (
+            study(),
+            option("pseudonym", metavar="PSEUDONYM"),
+            path("--records", "DIR", "the folder of the simulator's journals"),
+            flag("--yes", "really delete"),
+        ),
+        "Nothing of the trainee is left in the database, the journals or later exports. Earlier "
+        "exports, backups and printed reports are yours to delete. Exit status: 0 all is deleted, "
+        "1 journals may be left, 2 nothing was deleted.",
+    ),
+)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from statistics import fmean
 
 from rastrainer.errors import InputError
@@ -26,43 +25,29 @@ from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import protocol_text, read_study_protocol
 from rastrainer.trial.trial_feedback import PastTrial
-from rastrainer_simulator.cli.options import add_study
+from rastrainer_simulator.cli.options import (
+    Command,
+    aligned,
+    flag,
+    one_of,
+    option,
+    path,
+    study,
+)
 
 HEADER = ("assignment", "trial", "so far", "goal", "after", "trials", "mean")
 
 
-def add_curriculum_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add `curriculum`: what trainees should reach, and the standing of each of them."""
-    parser = subparsers.add_parser(
-        "curriculum",
-        help="set the curriculum of a study's trainees, and print where they stand",
-        description=(
-            "Without an option, prints where each trainee stands. What is set last counts: a "
-            "curriculum set for everybody ends those set for single trainees before. Nothing is "
-            "overwritten; earlier trials count, too."
-        ),
-    )
-    add_study(parser)
-    choice = parser.add_mutually_exclusive_group()
-    choice.add_argument(
-        "--set", type=Path, metavar="FILE", help="a curriculum to follow from now on"
-    )
-    choice.add_argument("--end", action="store_true", help="follow no curriculum from now on")
-    parser.add_argument("--trainee", metavar="PSEUDONYM", help="for this trainee alone")
-    parser.set_defaults(run=run_curriculum)
-
-
-def run_curriculum(arguments: argparse.Namespace) -> int:
-    """Set the curriculum if asked to, print the tables, and return the exit status."""
+def follow_curriculum(arguments: argparse.Namespace) -> int:
     curriculum = None if arguments.set is None else read_curriculum(arguments.set)
     who = arguments.trainee or ""
     if curriculum is not None or arguments.end:
-        with Study.open(arguments.study, must_exist=True) as study:
-            CurriculumStore(study).choose(curriculum, who)
+        with Study.open(arguments.study, must_exist=True) as opened:
+            CurriculumStore(opened).choose(curriculum, who)
         what = "no curriculum" if curriculum is None else f"“{curriculum.title}”"
         print(f"{who or 'Everybody'} follows {what} from now on.")
-    with Study.open_for_reading(arguments.study) as study:
-        store = CurriculumStore(study)
+    with Study.open_for_reading(arguments.study) as opened:
+        store = CurriculumStore(opened)
         standing = store.standing(who) if who else None
         found = {who: standing} if standing is not None else {} if who else store.standings()
     if not found and not arguments.end:
@@ -85,58 +70,27 @@ def _table(name: str, standing: CurriculumStanding) -> str:
         )
         for each in standing.standings
     ]
-    widths = [max(map(len, column)) for column in zip(HEADER, *rows, strict=True)]
-    lines = [
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in (HEADER, *rows)
-    ]
     reached = f"{standing.reached} of {len(standing.standings)} reached"
     title = f"{name}, {standing.curriculum.title}: {reached}. {advice_of(standing)}"
-    return "\n".join((title, *lines))
+    return "\n".join((title, *aligned((HEADER, *rows), len(HEADER))))
 
 
 LAST_TRIALS = 3
 
 
-def add_pass_mark_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add `pass-mark`: the mark that separates a study's novices from its experts."""
-    parser = subparsers.add_parser(
-        "pass-mark",
-        help="compute a pass mark from the novices and the experts of a study",
-        description=(
-            "Contrasting groups (Livingston and Zieky 1982): the mark best separates the scores of "
-            f"both groups. A person's score is the mean of their last {LAST_TRIALS} trials; trial "
-            "runs are left out. Scores of different versions cannot be combined."
-        ),
-    )
-    add_study(parser)
-    for group in ("novices", "experts"):
-        parser.add_argument(
-            f"--{group}", nargs="+", required=True, metavar="PSEUDONYM", help="five or more"
-        )
-    parser.add_argument(
-        "--write",
-        type=Path,
-        metavar="PROTOCOL",
-        help="write the mark into this protocol's file, for a study that has not started yet",
-    )
-    parser.set_defaults(run=run_pass_mark)
-
-
-def run_pass_mark(arguments: argparse.Namespace) -> int:
-    """Print the mark, write it to the protocol if requested, and return the exit status."""
+def compute_pass_mark(arguments: argparse.Namespace) -> int:
     both = sorted({*arguments.novices} & {*arguments.experts})
     if both:
         raise InputError(f"{both[0]} is named in both groups; name each person once, in one group.")
-    with Study.open_for_reading(arguments.study) as study:
+    with Study.open_for_reading(arguments.study) as opened:
         counted = [
-            [_last_trials(study, pseudonym) for pseudonym in dict.fromkeys(group)]
+            [_last_trials(opened, pseudonym) for pseudonym in dict.fromkeys(group)]
             for group in (arguments.novices, arguments.experts)
         ]
         aborted = sum(
             attempt.is_aborted
             for pseudonym in {*arguments.novices, *arguments.experts}
-            for attempt in AbortedTrials(study).attempts(pseudonym)
+            for attempt in AbortedTrials(opened).attempts(pseudonym)
         )
     method = _method(counted)
     novices, experts = (
@@ -163,8 +117,8 @@ def run_pass_mark(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _last_trials(study: Study, pseudonym: str) -> tuple[PastTrial, ...]:
-    trials = study.past_trials(pseudonym)[-LAST_TRIALS:]
+def _last_trials(opened: Study, pseudonym: str) -> tuple[PastTrial, ...]:
+    trials = opened.past_trials(pseudonym)[-LAST_TRIALS:]
     if len(trials) < LAST_TRIALS:
         raise InputError(
             f"{pseudonym} has {len(trials)} scored trials, and {LAST_TRIALS} are needed of each."
@@ -194,3 +148,43 @@ def _sentence(
         f"{percent(mark.failing_experts)} of experts fail; here it is "
         f"{percent(mark.observed_passing_novices)} and {percent(mark.observed_failing_experts)}."
     )
+
+
+COMMANDS = (
+    Command(
+        "curriculum",
+        "set the curriculum of a study's trainees, and print where they stand",
+        follow_curriculum,
+        (
+            study(),
+            one_of(
+                path("--set", "FILE", "a curriculum to follow from now on"),
+                flag("--end", "follow no curriculum from now on"),
+            ),
+            option("--trainee", metavar="PSEUDONYM", help="for this trainee alone"),
+        ),
+        "Without an option, prints where each trainee stands. What is set last counts: a "
+        "curriculum set for everybody ends those set for single trainees before. Nothing is "
+        "overwritten; earlier trials count, too.",
+    ),
+    Command(
+        "pass-mark",
+        "compute a pass mark from the novices and the experts of a study",
+        compute_pass_mark,
+        (
+            study(),
+            *(
+                option(group, nargs="+", required=True, metavar="PSEUDONYM", help="five or more")
+                for group in ("--novices", "--experts")
+            ),
+            path(
+                "--write",
+                "PROTOCOL",
+                "write the mark into this protocol's file, for a study that has not started yet",
+            ),
+        ),
+        "Contrasting groups (Livingston and Zieky 1982): the mark best separates the scores of "
+        f"both groups. A person's score is the mean of their last {LAST_TRIALS} trials; trial runs "
+        "are left out. Scores of different versions cannot be combined.",
+    ),
+)

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from rastrainer.json_checks import Setting
 from rastrainer.motion.trajectory import FAR_MM, NEAR_MM, RELEASED_MM, TOUCHING_MM
 from rastrainer.protocol import Proximity
 from rastrainer.transforms import MM_PER_M
@@ -32,10 +33,10 @@ class ProximitySettings:
         released: clearance of the whole tool at which contact ends.
     """
 
-    near: float = NEAR_MM / MM_PER_M
-    far: float = FAR_MM / MM_PER_M
-    touching: float = TOUCHING_MM / MM_PER_M
-    released: float = RELEASED_MM / MM_PER_M
+    near: Setting = NEAR_MM / MM_PER_M
+    far: Setting = FAR_MM / MM_PER_M
+    touching: Setting = TOUCHING_MM / MM_PER_M
+    released: Setting = RELEASED_MM / MM_PER_M
 
 
 def next_proximity(

@@ -122,8 +122,6 @@ class TouchPlanner:
     """Looks for a posture that touches a place with nothing but the tip, inside the joint limits.
 
     Args:
-        model: the robot.
-        collision: has the head and its pose.
         clearance: of the links to the head, to each other and to the table, m. The tool's shaft
             need only be clear of the head: next to the tip it cannot be farther away.
     """

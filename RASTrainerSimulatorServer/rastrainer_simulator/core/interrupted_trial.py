@@ -166,14 +166,14 @@ class InterruptedTrial:
         if not steps:
             return None
         last = max(entries, key=lambda entry: entry["tick"])
-        steps.append((OperatorCommand(INTERRUPTED), TouchMoment(last["simTime"], ZERO, 0.0)))
+        steps.append((OperatorCommand(INTERRUPTED), TouchMoment(last["simTimeS"], ZERO, 0.0)))
         latest = {entry["kind"]: entry for entry in entries}
         reach = latest.get("reach", {"isWithinReach": True, "obstacle": ""})
         return cls(
             entries=tuple(entries),
             revision_before=header["before"]["revision"],
             steps=tuple(steps),
-            point=StartingPoint(last["tick"], last["simTime"], camera=_camera(entries)),
+            point=StartingPoint(last["tick"], last["simTimeS"], camera=_camera(entries)),
             q=tuple(map(float, latest["sample"]["q"])) if "sample" in latest else None,
             proximity=Proximity(latest["proximity"]["to"] if "proximity" in latest else "free"),
             is_within_reach=reach["isWithinReach"],
@@ -226,11 +226,11 @@ def _steps(
         for number, entry in enumerate(together):
             recorded.take(entry)
             if entry["kind"] == "continued":
-                yield OperatorCommand(INTERRUPTED), TouchMoment(entry["since"], ZERO, 0.0)
+                yield OperatorCommand(INTERRUPTED), TouchMoment(entry["sinceS"], ZERO, 0.0)
             if entry["kind"] == "trace":
                 # It was left at the end of its tick, unlike the effect of a command.
                 place = vector(map(meters, entry["positionMm"]))
-                yield OperatorCommand(TRACED), TouchMoment(entry["simTime"], place, 0.0)
+                yield OperatorCommand(TRACED), TouchMoment(entry["simTimeS"], place, 0.0)
             if entry["kind"] != "command" or entry["name"] not in _EFFECTS:
                 continue
             kinds = _EFFECTS[entry["name"]]
@@ -238,7 +238,7 @@ def _steps(
             if effect is not None:
                 # Commands are carried out at the state reached, one tick before their line.
                 moment = TouchMoment(
-                    sim_time=entry["simTime"] - tick_s,
+                    sim_time=entry["simTimeS"] - tick_s,
                     tip=vector(map(meters, effect.get("positionMm", ZERO))),
                     # Older journals lack it: then every height counted.
                     tip_clearance=float(effect.get("clearanceMm", 0.0)) / MM_PER_M,

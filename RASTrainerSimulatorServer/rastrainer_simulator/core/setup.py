@@ -17,11 +17,12 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
+from rastrainer.json_records import record_to_json
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import FILE_NAME, Scenario, load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.collision.robot_shape import Capsule, LinkShape, RobotShape, robot_shape
-from rastrainer_simulator.core.settings import SimulationSettings, settings_to_json
+from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.robot.model import (
     DEFAULT_URDF,
     MeshPart,
@@ -141,7 +142,6 @@ class SimulationSetup:
         shape: the arm and its tool as collisions see them.
         settings: how it behaves.
         scenario_sha256: of what a trial depends on, which identifies the scenario in a journal.
-        sha256_with_skull: the same of a scenario that had its skull before its procedures.
         landmarks_sha256: of what a trial by landmarks depends on besides.
         procedure_sha256: name of a procedure → of what a trial with it depends on besides.
     """
@@ -151,13 +151,13 @@ class SimulationSetup:
     shape: RobotShape
     settings: SimulationSettings = field(default_factory=SimulationSettings)
     scenario_sha256: str = ""
-    sha256_with_skull: str = ""
     landmarks_sha256: str = ""
     procedure_sha256: Mapping[str, str] = field(default_factory=dict)
 
-    def is_of(self, sha256: object) -> bool:
-        """Return whether a journal with this hash of its scenario was recorded with this one."""
-        return sha256 in (self.scenario_sha256, self.sha256_with_skull)
+    def is_of(self, header: Mapping[str, Any]) -> bool:
+        """Return whether a journal with this header was recorded with this scenario and robot."""
+        recorded = header["robot"], header["scenario"]["sha256"]
+        return recorded == (self.robot.name, self.scenario_sha256)
 
     def matches_procedure(self, header: Mapping[str, Any]) -> bool:
         """Return whether the procedure of a journal's header, if it names one, is in here.
@@ -197,7 +197,7 @@ class SimulationSetup:
             **({} if method is RegistrationMethod.FIDUCIALS else {"method": by}),
             "scenario": {"name": self.scenario.name, "sha256": self.scenario_sha256},
             "robot": self.robot.name,
-            "settings": settings_to_json(self.settings),
+            "settings": record_to_json(self.settings, with_defaults=True),
         }
 
 
@@ -217,7 +217,6 @@ def load_setup(
         shape=shape,
         settings=settings or SimulationSettings(),
         scenario_sha256=scenario_sha256(scenario),
-        sha256_with_skull=scenario_sha256(scenario, keeps_skull=True),
         landmarks_sha256=landmarks_sha256(scenario),
         procedure_sha256=_procedure_sha256(scenario),
     )
@@ -241,22 +240,14 @@ def _robot_and_shape(
     return model_from_json(prepared["model"], path.parent), shape_from_json(prepared["shape"])
 
 
-def scenario_sha256(scenario: Scenario, keeps_skull: bool = False) -> str:
+def scenario_sha256(scenario: Scenario) -> str:
     """Return one hash of what a trial of touches depends on: `scenario.json`, head and fiducials.
 
-    It excludes the volume, which the simulator never reads, the landmarks, and the procedures with
-    the skull that they need: journals that were recorded before a scenario had them remain valid. A
-    trial with a procedure, or by landmarks, has a hash of its own (`Procedure.sha256`,
-    `landmarks_sha256`) in its journal.
-
-    Args:
-        scenario: read from its folder.
-        keeps_skull: for a scenario that had a skull before it had procedures: leave only the
-            procedures out.
+    It excludes what may be added to a scenario with recorded trials: the volume, which the
+    simulator never reads, landmarks, skull and procedures. A trial with a procedure, or by
+    landmarks, has a hash of its own (`Procedure.sha256`, `landmarks_sha256`) in its journal.
     """
-    left_out = ["volume", "procedures", "landmarks"]
-    if scenario.procedures and not keeps_skull:
-        left_out.append("skull")
+    left_out = ["volume", "skull", "procedures", "landmarks"]
     whole = hashlib.sha256()
     for content in (
         _without(scenario.folder / FILE_NAME, left_out),

@@ -107,7 +107,7 @@ class Simulation:
         """Continue ticks, time and revisions of another simulation, before the first step."""
         self._training.restart_from(point.revision)
         self._axes.camera = point.camera or self._axes.camera
-        self.state = self._state(point.tick, point.sim_time, Motion.NONE)
+        self.state = self._state(point.tick, point.sim_time_s, Motion.NONE)
 
     def resume_trial(
         self, interrupted: InterruptedTrial, point: StartingPoint | None = None
@@ -125,7 +125,7 @@ class Simulation:
         self._obstacle = interrupted.obstacle
         self._procedure_motion.reset(interrupted.feed)
         self._axes.camera = point.camera or self._axes.camera
-        self.state = self._state(point.tick, point.sim_time, Motion.NONE)
+        self.state = self._state(point.tick, point.sim_time_s, Motion.NONE)
 
     def step(self, dt: float, operator_input: OperatorInput) -> StepResult:
         """Carry out the commands at the state reached, then move on by `dt` seconds."""

@@ -11,13 +11,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.pages.session_page import clickable_hint, slow_hint
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName
-from rastrainer_simulator.presentation.screen import (
-    DepthRuler,
-    ErrorArrow,
-    Hint,
-    ScreenMessage,
-    Tone,
-)
+from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.state import Event, EventKind, SimulationState, TouchStage
 from rastrainer_simulator.teleoperation.steering import ROBOT_AXES, Axes, AxesChoice, camera_axes
 from rastrainer_simulator.vectors import (
@@ -74,27 +68,27 @@ class ArmScreen:
         """Whether the instruction still says why the last touch was refused."""
         return self._refusal != "" and self._state.training.instruction == self._refusal
 
-    @property
-    def has_arrow(self) -> bool:
-        """Whether a view points to a next point that is out of sight."""
-        return False
+    def screen(self) -> Screen:
+        """Return what is read while no menu is open."""
+        return Screen(
+            instruction=self.instruction(),
+            warnings=self.warnings(),
+            status=self.status(),
+            hints=self.hints(),
+            has_sticks=self._session.screen_sticks.is_shown,
+        )
 
-    @property
-    def is_head_clear(self) -> bool:
-        """Whether the trainee looks into the head."""
-        return False
+    def instruction(self) -> ScreenMessage:
+        """Return what to do now."""
+        raise NotImplementedError
 
-    def errors(self) -> tuple[ErrorArrow, ...]:
-        """Return the errors of touches that may be seen: a trial's are shown with its score."""
-        return ()
+    def status(self) -> tuple[str, ...]:
+        """Return the short facts at the edge."""
+        raise NotImplementedError
 
-    def coverage(self) -> str:
-        """Return the legend of the paint on the skin; "" if there is none."""
-        return ""
-
-    def ruler(self) -> DepthRuler | None:
-        """Return the scale of depths while something is fed; else None."""
-        return None
+    def hints(self) -> tuple[Hint, ...]:
+        """Return the relevant controls."""
+        raise NotImplementedError
 
     def warnings(self) -> tuple[ScreenMessage, ...]:
         """Return the warnings about the arm's position."""

@@ -34,7 +34,7 @@ from rastrainer_simulator.texts.texts import LocalizedText
 
 PICTURE_GRACE_S = 0.5
 """A picture that is there so soon is no reason to pause a trial."""
-OF_A_RESULT = (FinishedPage, ReplayPage, ErrorsPage, ProcedureErrorsPage, ProcedureLinesPage)
+RESULT_PAGES = (FinishedPage, ReplayPage, ErrorsPage, ProcedureErrorsPage, ProcedureLinesPage)
 
 NOT_RECORDED = "not recorded"
 INTERRUPTED = ("interrupted", "interrupted procedure")
@@ -157,35 +157,29 @@ class Flow:
         if preparing.text and menu is not None and menu.name != PreparingPage.name:
             lasting = (preparing, *lasting)
         warnings = (*lasting, *self._link_warnings(), *notices.brief())
-        work = self._screen_of_work
         shown = None if page is None else page.screen()
         if shown is not None:
             return replace(shown, warnings=(*shown.warnings, *warnings))
+        is_at_work = menu is None or session.has_open_trial or session.tutorial is not None
+        shown = self._screen_of_work.screen() if is_at_work else Screen()
         if menu is not None:
-            return Screen(
+            in_head = shown if self._procedure_screen.is_open else Screen()
+            shown = Screen(
                 menu=menu,
-                warnings=(*self._pause_warnings(), *warnings),
-                status=work.status() if self._is_work_open else (),
+                warnings=self._pause_warnings(),
+                status=shown.status,
                 hints=self._menu_hints(),
-                language=session.preferences.language,
-                is_spoken=session.preferences.speech,
-                errors=work.errors() if self._procedure_screen.is_open else (),
-                is_head_clear=self._procedure_screen.is_open and work.is_head_clear,
+                errors=in_head.errors,
+                is_head_clear=in_head.is_head_clear,
                 is_private=page is not None and page.is_private,
             )
-        return Screen(
-            instruction=preparing if preparing.text else work.instruction(),
-            warnings=(*work.warnings(), *warnings),
-            status=work.status(),
-            hints=work.hints(),
-            has_sticks=session.screen_sticks.is_shown,
-            has_arrow=work.has_arrow,
+        elif preparing.text:
+            shown = replace(shown, instruction=preparing)
+        return replace(
+            shown,
+            warnings=(*shown.warnings, *warnings),
             language=session.preferences.language,
             is_spoken=session.preferences.speech,
-            errors=work.errors(),
-            is_head_clear=work.is_head_clear,
-            coverage=work.coverage(),
-            ruler=work.ruler(),
         )
 
     def start_tutorial(self, trainee: str, mode: str) -> Answer:
@@ -203,7 +197,7 @@ class Flow:
         if tutorial is not None and tutorial.trainee != trainee:
             return Answer(0, False, say("tutorial is open", trainee=tutorial.trainee))
         if tutorial is None:
-            if session.setting_up.is_under_way:
+            if session.reload.is_under_way:
                 return Answer(0, False, say("being set up"))
             session.trainee, session.mode = trainee, mode
             if not needs_tutorial(session):
@@ -223,10 +217,6 @@ class Flow:
         is_at_procedure = self._procedure_screen.is_open
         return self._procedure_screen if is_at_procedure else self._trial_screen
 
-    @property
-    def _is_work_open(self) -> bool:
-        return self._session.has_open_trial or self._session.tutorial is not None
-
     def _advance_tutorial(self, dt: float, tutorial: Tutorial) -> None:
         """Advance the tutorial; leave it at its end, or if its head is gone."""
         session = self._session
@@ -245,7 +235,7 @@ class Flow:
             session.pages.open(ExperimentPage(session))
             if outcome is not None:
                 page = PracticedPage if tutorial.practiced else TutorialDonePage
-                session.pages.open(page(session, outcome), has_grace=True)
+                session.pages.open(page(session, outcome), ignore_input_briefly=True)
 
     def _follow(self, before: tuple[str, Phase]) -> None:
         """Show what belongs to the trial's new phase."""
@@ -262,17 +252,17 @@ class Flow:
         elif training.phase is Phase.PAUSED:
             page: type[SessionPage] = PreparingPage if self._waits_for_picture else TrialPage
             page = PracticePage if self._trial_screen.is_practice_over else page
-            session.pages.show(page(session), has_grace=not is_requested)
+            session.pages.show(page(session), ignore_input_briefly=not is_requested)
         elif training.phase is Phase.REGISTERED:
             session.note_done()
             session.study.note_registered(training.trainee, training.task, training.mode)
-            session.pages.show(WaitingPage(session), has_grace=True)
+            session.pages.show(WaitingPage(session), ignore_input_briefly=True)
         elif training.phase is Phase.SCORED:
-            session.pages.show(ResultPage(session), has_grace=True)
-        elif before[1] in OPEN_PHASES or isinstance(session.pages.top, OF_A_RESULT):
+            session.pages.show(ResultPage(session), ignore_input_briefly=True)
+        elif before[1] in OPEN_PHASES or isinstance(session.pages.top, RESULT_PAGES):
             # Another simulation may follow a trial while other pages are open: they stay.
             session.pages.show_start()
-            session.pages.open(ExperimentPage(session), has_grace=was_working)
+            session.pages.open(ExperimentPage(session), ignore_input_briefly=was_working)
 
     def _note_trial(self, previous_id: str) -> None:
         """Note a new trial, and a trial run whose points are all touched."""

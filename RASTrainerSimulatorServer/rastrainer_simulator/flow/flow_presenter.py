@@ -25,7 +25,6 @@ from rastrainer_simulator.input.inputs import (
     SourceKind,
 )
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.loop.results import Subscribers
 from rastrainer_simulator.presentation.feedback_event import (
     FEEDBACK_EFFECTS,
     FeedbackEvent,
@@ -36,11 +35,11 @@ from rastrainer_simulator.presentation.presenter import (
     Frames,
     Hello,
     InstructorOrder,
+    Presenter,
     Seat,
     TraceGuidance,
-    ViewUpdate,
 )
-from rastrainer_simulator.presentation.screen import PRESS, Screen, Tone
+from rastrainer_simulator.presentation.screen import PRESS, Tone
 from rastrainer_simulator.record.trial_context import DisplayReport
 from rastrainer_simulator.replay.playback import PlaybackSwitch
 from rastrainer_simulator.state import HANDS_OFF, Answer, OperatorInput, SimulationState, StepResult
@@ -53,8 +52,8 @@ _IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlNam
 """What a view's own buttons mean while a menu is open: those of a headset have no bindings."""
 
 
-class FlowPresenter:
-    """A `Presenter` for one trainee.
+class FlowPresenter(Presenter):
+    """The presenter for one trainee.
 
     Everything but what the control loop calls belongs to one thread. `advance` is to be called
     some hundred times a second; nothing here waits.
@@ -63,8 +62,6 @@ class FlowPresenter:
         controls: what the operator holds.
         shown: the states that the views show.
         rumble: has the simulator's gamepads vibrate with a strength of 0 to 1 for a time (s).
-        screen: what is read.
-        control: who holds the control.
     """
 
     def __init__(
@@ -74,6 +71,7 @@ class FlowPresenter:
         bindings: Bindings,
         preferences: Preferences,
     ) -> None:
+        super().__init__()
         self._control_loop = control_loop
         self.shown = PlaybackSwitch(control_loop)
         self.controls = Controls(bindings, self, self._may_be_taken)
@@ -86,15 +84,13 @@ class FlowPresenter:
         self._arriving = threading.Lock()
         self._newest = control_loop.latest
         self._results: list[StepResult] = []
-        self._subscribers: Subscribers[ViewUpdate] = Subscribers()
         self._views = ViewSources()
         self._pictures = AwaitedPictures()
         self._number = 0
         self._sent_sticks = HANDS_OFF
         self._is_changed = True
         self._since_refresh = 0.0
-        self.screen: Screen = self._flow.screen()
-        self.control = Control()
+        self.screen = self._flow.screen()
         self._unsubscribe = control_loop.subscribe(self._take_tick)
 
     def close(self) -> None:
@@ -139,7 +135,7 @@ class FlowPresenter:
 
     def seat(self) -> Seat:
         """Return what a teacher's board shows of this seat."""
-        count = len(self._control_loop.truth.fiducials)
+        count = len(self._control_loop.truth.fiducials_ras)
         return seat_of(self._session, self.screen, self.control.holder, count)
 
     def instruct(self, order: InstructorOrder, text: str) -> str:
@@ -153,10 +149,6 @@ class FlowPresenter:
     def is_tracing_guided(self) -> bool:
         """Whether a trainee who traces the skin now is shown what is covered, and what is next."""
         return self._session.places.guidance(self._control_loop.latest).covered_mm > 0.0
-
-    def subscribe(self, listener: Callable[[ViewUpdate], None]) -> Callable[[], None]:
-        """Have `listener` called with each new screen, feedback and holder of the control."""
-        return self._subscribers.add(listener)
 
     def start_tutorial(self, trainee: str, mode: str) -> Answer:
         """Open the tutorial for a trainee whose trial run Slicer wants to start, if it is first."""
@@ -331,7 +323,7 @@ class FlowPresenter:
         feedback = feedback_of(what, self._number, volume)
         if feedback.rumble > 0.0:
             self.rumble(feedback.rumble, FEEDBACK_EFFECTS[what].seconds)
-        self._publish(feedback)
+        self.publish(feedback)
 
     def _may_be_taken(self) -> bool:
         """Return whether another operator may take control from an idle one."""
@@ -394,7 +386,7 @@ class FlowPresenter:
         control = Control() if holder is None else Control(holder.kind.value, holder.view)
         if control != self.control:
             self.control = control
-            self._publish(control)
+            self.publish(control)
             self._is_changed = True
 
     def _refresh(self) -> None:
@@ -403,10 +395,7 @@ class FlowPresenter:
         screen = self._flow.screen()
         if screen != self.screen:
             self.screen = screen
-            self._publish(screen)
-
-    def _publish(self, update: ViewUpdate) -> None:
-        self._subscribers.publish(update)
+            self.publish(screen)
 
 
 def _nothing_vibrates(strength: float, seconds: float) -> None:

@@ -198,9 +198,9 @@ class OperatedView:
         session = self._session
         control, orbit = session.view.control, session.view.control.orbit
         report = ViewReport(
-            orbit.azimuth_deg,
-            orbit.elevation_deg,
-            orbit.zoom,
+            round(orbit.azimuth_deg, 2),
+            round(orbit.elevation_deg, 2),
+            round(orbit.zoom, 2),
             control.is_automatic,
             self.follows,
         )

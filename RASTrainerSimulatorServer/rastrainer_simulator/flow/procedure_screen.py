@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 from rastrainer.commands import CommandName
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
@@ -19,6 +20,7 @@ from rastrainer_simulator.presentation.screen import (
     DepthRuler,
     ErrorArrow,
     Hint,
+    Screen,
     ScreenMessage,
     Tone,
 )
@@ -79,7 +81,6 @@ class ProcedureScreen(ArmScreen):
         self._trial_screen.open_menu()
 
     def instruction(self) -> ScreenMessage:
-        """Return what to do now."""
         session = self._session
         text = session.texts.again(session.training.instruction)
         return ScreenMessage(text, Tone.WARNING if self._is_refused else Tone.GOOD)
@@ -92,7 +93,7 @@ class ProcedureScreen(ArmScreen):
             return self._why_not_registered()
         if training.phase not in FED:
             return super().warnings()
-        ruler = self.ruler()
+        ruler = self._ruler()
         past = 0.0 if ruler is None else MM_PER_M * session.state.feed - ruler.target
         if past > PAST_TARGET_MM:
             return (ScreenMessage(say("warning.past target", past=past), Tone.ERROR),)
@@ -101,7 +102,6 @@ class ProcedureScreen(ArmScreen):
         return (ScreenMessage(say(f"felt.{self._layer}"), _FELT[self._layer]),)
 
     def status(self) -> tuple[str, ...]:
-        """Return the short facts at the edge."""
         session, say = self._session, self._session.texts.say
         procedure = self._procedure
         facts = [session.task_title(session.training.task)]
@@ -117,7 +117,6 @@ class ProcedureScreen(ArmScreen):
         return (*facts, *self._figures())
 
     def hints(self) -> tuple[Hint, ...]:
-        """Return the relevant controls."""
         session = self._session
         phase = session.training.phase
         names = {
@@ -132,7 +131,15 @@ class ProcedureScreen(ArmScreen):
         on_screen = stick_hints(session, can_tilt=phase is Phase.ALIGNING)
         return (*self._stick_hints(phase), *self._control_hints(names), *on_screen)
 
-    def errors(self) -> tuple[ErrorArrow, ...]:
+    def screen(self) -> Screen:
+        """Return what is read; from the alignment on, the trainee looks into the head."""
+        is_head_clear = self._procedure.present is not None
+        shown = super().screen()
+        return replace(
+            shown, errors=self._marks(), is_head_clear=is_head_clear, ruler=self._ruler()
+        )
+
+    def _marks(self) -> tuple[ErrorArrow, ...]:
         """Return the plan by the registration, and checkpoints as marks on the skin."""
         session, procedure = self._session, self._procedure
         if procedure.stage is Phase.VERIFYING:
@@ -141,12 +148,7 @@ class ProcedureScreen(ArmScreen):
             return checkpoint_marks(procedure, places)
         return plan_marks(procedure, session.planned_bone(procedure.name))
 
-    @property
-    def is_head_clear(self) -> bool:
-        """Whether the trainee looks into the head: from the alignment on."""
-        return self._procedure.present is not None
-
-    def ruler(self) -> DepthRuler | None:
+    def _ruler(self) -> DepthRuler | None:
         """Return the scale of depths while something is fed."""
         procedure = self._procedure
         if procedure.stage not in FED or procedure.present is None:
@@ -165,7 +167,7 @@ class ProcedureScreen(ArmScreen):
     def _figures(self) -> tuple[str, ...]:
         """Return the position of the guide or of what is in it, by the registration."""
         state, say = self._session.state, self._session.texts.say
-        alignment, ruler = state.alignment, self.ruler()
+        alignment, ruler = state.alignment, self._ruler()
         if ruler is not None:
             depth = MM_PER_M * state.feed
             is_drill = self._procedure.stage is Phase.DRILLING

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import dataclasses
 import logging
 import time
 from collections.abc import Callable, Mapping
@@ -52,16 +51,11 @@ class RunningPresenter:
         config = services.config
         bindings, complaint = _read(config / BINDINGS_FILE, read_bindings, DEFAULT_BINDINGS)
         preferences, other = _read(config / PREFERENCES_FILE, read_preferences, Preferences())
-        has_font = preferences.language in services.languages
-        if not has_font:
-            preferences = dataclasses.replace(preferences, language=Preferences.language)
         self.presenter = FlowPresenter(control_loop, services, bindings, preferences)
         self._sources: dict[int, Source] = {}
         self._gamepads: Gamepads | None = None
         for reason in filter(None, (complaint, other)):
             self.presenter.warn(reason, "warning.settings", reason=reason)
-        if not has_font:
-            self.presenter.warn("font", "window.no font")
         if has_gamepad:
             self._gamepads = self._started()
 

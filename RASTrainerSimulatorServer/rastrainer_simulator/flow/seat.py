@@ -54,5 +54,5 @@ def instruct(session: TrainingSession, flow: Flow, order: InstructorOrder, text:
         return ""
     if not isinstance(page, ResultPage):
         return session.texts.say("instructor.no result")
-    page.accept("replay")
+    page.show_again()
     return ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from rastrainer.commands import CommandName
 from rastrainer.protocol import (
@@ -32,7 +33,7 @@ from rastrainer_simulator.flow.pages.trial_review import POOR_MM
 from rastrainer_simulator.flow.session.chosen_trial import guidance_of
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
-from rastrainer_simulator.presentation.screen import Hint, ScreenMessage, Tone
+from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.state import Event, EventKind, TouchStage
 from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.vectors import Vector, distance, in_meters
@@ -65,10 +66,12 @@ class TrialScreen(ArmScreen):
         self._practice_step: StudyStep | None = None
         self._practice_end_s: float | None = None
 
-    @property
-    def has_arrow(self) -> bool:
-        """Whether a view points to a next point that is out of sight."""
-        return self.guidance is not Guidance.NONE
+    def screen(self) -> Screen:
+        session = self._session
+        covered = session.places.guidance(session.state).covered_mm
+        legend = session.texts.say("coverage", distance=f"{covered:.0f}") if covered else ""
+        has_arrow = self.guidance is not Guidance.NONE
+        return replace(super().screen(), has_arrow=has_arrow, coverage=legend)
 
     def take(self, event: Event) -> None:
         super().take(event)
@@ -162,7 +165,6 @@ class TrialScreen(ArmScreen):
             session.pages.show(page(session))
 
     def instruction(self) -> ScreenMessage:
-        """Return what to do now."""
         session = self._session
         training = session.training
         if training.is_tracing and not self._is_refused:
@@ -209,7 +211,6 @@ class TrialScreen(ArmScreen):
         return session.texts.say("tutorial.slipped", **said)
 
     def status(self) -> tuple[str, ...]:
-        """Return the short facts at the edge."""
         session = self._session
         training = session.training
         facts = [
@@ -227,14 +228,7 @@ class TrialScreen(ArmScreen):
             facts.append(self._toward(name, target, nearest_mm))
         return tuple(facts)
 
-    def coverage(self) -> str:
-        """Return the legend of the paint on the skin; "" if there is none."""
-        session = self._session
-        distance = session.places.guidance(session.state).covered_mm
-        return session.texts.say("coverage", distance=f"{distance:.0f}") if distance else ""
-
     def hints(self) -> tuple[Hint, ...]:
-        """Return the relevant controls."""
         session = self._session
         training = session.training
         is_complete = training.phase is Phase.COMPLETE and not training.is_tracing
@@ -286,5 +280,7 @@ class TrialScreen(ArmScreen):
 
 def points_in_world(truth: Truth) -> tuple[dict[str, Vector], Vector]:
     """Return the fiducials of a trial and the head's center in World, m."""
-    points = {label: in_meters(truth.in_world(point)) for label, point in truth.fiducials.items()}
-    return points, in_meters(truth.in_world(truth.target))
+    points = {
+        label: in_meters(truth.in_world(point)) for label, point in truth.fiducials_ras.items()
+    }
+    return points, in_meters(truth.in_world(truth.target_ras))

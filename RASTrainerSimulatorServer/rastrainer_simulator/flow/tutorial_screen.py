@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from rastrainer.commands import CommandName
 from rastrainer.transforms import MM_PER_M
@@ -16,7 +17,7 @@ from rastrainer_simulator.flow.tutorial.steps import TutorialObservation, Tutori
 from rastrainer_simulator.flow.tutorial.tutorial import CENTERED_M, Tutorial
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_event
-from rastrainer_simulator.presentation.screen import ErrorArrow, Hint, ScreenMessage, Tone
+from rastrainer_simulator.presentation.screen import ErrorArrow, Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.record.trial_context import GUIDED_TOUCHES
 from rastrainer_simulator.state import SimulationState, TouchStage
 from rastrainer_simulator.training.training import TrainingReply
@@ -101,9 +102,14 @@ class TutorialScreen(ArmScreen):
     def _is_homing(self) -> bool:
         return self._homing is not None and not self._homing.is_done
 
-    @property
-    def has_arrow(self) -> bool:
-        return self._tutorial.practice.has_points
+    def screen(self) -> Screen:
+        """Return what is read, with the errors of guided touches as a result shows them."""
+        practice = self._tutorial.practice
+        errors: tuple[ErrorArrow, ...] = ()
+        if self._tutorial.step in (TutorialStep.GUIDED, None):
+            touches = practice.state.touches
+            errors = tuple(error_arrow(self._points[t.label], t.position) for t in touches)
+        return replace(super().screen(), has_arrow=practice.has_points, errors=errors)
 
     def advance(self, dt: float) -> None:
         """Advance by `dt` seconds: bring the arm to its start, then check the progress."""
@@ -140,7 +146,6 @@ class TutorialScreen(ArmScreen):
         self._session.pages.show(TutorialPage(self._session))
 
     def instruction(self) -> ScreenMessage:
-        """Return what to do now."""
         session, tutorial = self._session, self._tutorial
         say = session.texts.say
         if self._is_homing:
@@ -170,7 +175,6 @@ class TutorialScreen(ArmScreen):
         return ScreenMessage(self._sentence(TutorialStep.LOWER if is_lifted else tutorial.step))
 
     def status(self) -> tuple[str, ...]:
-        """Return the short facts at the edge."""
         tutorial, say = self._tutorial, self._session.texts.say
         step, steps = tutorial.place
         place = () if tutorial.practiced else (say("tutorial.place", step=step, steps=steps),)
@@ -206,13 +210,6 @@ class TutorialScreen(ArmScreen):
         if step is not TutorialStep.PAUSE:
             hints.append(clickable_hint(session, ControlName.MENU, "hint.menu"))
         return (*moving, *hints, *stick_hints(session))
-
-    def errors(self) -> tuple[ErrorArrow, ...]:
-        """Return the errors of the guided touches, as a result shows them."""
-        practice = self._tutorial.practice
-        if self._tutorial.step not in (TutorialStep.GUIDED, None):
-            return ()
-        return tuple(error_arrow(self._points[t.label], t.position) for t in practice.state.touches)
 
     def _begin(self, tutorial: Tutorial) -> None:
         self._seen, self._homing = tutorial, Homing(self._session)

@@ -241,7 +241,8 @@ return, is free again once it is pushed further by the second."""
 STEP_PUSH, FINE_STEP_PUSH = 0.22, 0.4
 """How far a key or a button pushes its stick at first, and in slow motion: both mean 2 mm/s."""
 STEP_S = 0.1
-"""Every press lasts at least so long: a tap moves the tip by one step of 0.2 mm."""
+"""Every press lasts at least so long: a tap moves the tip by one step of 0.2 mm; in slow motion,
+down onto the skin, of 0.1 mm."""
 HOLD_AFTER_S, RAMP_S = 0.15, 0.6
 """What is held for longer speeds up, from the first on until the second."""
 

@@ -102,7 +102,6 @@ class PinAnswer:
     """The outcome of a guess at a PIN.
 
     Attributes:
-        is_right: whether it was the PIN.
         wait_s: how long no guess is checked from now on, s; 0 if one may be made.
     """
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
+from rastrainer_simulator.loop.results import Subscribers
 from rastrainer_simulator.presentation.screen import Screen
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.viewpoint.view_control import Pictures
@@ -138,48 +139,59 @@ class Seat:
     assignments: str = ""
 
 
-class Presenter(Protocol):
-    """The flow and the controls, as the view server sees them.
+class Presenter:
+    """What the view server shows, and where it passes on what views send; ignores it by default.
 
     Everything is called in the event loop's thread, and what is subscribed is called there too;
     every call returns at once. Values have been checked: numbers are finite and within their
     range, texts short and printable, `view` is the number of a view that has joined.
+
+    Attributes:
+        screen: what the trainee reads now.
+        control: what drives the arm now.
     """
 
-    @property
-    def screen(self) -> Screen:
-        """What the trainee reads now."""
+    screen: Screen
+    control = Control()
 
-    @property
-    def control(self) -> Control:
-        """What drives the arm now."""
-
-    def pictures(self, now: SimulationState) -> Pictures:
-        """Return the viewpoint of the pictures of a state."""
-
-    def ghost(self, now: SimulationState) -> tuple[np.ndarray, ...] | None:
-        """Return the poses of the ghost beside the arm in a state, in the order of `GHOST_BODIES`.
-
-        Each is (4, 4) float, to World, m; None where none is shown.
-        """
-
-    def trace_guidance(self, now: SimulationState) -> TraceGuidance:
-        """Return how a trainee who traces the skin is guided in a state."""
-
-    def seat(self) -> Seat:
-        """Return what a teacher's board shows of this seat."""
-
-    def instruct(self, order: InstructorOrder, text: str) -> str:
-        """Carry out an order of a teacher who knows the PIN; return why it is impossible, or "".
-
-        `text` is the sentence of `InstructorOrder.SAY`, else "".
-        """
+    def __init__(self) -> None:
+        self._subscribers: Subscribers[ViewUpdate] = Subscribers()
 
     def subscribe(self, listener: Callable[[ViewUpdate], None]) -> Callable[[], None]:
         """Have `listener` called with each new screen, feedback and holder of the control.
 
         Returns what ends the subscription.
         """
+        return self._subscribers.add(listener)
+
+    def publish(self, update: ViewUpdate) -> None:
+        self._subscribers.publish(update)
+
+    def pictures(self, now: SimulationState) -> Pictures:
+        """Return the viewpoint of the pictures of a state."""
+        raise NotImplementedError
+
+    def ghost(self, now: SimulationState) -> tuple[np.ndarray, ...] | None:  # noqa: ARG002
+        """Return the poses of the ghost beside the arm in a state, in the order of `GHOST_BODIES`.
+
+        Each is (4, 4) float, to World, m; None where none is shown.
+        """
+        return None
+
+    def trace_guidance(self, now: SimulationState) -> TraceGuidance:  # noqa: ARG002
+        """Return how a trainee who traces the skin is guided in a state."""
+        return TraceGuidance()
+
+    def seat(self) -> Seat:
+        """Return what a teacher's board shows of this seat; nothing where no one trains."""
+        return Seat()
+
+    def instruct(self, order: InstructorOrder, text: str) -> str:
+        """Carry out an order of a teacher who knows the PIN; return why it is impossible, or "".
+
+        `text` is the sentence of `InstructorOrder.SAY`, else "".
+        """
+        raise NotImplementedError
 
     def view_joined(self, view: int, hello: Hello) -> None:
         """Register a view."""

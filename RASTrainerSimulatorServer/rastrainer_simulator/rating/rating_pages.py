@@ -5,13 +5,14 @@ from __future__ import annotations
 import uuid
 from collections.abc import Sequence
 from concurrent.futures import Future
-from typing import Any, Protocol
+from functools import partial
+from typing import Protocol
 
 from rastrainer.errors import InputError
 from rastrainer.study.ratings import HIGHEST, LOWEST, MARKS, RatingDomain, RatingForm, RatingStore
-from rastrainer_simulator.flow.session.open_pages import OpenPages, Page
+from rastrainer_simulator.flow.session.open_pages import OpenPages, Page, PageContent, PageRow
 from rastrainer_simulator.input.inputs import InputDevice
-from rastrainer_simulator.presentation.screen import Fact, Menu, MenuItem
+from rastrainer_simulator.presentation.screen import Fact
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.texts.texts import Texts
 
@@ -100,7 +101,6 @@ class RatingWork:
         self._marks[trial_id] = self._store.marks(self._rater, trial_id)
 
 
-_MARK = "mark "
 _KEYS = {f"{key}{mark}": mark for key in ("Digit", "Numpad") for mark in MARKS}
 _SENTENCES = {LOWEST: "low", (LOWEST + HIGHEST) // 2: "middle", HIGHEST: "high"}
 """Marks that a sentence describes."""
@@ -138,26 +138,27 @@ class RatingPage(Page):
         place = {"number": work.place + 1, "count": len(work.trial_ids)}
         return self.actions.texts.say(key, **place, **values)
 
-    def button(self, name: str, **others: Any) -> MenuItem:
-        return MenuItem(name, self.say(f"rating.{name}"), **others)
+    def rows(self, *names: str) -> tuple[PageRow, ...]:
+        """Return buttons that several pages have; "watch" goes back."""
+        acts = {"undo": self._undo, "previous": self._go_back, "leave": self._leave}
+        return tuple(
+            self.button(name, acts.get(name), self.say(f"rating.{name}")) for name in names
+        )
 
     def back(self) -> None:
         """Watch the replay again."""
         self.actions.watch()
 
-    def accept(self, item: str) -> None:
-        """Do what every page offers."""
-        actions = self.actions
-        if item == "undo":
-            actions.work.undo()
-            actions.rate()
-        elif item == "watch":
-            actions.watch()
-        elif item == "previous":
-            actions.work.go_back()
-            actions.load()
-        elif item == "leave":
-            actions.leave()
+    def _undo(self) -> None:
+        self.actions.work.undo()
+        self.actions.rate()
+
+    def _go_back(self) -> None:
+        self.actions.work.go_back()
+        self.actions.load()
+
+    def _leave(self) -> None:
+        self.actions.leave()
 
 
 class DomainPage(RatingPage):
@@ -171,22 +172,16 @@ class DomainPage(RatingPage):
         super().__init__(actions)
         self._form, self._domain = form, domain
 
-    def menu(self) -> Menu:
+    def content(self) -> PageContent:
         """Return the marks, three of them with what they mean."""
-        domain = self._domain.name
-        marks = (MenuItem(f"{_MARK}{mark}", self._label(mark)) for mark in MARKS)
-        others = ["undo"] if self.actions.work.marks else []
-        buttons = (self.button(name) for name in (*others, "watch", "leave"))
-        title = self.say("rating.title", form=self._form.title, domain=self.say(f"rate.{domain}"))
-        text = self.say("rating.text")
-        return Menu(self.name, title, (text,), items=(*marks, *buttons))
-
-    def accept(self, item: str) -> None:
-        """Store a mark, or do what every page offers."""
-        if item.startswith(_MARK):
-            self._give(int(item.removeprefix(_MARK)))
-        else:
-            super().accept(item)
+        marks = (
+            self.button(f"mark {mark}", partial(self._give, mark), self._label(mark))
+            for mark in MARKS
+        )
+        others = self.rows(*(["undo"] if self.actions.work.marks else []), "watch", "leave")
+        domain = self.say(f"rate.{self._domain.name}")
+        title = self.say("rating.title", form=self._form.title, domain=domain)
+        return PageContent(title, (self.say("rating.text"),), rows=(*marks, *others))
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
         """Store a typed mark."""
@@ -212,35 +207,25 @@ class RatedPage(RatingPage):
     name = "rated"
     first = "next"
 
-    def menu(self) -> Menu:
-        """Return the marks, and where the rater can go."""
+    def content(self) -> PageContent:
         work = self.actions.work
-        marks = work.marks
-        facts = tuple(
-            Fact(self.say(f"rate.{domain.name}"), str(marks[domain.name]))
+        facts = [
+            Fact(self.say(f"rate.{domain.name}"), str(work.marks[domain.name]))
             for form in work.forms
             for domain in form.domains
-            if domain.name in marks
-        )
+            if domain.name in work.marks
+        ]
         is_last = work.rated == len(work.trial_ids)
         title = self.say("rated.all" if is_last else "rated.title")
         text = self.say("rated.all text" if is_last else "rated.text", rated=work.rated)
-        names = [
-            *([] if is_last else ["next"]),
-            "undo",
-            "watch",
-            *(["previous"] if work.place else []),
-            "leave",
-        ]
-        return Menu(self.name, title, (text,), facts, tuple(map(self.button, names)))
+        following = self.button("next", self._go_on, self.say("rating.next"))
+        previous = ["previous"] if work.place else []
+        others = self.rows("undo", "watch", *previous, "leave")
+        return PageContent(title, (text,), facts, (*(() if is_last else (following,)), *others))
 
-    def accept(self, item: str) -> None:
-        """Go to the next replay, or do what every page offers."""
-        if item == "next":
-            self.actions.work.go_to_next()
-            self.actions.load()
-        else:
-            super().accept(item)
+    def _go_on(self) -> None:
+        self.actions.work.go_to_next()
+        self.actions.load()
 
 
 class LoadingPage(RatingPage):
@@ -252,16 +237,14 @@ class LoadingPage(RatingPage):
         super().__init__(actions)
         self._loading = loading
 
-    def menu(self) -> Menu:
-        """Return what the rater is waiting for."""
+    def content(self) -> PageContent:
         problem = ""
         if self._loading.done():
             error = self._loading.exception()
             problem = str(error) if isinstance(error, InputError) else ""
         text = problem or self.say("rating-loading.text")
-        names = ["previous"] if self.actions.work.place else []
-        buttons = tuple(map(self.button, (*names, "leave")))
-        return Menu(self.name, self.say("rating-loading.title"), (text,), items=buttons)
+        rows = self.rows(*(["previous"] if self.actions.work.place else []), "leave")
+        return PageContent(self.say("rating-loading.title"), (text,), rows=rows)
 
     def back(self) -> None:
         """There is nothing to go back to yet."""

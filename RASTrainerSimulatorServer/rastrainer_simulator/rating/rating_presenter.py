@@ -11,17 +11,8 @@ from rastrainer_simulator.flow.session.open_pages import OpenPages
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.gamepads import w3c_gamepad_inputs
 from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice
-from rastrainer_simulator.loop.results import Subscribers
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_of
-from rastrainer_simulator.presentation.presenter import (
-    Control,
-    Frames,
-    Hello,
-    InstructorOrder,
-    Seat,
-    TraceGuidance,
-    ViewUpdate,
-)
+from rastrainer_simulator.presentation.presenter import InstructorOrder, Presenter, ViewUpdate
 from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.rating.rating_pages import DomainPage, LoadingPage, RatedPage, RatingWork
 from rastrainer_simulator.replay.playback import Playback, ShownPlayback
@@ -35,19 +26,15 @@ _REPEATED = ("ArrowLeft", "ArrowRight")
 _IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlName.BACK}
 
 
-class RatingPresenter:
-    """A `Presenter` for one rater: replays under numbers, and the pages of the forms over them.
+class RatingPresenter(Presenter):
+    """The presenter for one rater: replays under numbers, and the pages of the forms over them.
 
     Attributes:
         work: what is marked.
         texts: in the chosen language.
         pages: which are open; none while a replay is watched.
         shown: the states that the views show.
-        screen: what is read.
-        control: free.
     """
-
-    control = Control()
 
     def __init__(
         self,
@@ -66,12 +53,12 @@ class RatingPresenter:
             language: BCP 47 tag.
             end: called when the rater leaves.
         """
+        super().__init__()
         self.work = work
         self.texts = Texts(LANGUAGES[language])
         self.pages = OpenPages(self._happened)
         self.shown = ShownPlayback(first)
         self._language, self._load, self._end = language, load, end
-        self._subscribers: Subscribers[ViewUpdate] = Subscribers()
         self._loading: Future[Playback] | None = None
         self._held: dict[int, tuple[frozenset[int], frozenset[int]]] = {}
         self._keys: dict[int, set[str]] = {}
@@ -116,29 +103,12 @@ class RatingPresenter:
     def leave(self) -> None:
         self._end()
 
-    def subscribe(self, listener: Callable[[ViewUpdate], None]) -> Callable[[], None]:
-        """Have `listener` called with each new screen and event; returns what ends that."""
-        return self._subscribers.add(listener)
-
     def pictures(self, now: SimulationState) -> Pictures:
         return self._replay.pictures(now)
-
-    def ghost(self, now: SimulationState) -> None:
-        """Return None: a recorded trial has no ghost."""
-
-    def trace_guidance(self, now: SimulationState) -> TraceGuidance:
-        return self._replay.trace_guidance(now)
-
-    def seat(self) -> Seat:
-        """Return an empty seat: no one trains here."""
-        return Seat()
 
     def instruct(self, order: InstructorOrder, text: str) -> str:
         """Refuse: a recorded trial takes no orders."""
         return self._replay.instruct(order, text)
-
-    def view_joined(self, view: int, hello: Hello) -> None:
-        """Register a view."""
 
     def view_left(self, view: int) -> None:
         self._held.pop(view, None)
@@ -190,9 +160,6 @@ class RatingPresenter:
             name = ControlName(control)
             self._do(lambda: self.pages.pressed(_IN_MENUS.get(name, name)))
 
-    def on_sticks(self, view: int, *positions: object) -> None:
-        """Ignore it: no one drives."""
-
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
         self._replay.on_orbit(view, around_deg, higher_deg, zoom)
 
@@ -203,21 +170,10 @@ class RatingPresenter:
         else:
             self._do(lambda: self.pages.choose(name))
 
-    def on_text(self, view: int, name: str, value: str) -> None:
-        """Ignore it: there is no text item."""
-
-    def on_frames(self, view: int, frames: Frames) -> None:
-        """Ignore it: nothing is recorded."""
-
-    def on_picture(self, view: int, task: str, share: float) -> None:
-        """Ignore it: no clock runs."""
-
     def on_visibility(self, view: int, is_visible: bool) -> None:
-        """Pause while no one is watching."""
         self._replay.on_visibility(view, is_visible)
 
     def on_silence(self, view: int) -> None:
-        """Pause while no one is watching."""
         self._replay.on_silence(view)
 
     def _watch(self, playback: Playback) -> None:
@@ -237,7 +193,7 @@ class RatingPresenter:
         if isinstance(update, Screen):
             self._refresh()
         else:
-            self._subscribers.publish(update)
+            self.publish(update)
 
     def _pad_pressed(self, names: Sequence[str]) -> None:
         for name in names:
@@ -268,7 +224,7 @@ class RatingPresenter:
         screen = dataclasses.replace(screen, warnings=(*screen.warnings, *problem))
         if screen != self.screen:
             self.screen = screen
-            self._subscribers.publish(screen)
+            self.publish(screen)
 
     def _menu_screen(self) -> Screen:
         def label(code: str) -> str:
@@ -282,7 +238,7 @@ class RatingPresenter:
 
     def _happened(self, what: FeedbackEvent) -> None:
         self._count += 1
-        self._subscribers.publish(feedback_of(what, self._count))
+        self.publish(feedback_of(what, self._count))
 
 
 def _pressed(values: Sequence[float]) -> frozenset[int]:

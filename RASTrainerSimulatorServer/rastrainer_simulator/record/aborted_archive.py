@@ -7,15 +7,16 @@ otherwise ending the simulator would be a way to discard a bad trial.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
-from rastrainer.journal.folder import header_number
+from rastrainer.journal.folder import JournalNumber
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal, stamp
 from rastrainer.journal.recording import WholeRecording
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import PROCEDURE_PHASES, AbortReason, Phase
 from rastrainer.scenario.scenario import method_of
 from rastrainer.trial.aborted_trial import AbortedTrial
@@ -43,7 +44,7 @@ class ArchivedAttempt:
         return {
             "trialId": self.record.trial_id,
             "phase": "aborted",
-            "record": self.record.to_json(),
+            "record": record_to_json(self.record),
             "acknowledged": self.acknowledged,
         }
 
@@ -75,7 +76,7 @@ class AbortedArchive:
         if record is None:
             return
         journal, last = Journal.reopened(reading), reading.entries[-1]
-        entry = attempt_entry(record, stamp(last["tick"], last["simTime"]))
+        entry = attempt_entry(record, stamp(last["tick"], last["simTimeS"]))
         _append(journal, {**entry, "seed": reading.header["seed"]})
         self.add(record, journal)
 
@@ -126,14 +127,14 @@ class AbortedArchive:
 
 
 def attempt_entry(record: AbortedTrial, times: Mapping[str, Any]) -> dict[str, Any]:
-    return {"kind": ATTEMPT, **times, "record": record.to_json()}
+    return {"kind": ATTEMPT, **times, "record": record_to_json(record)}
 
 
 def _archived_attempt(reading: JournalReading) -> ArchivedAttempt | None:
     found = reading.of_kind(ATTEMPT)
     if not found or reading.of_kind("registered"):
         return None
-    record = AbortedTrial.from_json(found[-1].get("record"))
+    record = record_from_json(AbortedTrial, found[-1].get("record"))
     return ArchivedAttempt(record, bool(reading.of_kind("acknowledged")))
 
 
@@ -165,7 +166,7 @@ def _interrupted_attempt(entries: tuple[Mapping[str, Any], ...]) -> AbortedTrial
         TouchedPoint(
             label=touch.label,
             position_mm=_measured_mm(touches[touch.label]),
-            sim_time_s=touches[touch.label]["simTime"] - header["tickS"],
+            sim_time_s=touches[touch.label]["simTimeS"] - header["tickS"],
             utc=touches[touch.label]["utc"],
         )
         for touch in trajectory.touches
@@ -179,6 +180,7 @@ def _interrupted_attempt(entries: tuple[Mapping[str, Any], ...]) -> AbortedTrial
     else:
         # Samples are taken while the trial's time runs.
         elapsed_s = float(trajectory.times_s[-1]) if len(trajectory.times_s) else 0.0
+    number = record_from_json(JournalNumber, header)
     record = AbortedTrial(
         trial_id=header["trialId"],
         trainee=header["trainee"],
@@ -189,14 +191,15 @@ def _interrupted_attempt(entries: tuple[Mapping[str, Any], ...]) -> AbortedTrial
         aborted_utc=entries[-1]["utc"],
         elapsed_s=elapsed_s,
         phase=phase,
-        reason=AbortReason.NOT_RESUMED.value,
+        reason=AbortReason.ABANDONED.value,
         points=points,
         rejected_touches=len(trajectory.refused),
         undone_touches=trajectory.undone,
         versions=header["versions"],
-        touch_rule=header["settings"]["training"]["touch_rule"],
+        touch_rule=header["settings"]["training"]["touchRule"],
         method=method_of(header["method"]["name"] if "method" in header else None),
         traced=len(trajectory.traced),
-        **asdict(header_number(header)),
+        number=number.number,
+        series=number.series,
     )
-    return AbortedTrial.from_json(record.to_json())
+    return record_from_json(AbortedTrial, record_to_json(record))

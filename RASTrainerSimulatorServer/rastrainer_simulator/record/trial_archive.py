@@ -17,6 +17,7 @@ from rastrainer.commands import CommandName
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.journal.folder import SUFFIX, journals_of
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.record.aborted_archive import AbortedArchive
@@ -63,7 +64,7 @@ class ArchivedTrial:
         data: dict[str, Any] = {
             "trialId": self.record.trial_id,
             "phase": "registered" if self.scored is None else "scored",
-            "record": self.record.to_json(),
+            "record": record_to_json(self.record),
             "acknowledged": self.acknowledged,
         }
         if self.registration is None:
@@ -261,10 +262,10 @@ def _archived_trial(reading: JournalReading) -> ArchivedTrial | None:
         return None
     scores = reading.of_kind("scored")
     registrations = reading.of_kind("registration")
-    record = TrialRecord.from_json(registered[-1]["record"])
+    record = record_from_json(TrialRecord, registered[-1]["record"])
     trial = ArchivedTrial(
         record=replace(record, journal_sha256=registered[-1]["sha256"]),
-        truth=Truth.from_json(registered[-1]["truth"]),
+        truth=record_from_json(Truth, registered[-1]["truth"]),
         seed=reading.header["seed"],
         registration=registrations[0]["arguments"] if registrations else None,
         scored=scores[-1]["arguments"] if scores else None,

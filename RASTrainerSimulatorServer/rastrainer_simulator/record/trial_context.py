@@ -5,17 +5,18 @@ from __future__ import annotations
 import contextlib
 import platform
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from importlib import metadata
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Annotated, Any
 
 import rastrainer
 from rastrainer.errors import InputError
-from rastrainer.files.json_fields import Fields
-from rastrainer.protocol import PROTOCOL_VERSION, Mode, TouchRule
-from rastrainer_simulator.core.settings import SimulationSettings, settings_from_json
+from rastrainer.json_checks import number, numbers, one_of, text, whole_number
+from rastrainer.json_records import record_from_json, record_to_json
+from rastrainer.protocol import PROTOCOL_VERSION, Mode
+from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
 from rastrainer_simulator.input.inputs import SourceKind
 
@@ -50,12 +51,14 @@ def setup_of(
 ) -> SimulationSetup:
     """Return the setup that a journal's header describes."""
     try:
-        settings = settings_from_json(SimulationSettings, _with_touch_rule(header["settings"]))
+        settings = record_from_json(
+            SimulationSettings, header["settings"], "The journal's settings", only_known=True
+        )
         name, sha256 = header["scenario"]["name"], header["scenario"]["sha256"]
     except (KeyError, TypeError, AttributeError):
         raise InputError("The journal's header lacks the scenario or the settings.") from None
     setup = load_setup(scenario_folder, settings, robot_meshes=robot_meshes)
-    if not setup.is_of(sha256):
+    if sha256 != setup.scenario_sha256:
         raise InputError(
             f"The trial was recorded with a scenario {name!r} whose files differ from those of "
             f"{setup.scenario.name!r} here: give its folder with --scenario."
@@ -82,15 +85,11 @@ def setup_of(
     return setup
 
 
-def _with_touch_rule(settings: Mapping[str, Any]) -> dict[str, Any]:
-    rule = {"touch_rule": TouchRule.WITHIN_RADIUS.value}
-    return {**settings, "training": {**rule, **settings.get("training", {})}}
-
-
 GUIDED_TOUCHES = 3
-FORMAT_VERSION = 1
-TUTORIAL_DECIMALS = 3
 LONGEST_S, MAX_MM = 1e6, 1e4
+_Seconds = Annotated[float, number(0, LONGEST_S, "s")]
+_Frames = Annotated[int, whole_number(0, 1_000_000)]
+_Angle = Annotated[float, number(-360, 360, "degrees")]
 
 
 @dataclass(frozen=True)
@@ -98,60 +97,21 @@ class TutorialOutcome:
     """A finished tutorial.
 
     Attributes:
-        trainee: pseudonym.
         device: value of the `SourceKind` that the arm was driven with.
-        mode: "desktop" or "hmd".
-        seconds: how long it took, menus excluded.
+        duration_s: menus excluded.
         first_error_mm: of the first touch.
         errors_mm: of the guided touches at the end.
-        step_seconds: the same as `seconds` for each step, by name.
+        step_times_s: by the steps' names.
     """
 
     trainee: str
-    device: str
-    mode: str
-    seconds: float
-    first_error_mm: float
-    errors_mm: tuple[float, ...]
-    step_seconds: Mapping[str, float] = field(default_factory=dict)
-
-    @classmethod
-    def of(cls, fields: Fields) -> TutorialOutcome:
-        """Return the tutorial that a file holds."""
-        if fields.number("formatVersion", 0, 1e9) != FORMAT_VERSION:
-            raise InputError(f"The tutorial's formatVersion must be {FORMAT_VERSION}.")
-        steps = fields.fields("stepSeconds")
-        return cls(
-            trainee=fields.text("trainee", 64),
-            device=fields.one_of("device", tuple(kind.value for kind in SourceKind)),
-            mode=fields.one_of("mode", tuple(mode.value for mode in Mode)),
-            seconds=fields.number("seconds", 0, LONGEST_S),
-            first_error_mm=fields.number("firstErrorMm", 0, MAX_MM),
-            errors_mm=tuple(fields.numbers("errorsMm", GUIDED_TOUCHES, MAX_MM)),
-            step_seconds={step: steps.number(step, 0, LONGEST_S) for step in steps.names()},
-        )
-
-    def to_json(self) -> dict[str, Any]:
-        """Return the JSON object that `of` reads."""
-        steps = {
-            step: round(seconds, TUTORIAL_DECIMALS) for step, seconds in self.step_seconds.items()
-        }
-        return {
-            "formatVersion": FORMAT_VERSION,
-            "trainee": self.trainee,
-            "device": self.device,
-            "mode": self.mode,
-            "seconds": round(self.seconds, TUTORIAL_DECIMALS),
-            "firstErrorMm": round(self.first_error_mm, TUTORIAL_DECIMALS),
-            "errorsMm": [round(error, TUTORIAL_DECIMALS) for error in self.errors_mm],
-            "stepSeconds": steps,
-        }
-
-    def entry(self) -> dict[str, Any]:
-        """Return what goes into the journal of a trial run, without its times."""
-        kept = ("device", "mode", "seconds", "firstErrorMm", "errorsMm")
-        values = self.to_json()
-        return {"kind": "tutorial", **{name: values[name] for name in kept}}
+    device: Annotated[str, one_of(*(kind.value for kind in SourceKind))]
+    mode: Annotated[str, one_of(*(mode.value for mode in Mode))]
+    duration_s: _Seconds
+    first_error_mm: Annotated[float, number(0, MAX_MM, "mm")]
+    errors_mm: Annotated[tuple[float, ...], numbers(GUIDED_TOUCHES, MAX_MM, "mm")]
+    step_times_s: Mapping[str, _Seconds] = field(default_factory=dict)
+    format_version: Annotated[int, whole_number(1, 1)] = 1
 
 
 @dataclass(frozen=True)
@@ -162,26 +122,15 @@ class DisplayReport:
         view: "desktop", "page" or "headset".
         device: model of the headset or name of the browser; "" where unknown.
         refresh_hz: of the display; 0 where unknown.
-        shown: frames shown.
-        dropped: frames dropped.
+        shown: frames.
+        dropped: frames.
     """
 
     view: str
-    device: str
-    refresh_hz: float
-    shown: int
-    dropped: int
-
-    @classmethod
-    def of(cls, entry: Mapping[str, Any]) -> DisplayReport:
-        named = (entry[name] for name in ("view", "device", "refreshHz", "shown", "dropped"))
-        return cls(*named)
-
-    def entry(self) -> dict[str, Any]:
-        """Return the journal's entry, without its times."""
-        values = asdict(self)
-        values["refreshHz"] = values.pop("refresh_hz")
-        return {"kind": "display", **values}
+    device: Annotated[str, text(64, 0)]
+    refresh_hz: Annotated[float, number(0, 1e6, "Hz")]
+    shown: _Frames
+    dropped: _Frames
 
 
 class DisplayUse:
@@ -220,9 +169,6 @@ class DisplayUse:
         }
 
 
-DECIMALS = 2
-
-
 @dataclass(frozen=True)
 class ViewReport:
     """A view, compared with the scenario's camera.
@@ -235,22 +181,11 @@ class ViewReport:
         follows: whether it goes automatically to the best view of each next point, as set.
     """
 
-    azimuth_deg: float
-    elevation_deg: float
-    zoom: float
+    azimuth_deg: _Angle
+    elevation_deg: _Angle
+    zoom: Annotated[float, number(0, 1000)]
     is_automatic: bool
     follows: bool
-
-    def entry(self) -> dict[str, Any]:
-        """Return what goes into the journal, without its times."""
-        return {
-            "kind": "view",
-            "azimuthDeg": round(self.azimuth_deg, DECIMALS),
-            "elevationDeg": round(self.elevation_deg, DECIMALS),
-            "zoom": round(self.zoom, DECIMALS),
-            "isAutomatic": self.is_automatic,
-            "follows": self.follows,
-        }
 
 
 @dataclass(frozen=True)
@@ -258,10 +193,6 @@ class GuidanceReport:
     """How the trainee is guided to the next point in this trial: "words", "arrow" or "none"."""
 
     guidance: str
-
-    def entry(self) -> dict[str, Any]:
-        """Return what goes into the journal, without its times."""
-        return {"kind": "guidance", "guidance": self.guidance}
 
 
 @dataclass(frozen=True)
@@ -273,9 +204,25 @@ class GhostReport:
 
     ghost: str
 
-    def entry(self) -> dict[str, Any]:
-        """Return what goes into the journal, without its times."""
-        return {"kind": "ghost", "ghost": self.ghost}
+
+NotedReport = DisplayReport | ViewReport | GuidanceReport | GhostReport | TutorialOutcome
+"""Entries on how a trial is seen and prepared; the simulation does not depend on them."""
+_KINDS = {
+    DisplayReport: "display",
+    ViewReport: "view",
+    GuidanceReport: "guidance",
+    GhostReport: "ghost",
+    TutorialOutcome: "tutorial",
+}
+
+
+def report_entry(report: NotedReport) -> dict[str, Any]:
+    """Return a report as the journal's entry, without its times."""
+    values = record_to_json(report, with_defaults=True)
+    # Those of a tutorial are in its own file.
+    for name in ("trainee", "stepTimesS", "formatVersion"):
+        values.pop(name, None)
+    return {"kind": _KINDS[type(report)], **values}
 
 
 @dataclass(frozen=True)
@@ -287,16 +234,8 @@ class PlayingSession:
         is_seeded: whether the seeds of the heads' poses were chosen (`--seed`), not drawn.
     """
 
-    speed: float | None = 1.0
+    speed: Annotated[float | None, number(0, 1e6)] = 1.0
     is_seeded: bool = False
-
-    def to_json(self) -> dict[str, Any]:
-        """Return what goes into a journal."""
-        return {"speed": self.speed, "isSeeded": self.is_seeded}
 
 
 REAL_TIME = PlayingSession()
-
-
-NotedReport = DisplayReport | ViewReport | GuidanceReport | GhostReport | TutorialOutcome
-"""Entries on how a trial is seen and prepared; the simulation does not depend on them."""

@@ -5,13 +5,13 @@ from __future__ import annotations
 import hashlib
 import struct
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.commands import CommandName
-from rastrainer.journal.folder import UNNUMBERED, JournalNumber, header_number
+from rastrainer.journal.folder import UNNUMBERED, JournalNumber
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, stamp
 from rastrainer.journal.recording import Recording
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import PROCEDURE_PHASES, Phase, RegistrationMethod
 from rastrainer.scenario.scenario import method_of, task_by_method
@@ -24,6 +24,7 @@ from rastrainer_simulator.record.trial_context import (
     GuidanceReport,
     NotedReport,
     PlayingSession,
+    report_entry,
 )
 from rastrainer_simulator.record.trial_records import TrialRecords, UnmeasuredRecord
 from rastrainer_simulator.state import (
@@ -116,7 +117,7 @@ class TrialEntries:
                 "kind": "header",
                 "format": FORMAT,
                 "version": FORMAT_VERSION,
-                **asdict(number),
+                **record_to_json(number, with_defaults=True),
                 **times,
                 "trialId": training.trial_id,
                 "trainee": training.trainee,
@@ -124,8 +125,8 @@ class TrialEntries:
                 "shortestPathMm": task.shortest_path_mm,
                 "mode": training.mode,
                 "tickS": dt,
-                "session": session.to_json(),
-                "before": asdict(StartingPoint.after(before)),
+                "session": record_to_json(session, with_defaults=True),
+                "before": record_to_json(StartingPoint.after(before), with_defaults=True),
                 **simulation.setup.description(
                     "" if training.procedure is None else training.procedure.name,
                     training.method,
@@ -152,15 +153,17 @@ class TrialEntries:
         """
         training = state.training
         entries = cls(simulation, training.trial_id, earlier[0]["utc"], dt)
-        entries.records.number = header_number(earlier[0])
+        entries.records.number = record_from_json(JournalNumber, earlier[0])
         for entry in earlier:
             entries._collect(entry)
             if entry["kind"] in _TOUCHED:
-                entries.records.date(entry["simTime"] - dt, entry["utc"])
+                entries.records.date(entry["simTimeS"] - dt, entry["utc"])
             elif entry["kind"] == EventKind.TRACE.value:
-                entries.records.date(entry["simTime"], entry["utc"])
+                entries.records.date(entry["simTimeS"], entry["utc"])
             elif entry["kind"] == "display":
-                entries.records.display.add(DisplayReport.of(entry))
+                entries.records.display.add(
+                    record_from_json(DisplayReport, entry, "A display's entry")
+                )
             elif entry["kind"] == "guidance":
                 entries.records.display.guidance = entry["guidance"]
             elif entry["kind"] == "ghost":
@@ -169,8 +172,8 @@ class TrialEntries:
             {
                 "kind": "continued",
                 **stamp(state.tick, state.sim_time),
-                "since": since,
-                "session": session.to_json(),
+                "sinceS": since,
+                "session": record_to_json(session, with_defaults=True),
                 "camera": state.camera,
                 "phase": training.phase.value,
                 "kept": len(training.touches),
@@ -207,7 +210,7 @@ class TrialEntries:
                 self.records.date(event.sim_time, times["utc"])
             entry = self._event_entry(times, event)
             if entry["kind"] == "registered":
-                entry["truth"] = simulation.truth.to_json()
+                entry["truth"] = record_to_json(simulation.truth)
                 registered = entry
             self._append(entry)
         if is_sampled:
@@ -227,7 +230,7 @@ class TrialEntries:
             self.records.display.guidance = report.guidance
         elif isinstance(report, GhostReport):
             self.records.display.ghost = report.ghost
-        self._append(report.entry() | stamp(state.tick, state.sim_time))
+        self._append(report_entry(report) | stamp(state.tick, state.sim_time))
 
     def _append(self, entry: dict[str, Any]) -> None:
         self.pending.append(entry)

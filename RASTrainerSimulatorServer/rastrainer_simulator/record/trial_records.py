@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.journal.folder import UNNUMBERED
+from rastrainer.json_records import record_to_json
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.procedure.plan import Procedure, ProcedureTrajectory
@@ -169,7 +170,7 @@ class UnmeasuredRecord:
             played = replace(played, is_seed_repeated=was_played(self._entry["seed"]))
         motion = trial_motion(self._trajectory)
         record = replace(self._record, motion=motion, played=played)
-        self._entry["record"] = record.to_json()
+        self._entry["record"] = record_to_json(record)
         return record
 
 
@@ -218,7 +219,7 @@ class FeedRecording:
     def add(self, entry: Mapping[str, Any]) -> None:
         """Add one entry."""
         if entry["kind"] == "sample" and "feedMm" in entry:
-            self._add_sample(entry["simTime"], entry["feedMm"])
+            self._add_sample(entry["simTimeS"], entry["feedMm"])
         elif entry["kind"] == "phase" and "procedure" in entry:
             self._trajectory = entry["procedure"]["trajectory"]
             self._tool = _NAMES.get(entry["procedure"]["stage"], "")
@@ -341,7 +342,7 @@ def procedure_after(
             entry["checkpoint"],
             in_meters(entry["positionMm"]),
             entry["errorMm"] / MM_PER_M,
-            entry["simTime"],
+            entry["simTimeS"],
             time_s,
         )
         return replace(before, checkpoints=(*before.checkpoints, touched))

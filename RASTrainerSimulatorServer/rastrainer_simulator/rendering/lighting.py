@@ -1,4 +1,4 @@
-"""Light as in a bright room, with soft shadows; plain light, drawn fast; and what glows in both."""
+"""Light as in a bright room, with soft shadows, and what glows in it."""
 
 from __future__ import annotations
 
@@ -138,43 +138,6 @@ def _with_shaded_corners(picture: vtkRenderPass) -> vtkRenderPass:
     corners.BlurOn()
     corners.SetDelegatePass(picture)
     return corners
-
-
-PLAIN_LIGHTS = (
-    ((-0.25, -0.55, 0.80), 0.86),
-    ((0.75, -0.60, 0.25), 0.30),
-    ((0.45, 0.80, 0.40), 0.45),
-)
-"""Lamps far away, without shadows or reflections: from the front, the side and behind, where there
-are touches, too. The direction toward each in World, and its intensity."""
-AMBIENT, DIFFUSE = 0.34, 0.72
-"""Shares of a surface's color that it shows in any light, and that it shows in the lamps' light."""
-
-
-def add_plain_lights(renderer: vtkRenderer) -> None:
-    """Give a renderer plain light."""
-    for direction, intensity in PLAIN_LIGHTS:
-        light = vtkLight()
-        light.SetLightTypeToSceneLight()
-        light.PositionalOff()
-        light.SetPosition(*direction)
-        light.SetFocalPoint(0.0, 0.0, 0.0)
-        light.SetIntensity(intensity)
-        renderer.AddLight(light)
-
-
-def lit_colors(normals: np.ndarray, color: np.ndarray | tuple[float, float, float]) -> np.ndarray:
-    """Return the color of each vertex in plain light, (n, 3) uint8.
-
-    Args:
-        normals: (n, 3) float, in World, of unit length.
-        color: of the surface, or (n, 3) of each vertex, sRGB, 0 to 1.
-    """
-    light = np.full(len(normals), AMBIENT)
-    for direction, intensity in PLAIN_LIGHTS:
-        toward = np.array(direction) / np.linalg.norm(direction)
-        light += DIFFUSE * intensity * np.clip(normals @ toward, 0.0, None)
-    return (255.0 * np.clip(light[:, None] * np.array(color), 0.0, 1.0) + 0.5).astype(np.uint8)
 
 
 def glow(target: vtkProperty, color: tuple[float, float, float]) -> None:

@@ -36,8 +36,7 @@ class Ghost:
     def __init__(self, track: ReplayTrack, setup: SimulationSetup, head_to_world: np.ndarray):
         """Prepare; HeadToWorld is that of the present trial, (4, 4) float, mm."""
         header, touches = track.header, track.trajectory.touches
-        is_same = header["robot"] == setup.robot.name and setup.is_of(header["scenario"]["sha256"])
-        if not is_same or not touches:
+        if not setup.is_of(header) or not touches:
             raise InputError("The trial cannot be a ghost: it has another head, or no touch.")
         then = setup.scenario.perturbed_head_to_world(header["seed"])
         self._moved = head_to_world @ np.linalg.inv(then)

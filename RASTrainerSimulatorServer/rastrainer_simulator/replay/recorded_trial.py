@@ -13,6 +13,7 @@ from typing import Generic, TypeVar
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.journal.recording import RecordedEvent, ReplayTrack, read_track
+from rastrainer.json_records import record_from_json
 from rastrainer.procedure.plan import Procedure
 from rastrainer.protocol import TRACED_METHODS, Phase, Proximity, RegistrationMethod
 from rastrainer.scenario.scenario import method_of, task_by_method
@@ -79,8 +80,7 @@ class RecordedTrial:
 
     def _prepare(self, track: ReplayTrack, setup: SimulationSetup) -> None:
         header, scenario = track.header, setup.scenario
-        is_same_robot = header["robot"] == setup.robot.name
-        if not is_same_robot or not setup.is_of(header["scenario"]["sha256"]):
+        if not setup.is_of(header):
             raise InputError("The trial was recorded with another scenario or robot.")
         if not setup.matches_procedure(header):
             raise InputError("The trial was recorded with another procedure.")
@@ -114,7 +114,7 @@ class RecordedTrial:
         self._goals = dict(zip(task.labels, map(tuple, places.tolist()), strict=True))
         self._training_settings = settings.training
         self._start_tick, self._tick_s = int(header["before"]["tick"]), float(header["tickS"])
-        self._start_s = float(header["simTime"]) - self._tick_s
+        self._start_s = float(header["simTimeS"]) - self._tick_s
         self.worst = _worst(track, setup)
 
     def state_at(self, time_s: float) -> SimulationState:
@@ -268,7 +268,7 @@ def _training_after(
         return replace(before, trace=_trace_after(before.trace, event))
     if entry["kind"] == "touch":
         place = in_meters(entry["positionMm"])
-        touch = TouchState(entry["label"], place, entry["simTime"], event.time_s)
+        touch = TouchState(entry["label"], place, entry["simTimeS"], event.time_s)
         touches = (*touches, touch)
         following = labels[len(touches)] if len(touches) < len(labels) else None
         return replace(before, touches=touches, next_point=following)
@@ -296,7 +296,7 @@ def _trace_after(before: TraceState, event: RecordedEvent) -> TraceState:
     entry = event.entry
     if entry["kind"] == "trace":
         place = in_meters(entry["positionMm"])
-        return before.with_point(TracedPoint(place, entry["simTime"], event.time_s))
+        return before.with_point(TracedPoint(place, entry["simTimeS"], event.time_s))
     if entry["on"]:
         return before.begun()
     return before.undone() if "undone" in entry else before.ended()
@@ -314,7 +314,7 @@ def _event(event: RecordedEvent) -> Event:
     kind = event.entry["kind"]
     is_phase = kind in ("registered", "aborted")
     return Event(
-        EventKind.PHASE if is_phase else EventKind(kind), event.entry["simTime"], event.entry
+        EventKind.PHASE if is_phase else EventKind(kind), event.entry["simTimeS"], event.entry
     )
 
 
@@ -323,7 +323,7 @@ def _worst(track: ReplayTrack, setup: SimulationSetup) -> tuple[str, float, floa
     registered = next((e.entry for e in track.events if e.entry["kind"] == "registered"), None)
     if registered is None:
         return None
-    record = TrialRecord.from_json(registered["record"])
+    record = record_from_json(TrialRecord, registered["record"])
     worst = analyze_trial(record, setup.scenario, trajectory=track.trajectory).feedback.worst
     ends = {touch.label: touch.time_s for touch in track.trajectory.touches}
     labels = [point.label for point in record.points]

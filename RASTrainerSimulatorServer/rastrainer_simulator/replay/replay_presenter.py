@@ -9,17 +9,8 @@ from functools import reduce
 
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.input.inputs import ControlName
-from rastrainer_simulator.loop.results import Subscribers
 from rastrainer_simulator.presentation.feedback_event import feedback_event, feedback_of
-from rastrainer_simulator.presentation.presenter import (
-    Control,
-    Frames,
-    Hello,
-    InstructorOrder,
-    Seat,
-    TraceGuidance,
-    ViewUpdate,
-)
+from rastrainer_simulator.presentation.presenter import InstructorOrder, Presenter
 from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage
 from rastrainer_simulator.replay.playback import PERIOD_S, Playback
 from rastrainer_simulator.state import SimulationState, StepResult
@@ -167,15 +158,8 @@ _HINTS = (
 """Keys, and the text of what they do."""
 
 
-class ReplayPresenter:
-    """A `Presenter` for playing, pausing and seeking; the arm is not driven.
-
-    Attributes:
-        screen: the texts.
-        control: free.
-    """
-
-    control = Control()
+class ReplayPresenter(Presenter):
+    """The presenter for playing, pausing and seeking; the arm is not driven."""
 
     def __init__(
         self, playback: Playback, language: str, end: Callable[[], None], blinded: str = ""
@@ -189,10 +173,10 @@ class ReplayPresenter:
             blinded: what a rater reads in place of task and trainee, who also is not led to the
                 worst touch, which only the truth reveals; "" for everybody else.
         """
+        super().__init__()
         self._playback = playback
         self._language = language
         self._texts = Texts(LANGUAGES[language])
-        self._subscribers: Subscribers[ViewUpdate] = Subscribers()
         self._count = 0
         self._held: dict[int, frozenset[int]] = {}
         self._view = ViewControl()
@@ -211,18 +195,7 @@ class ReplayPresenter:
         self._view.use(now.camera)
         return Pictures(self._view.pose(self._playback.setup.scenario.cameras[now.camera]))
 
-    def ghost(self, now: SimulationState) -> None:
-        """Return None: a recorded trial has no ghost."""
-
-    def trace_guidance(self, now: SimulationState) -> TraceGuidance:  # noqa: ARG002
-        """Return no guidance: only what was traced is drawn."""
-        return TraceGuidance()
-
-    def seat(self) -> Seat:
-        """Return an empty seat: no one trains here."""
-        return Seat()
-
-    def instruct(self, _order: InstructorOrder, _text: str) -> str:
+    def instruct(self, order: InstructorOrder, text: str) -> str:  # noqa: ARG002
         """Refuse: a recorded trial takes no orders."""
         return self._texts.say("instructor.nothing runs")
 
@@ -230,13 +203,6 @@ class ReplayPresenter:
         self._wants_worst = False
         camera = self._playback.setup.scenario.cameras[self._playback.latest.camera]
         self._view.turn(camera, around_deg, higher_deg, zoom)
-
-    def subscribe(self, listener: Callable[[ViewUpdate], None]) -> Callable[[], None]:
-        """Have `listener` called with each new screen and event; returns what ends that."""
-        return self._subscribers.add(listener)
-
-    def view_joined(self, view: int, hello: Hello) -> None:
-        """Register a view."""
 
     def view_left(self, view: int) -> None:
         self._held.pop(view, None)
@@ -260,28 +226,11 @@ class ReplayPresenter:
         """Process a button of an XR controller."""
         self._do(_PRESSES.get(control))
 
-    def on_sticks(self, view: int, *positions: object) -> None:
-        """Ignore it: no one drives."""
-
-    def on_item(self, view: int, name: str) -> None:
-        """Ignore it: there is no menu."""
-
-    def on_text(self, view: int, name: str, value: str) -> None:
-        """Ignore it: there is no menu."""
-
-    def on_frames(self, view: int, frames: Frames) -> None:
-        """Ignore it: nothing is recorded."""
-
-    def on_picture(self, view: int, task: str, share: float) -> None:
-        """Ignore it: no clock runs."""
-
     def on_visibility(self, view: int, is_visible: bool) -> None:  # noqa: ARG002
-        """Ignore it: nothing is missed."""
         if not is_visible:
             self._playback.pause(True)
 
     def on_silence(self, view: int) -> None:  # noqa: ARG002
-        """Ignore it: the picture may be paused."""
         self._playback.pause(True)
 
     def _do(self, action: PlayerAction | None) -> None:
@@ -324,16 +273,13 @@ class ReplayPresenter:
             if kind is None:
                 continue
             self._count += 1
-            self._tell(feedback_of(kind, self._count))
+            self.publish(feedback_of(kind, self._count))
 
     def _refresh(self) -> None:
         screen = self._make_screen()
         if screen != self.screen:
             self.screen = screen
-            self._tell(screen)
-
-    def _tell(self, news: ViewUpdate) -> None:
-        self._subscribers.publish(news)
+            self.publish(screen)
 
     def _make_screen(self) -> Screen:
         hints = tuple(

@@ -10,6 +10,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import Integrity, JournalReading
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import FINISHED_PHASES
 from rastrainer_simulator.core.interrupted_trial import (
     InterruptedTrial,
@@ -48,7 +49,7 @@ _NOT_SIMULATED = frozenset(
     }
 )
 _OF_THE_CLOCK = frozenset(
-    {"n", "previous", "sha256", "monotonic", "utc", "record", "versions", "session"}
+    {"n", "previous", "sha256", "monotonicS", "utc", "record", "versions", "session"}
 )
 
 
@@ -94,7 +95,7 @@ def replay(
 def tick_span(reading: JournalReading) -> tuple[int, int]:
     """Return the tick before a trial and its last one."""
     with refusing_malformed(f"{reading.path} cannot be replayed: its ticks are missing"):
-        first = StartingPoint(**reading.header["before"]).tick
+        first = record_from_json(StartingPoint, reading.header["before"]).tick
         simulated = (entry for entry in reading.entries if entry["kind"] not in _NOT_SIMULATED)
         return first, max((entry["tick"] for entry in simulated), default=first)
 
@@ -103,7 +104,7 @@ def _replay(
     reading: JournalReading, setup: SimulationSetup, watch: Callable[[StepResult], None]
 ) -> ReplayReport:
     header = reading.header
-    start = StartingPoint(**header["before"])
+    start = record_from_json(StartingPoint, header["before"])
     _, last = tick_span(reading)
     if not start.tick <= last <= start.tick + LONGEST_TRIAL_TICKS:
         raise InputError(f"{reading.path} has {last - start.tick} ticks: no trial is that long.")
@@ -178,9 +179,9 @@ class _Player:
         interrupted = InterruptedTrial.of(earlier)
         if interrupted is None:
             raise InputError("The journal resumes a trial that was not open.")
-        point = StartingPoint(continued["tick"], continued["simTime"], camera=continued["camera"])
+        point = StartingPoint(continued["tick"], continued["simTimeS"], camera=continued["camera"])
         self._simulation.resume_trial(interrupted, point)
-        since = interrupted.point.sim_time
+        since = interrupted.point.sim_time_s
         self._entries = TrialEntries.resumed(
             self._simulation, self._simulation.state, earlier, since, self._dt
         )

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import atan2, cos, dist, isfinite, sin, sqrt
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.json_checks import Setting, whole_number
 from rastrainer_simulator.robot.closure import Roll
 from rastrainer_simulator.robot.kinematics import Kinematics
 from rastrainer_simulator.robot.srs_arm import (
@@ -34,9 +35,9 @@ BLOCKED = "No posture inside the joint limits holds the tool like that; the arm 
 class FabrikSettings:
     """When a solution is good enough, and when the passes stop."""
 
-    tolerance_m: float = 1e-9
-    tolerance_rad: float = 1e-8
-    max_iterations: int = 32
+    tolerance_m: Setting = 1e-9
+    tolerance_rad: Setting = 1e-8
+    max_iterations: Annotated[int, whole_number(1, 10_000)] = 32
 
     def __post_init__(self) -> None:
         """Raise InputError for settings that could never end or never succeed."""

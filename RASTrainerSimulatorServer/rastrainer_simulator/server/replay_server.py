@@ -23,8 +23,9 @@ from rastrainer_simulator.flow.session.preferences import (
 )
 from rastrainer_simulator.loop.results import StateSource
 from rastrainer_simulator.net.views.view_server import start_view_server
-from rastrainer_simulator.ops.processes import DesktopProcess, stop_on_signals
-from rastrainer_simulator.ops.system_paths import config_folder, has_letters, log_folder
+from rastrainer_simulator.ops.application_window import ApplicationWindow
+from rastrainer_simulator.ops.processes import stop_on_signals
+from rastrainer_simulator.ops.system_paths import config_folder
 from rastrainer_simulator.presentation.presenter import Presenter
 from rastrainer_simulator.rating.rating_pages import RatingWork
 from rastrainer_simulator.rating.rating_presenter import RatingPresenter
@@ -72,16 +73,14 @@ async def _show_until(
         has_window: whether a window is opened.
         announce: reports where views are served.
     """
-    window: DesktopProcess | None = None
+    window: ApplicationWindow | None = None
     tasks: list[asyncio.Task[None]] = []
     with stop_on_signals(stop):
         views = await start_view_server(source, presenter, announce, port, None)
         try:
             tasks.append(asyncio.create_task(run()))
             if has_window:
-                window = DesktopProcess(
-                    f"http://{DEFAULT_HOST}:{views.port}", views.sessions.open(), log_folder()
-                )
+                window = ApplicationWindow(f"http://{DEFAULT_HOST}:{views.port}", views.code.code)
                 tasks.append(asyncio.create_task(window.run(stop.set, announce)))
             await stop.wait()
         finally:
@@ -93,11 +92,9 @@ async def _show_until(
 
 
 def _preferred_language() -> str:
-    """Return the language of the user's settings, a BCP 47 tag, if a window can show it here."""
+    """Return the language of the user's settings, a BCP 47 tag."""
     with contextlib.suppress(InputError):
-        language = read_preferences(config_folder() / PREFERENCES_FILE).language
-        if has_letters(language):
-            return language
+        return read_preferences(config_folder() / PREFERENCES_FILE).language
     return Preferences().language
 
 

@@ -36,15 +36,15 @@ from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.net.igtl.simulator_link import SimulatorLink
 from rastrainer_simulator.net.limits import read_limits
 from rastrainer_simulator.net.listener import is_loopback
+from rastrainer_simulator.ops.application_window import ApplicationWindow
 from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses
-from rastrainer_simulator.ops.processes import DesktopProcess, stop_on_signals
-from rastrainer_simulator.ops.system_paths import config_folder, has_letters, log_folder
+from rastrainer_simulator.ops.processes import stop_on_signals
+from rastrainer_simulator.ops.system_paths import config_folder
 from rastrainer_simulator.record.journal_writer import RecordsFolder
 from rastrainer_simulator.record.trial_context import setup_of, versions
 from rastrainer_simulator.robot.kinematics import kinematics_name
 from rastrainer_simulator.server.scenario_loader import ScenarioLoader
 from rastrainer_simulator.state import Answer
-from rastrainer_simulator.texts.texts import LANGUAGES
 
 if TYPE_CHECKING:
     from rastrainer_simulator.flow.running_presenter import RunningPresenter
@@ -182,9 +182,7 @@ class SimulatorServer:
                     on_ready(self._interruption())
                 on_ready(f"computes the robot's kinematics by {kinematics_name()}")
                 if self._options.has_desktop and views is not None:
-                    window = DesktopProcess(
-                        page, views.sessions.open(), self._options.logs or log_folder()
-                    )
+                    window = ApplicationWindow(page, views.code.code)
                     tasks.append(loop.create_task(window.run(stop.set, on_ready)))
                 await self._until(stop)
             finally:
@@ -259,9 +257,6 @@ class SimulatorServer:
             curricula=self._curricula,
             scores_alone=self._options.scores_alone,
             pin=self._pin,
-            languages=tuple(filter(has_letters, LANGUAGES))
-            if self._options.has_desktop
-            else tuple(LANGUAGES),
         )
         running = RunningPresenter(self._control_loop, services, self._options.has_gamepad)
         link.publisher.is_guided = lambda: running.presenter.is_tracing_guided

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
+from rastrainer.json_checks import Setting
 from rastrainer.scenario.scenario import Camera
 from rastrainer_simulator.vectors import (
     ZERO,
@@ -75,11 +76,7 @@ def camera_axes(view_direction: Vector, view_up: Vector) -> Axes:
 
 
 class ChosenAxes:
-    """The axes of the chosen camera, and those that the sticks follow.
-
-    Attributes:
-        camera: name of the chosen one.
-    """
+    """The axes of the chosen camera, and those that the sticks follow."""
 
     def __init__(self, cameras: Mapping[str, Camera], camera: str, choice: AxesChoice) -> None:
         self._choice = choice
@@ -139,14 +136,14 @@ class SteeringSettings:
     """
 
     choice: ToolDirection = ToolDirection.CLEAR
-    coarse_turn: float = 0.8
-    fine_turn: float = 0.15
-    leaning_turn: float = 2.0
-    largest_lean: float = math.radians(45.0)
-    near: float = 0.01
-    far: float = 0.12
-    shaft_clearance: float = 0.001
-    from_above: float = 0.3
+    coarse_turn: Setting = 0.8
+    fine_turn: Setting = 0.15
+    leaning_turn: Setting = 2.0
+    largest_lean: Setting = math.pi / 4
+    near: Setting = 0.01
+    far: Setting = 0.12
+    shaft_clearance: Setting = 0.001
+    from_above: Setting = 0.3
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 
+from rastrainer.json_checks import Setting
 from rastrainer_simulator.state import Motion, OperatorInput
 from rastrainer_simulator.teleoperation.commanded_motion import (
     CommandedMotion,
@@ -19,7 +20,16 @@ from rastrainer_simulator.teleoperation.steering import (
     ToolDirection,
     ToolSteering,
 )
-from rastrainer_simulator.vectors import ZERO, Vector, accelerated, scale, shortened, vector
+from rastrainer_simulator.vectors import (
+    ZERO,
+    Vector,
+    accelerated,
+    dot,
+    scale,
+    shortened,
+    unit,
+    vector,
+)
 
 
 @dataclass(frozen=True)
@@ -32,8 +42,8 @@ class StickResponse:
         exponent: of the response curve; 1 is linear, larger is gentler near the center.
     """
 
-    dead_zone: float = 0.12
-    exponent: float = 2.0
+    dead_zone: Setting = 0.12
+    exponent: Setting = 2.0
 
     def __call__(self, deflection: tuple[float, ...]) -> tuple[float, ...]:
         """Return the share of the full speed along each axis, its length 0…1.
@@ -47,8 +57,9 @@ class StickResponse:
         return tuple(value * share / size for value in deflection)
 
 
-AT_SKIN_M, OFF_SKIN_M = 0.002, 0.01
-"""Up to the first clearance of the tip slow motion is limited most, from the second on not."""
+AT_SKIN_M, LANDING_M, OFF_SKIN_M = 0.002, 0.0005, 0.01
+"""Up to the first clearance of the tip slow motion is limited most, up to the second that toward
+the skin; from the third on neither is."""
 STRAIGHT = (0.0, 0.0)
 """The steering stick at rest."""
 
@@ -58,20 +69,20 @@ class TeleoperationSettings:
     """How the arm answers to the operator.
 
     Attributes:
-        response: dead zone and response curve of the sticks.
         coarse_speed: of the tip at full deflection, m/s.
         fine_speed: the same while the trigger for fine speed is held, m/s.
-        skin_speed: the fastest slow motion at the skin, m/s: that the tip has reached it is seen
-            late, and what it is pressed in by then counts.
+        skin_speed: the fastest slow motion at the skin, m/s.
+        landing_speed: the same toward the skin. People react 0.25 s after the tip has reached it,
+            and within 0.5 s at the latest: by then it is pressed in by no more than 0.5 mm.
         acceleration: of the tip at most, m/s²; a released stick stops it immediately.
-        steering: how the tool's direction is chosen, and how fast it turns.
     """
 
     response: StickResponse = field(default_factory=StickResponse)
-    coarse_speed: float = 0.15
-    fine_speed: float = 0.02
-    skin_speed: float = 0.003
-    acceleration: float = 2.0
+    coarse_speed: Setting = 0.15
+    fine_speed: Setting = 0.02
+    skin_speed: Setting = 0.003
+    landing_speed: Setting = 0.001
+    acceleration: Setting = 2.0
     steering: SteeringSettings = field(default_factory=SteeringSettings)
 
 
@@ -99,7 +110,6 @@ class MotionRequest:
         displacement: of the tip, m, World.
         direction: of the tool, unit vector; None where it is free.
         across: the x axis of the tool's tip, unit vector; None where the tool may roll.
-        ended: how a commanded motion has just ended, None while none has.
         goal: end of the motion, m, World; None if no position is commanded.
     """
 
@@ -193,7 +203,7 @@ class Teleoperation:
         fastest = settings.fine_speed if fine else settings.coarse_speed
         wanted = axes.to_world(scale(push, fastest))
         if fine and surface is not None:
-            wanted = shortened(wanted, self._slow_limit(surface.clearance))
+            wanted = self._slowed(wanted, surface)
         self._velocity = (
             ZERO
             if push == ZERO
@@ -202,12 +212,13 @@ class Teleoperation:
         direction = self._steering.steer(dt, turn, fine, axes, tip.direction, surface)
         return self._toward(Motion.STICK, scale(self._velocity, dt), direction, tip, ended)
 
-    def _slow_limit(self, clearance: float) -> float:
-        """Return the fastest slow motion of a tip with this clearance (m), m/s."""
-        fine_speed = self._settings.fine_speed
-        slowest = min(self._settings.skin_speed, fine_speed)
-        share = (clearance - AT_SKIN_M) / (OFF_SKIN_M - AT_SKIN_M)
-        return slowest + min(max(share, 0.0), 1.0) * (fine_speed - slowest)
+    def _slowed(self, wanted: Vector, surface: NearestSurface) -> Vector:
+        """Return the velocity of slow motion (m/s) near the skin; its direction is kept."""
+        settings, above = self._settings, surface.clearance
+        limit = _between(settings.skin_speed, settings.fine_speed, above, AT_SKIN_M)
+        landing = _between(settings.landing_speed, settings.fine_speed, above, LANDING_M)
+        inward = max(0.0, -dot(unit(wanted), surface.normal))
+        return shortened(wanted, min(limit, landing / max(inward, 1e-9)))
 
     def _by_command(
         self,
@@ -240,3 +251,9 @@ class Teleoperation:
         steering = self._steering
         across = steering.across(direction, tip.direction, tip.across) if direction else None
         return MotionRequest(motion, displacement, direction, across, ended, goal)
+
+
+def _between(slowest: float, fastest: float, clearance: float, at: float) -> float:
+    """Return a limit that grows from `at` a clearance (m) until `OFF_SKIN_M`, m/s."""
+    share = (clearance - at) / (OFF_SKIN_M - at)
+    return min(slowest, fastest) + min(max(share, 0.0), 1.0) * max(0.0, fastest - slowest)

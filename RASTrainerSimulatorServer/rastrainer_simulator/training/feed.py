@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import NamedTuple
 
+from rastrainer.json_checks import Setting
 from rastrainer.protocol import Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import OperatorInput
@@ -34,11 +35,11 @@ class ProcedureSettings:
     """
 
     self_alignment: bool = True
-    checkpoint_radius: float = 0.030
-    drill_speed: float = 0.005
-    fine_drill_speed: float = 0.001
-    insertion_speed: float = 0.010
-    fine_insertion_speed: float = 0.001
+    checkpoint_radius: Setting = 0.030
+    drill_speed: Setting = 0.005
+    fine_drill_speed: Setting = 0.001
+    insertion_speed: Setting = 0.010
+    fine_insertion_speed: Setting = 0.001
 
     def fastest(self, phase: Phase, fine: bool) -> float:
         """Return the fastest feed in a phase, m/s."""

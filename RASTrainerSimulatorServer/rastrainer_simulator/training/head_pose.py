@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
-from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.head.mesh import RAS_LIMIT_MM, HeadMesh, read_head_mesh
 from rastrainer.head.trial_head import UNMOVED, SkinShift
+from rastrainer.json_checks import point, transform
+from rastrainer.json_records import record_to_json
 from rastrainer.registration.target_error import true_errors
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.trial_state import PlannedLine
@@ -22,20 +24,23 @@ if TYPE_CHECKING:
     from rastrainer.scenario.scenario import Scenario
 
 
+_RasPoint = Annotated[np.ndarray, point(RAS_LIMIT_MM)]
+
+
 @dataclass(frozen=True)
 class Truth:
-    """Where the head really is in a trial: the simulator's secret until a registration is final.
+    """True pose of the head. Hidden from clients until the trial's registration is final.
 
     Attributes:
         head_to_world: (4, 4) float, mm, from the MRI's RAS to World.
-        target: (3,) float, RAS mm, where the true error of a registration is reported.
-        fiducials: label → (3,) float, RAS mm, of the trial's task.
+        target_ras: (3,) float, mm, where the true error of a registration is reported.
+        fiducials_ras: label → (3,) float, mm, of the trial's task.
         skin: how the skin lies on the head, compared with the images.
     """
 
-    head_to_world: np.ndarray
-    target: np.ndarray
-    fiducials: Mapping[str, np.ndarray]
+    head_to_world: Annotated[np.ndarray, transform()]
+    target_ras: _RasPoint
+    fiducials_ras: Mapping[str, _RasPoint]
     skin: SkinShift = UNMOVED
 
     @classmethod
@@ -71,14 +76,18 @@ class Truth:
 
         `world_to_head` is the registration found, (4, 4) float, mm.
         """
-        return float(np.linalg.norm(true_errors(world_to_head, self.head_to_world, self.target)))
+        return float(
+            np.linalg.norm(true_errors(world_to_head, self.head_to_world, self.target_ras))
+        )
 
     def touch_errors_mm(
         self, touches: Iterable[tuple[str, tuple[float, float, float]]]
     ) -> dict[str, float]:
         """Return for each touch (label, World mm) how far it is from its fiducial, in mm."""
         return {
-            label: float(np.linalg.norm(self.in_head(np.array(position)) - self.fiducials[label]))
+            label: float(
+                np.linalg.norm(self.in_head(np.array(position)) - self.fiducials_ras[label])
+            )
             for label, position in touches
         }
 
@@ -90,31 +99,8 @@ class Truth:
             "headToWorld": [float(value) for value in self.head_to_world.ravel()],
             "trueTreMm": self.target_error_mm(world_to_head),
             "touchErrorsMm": self.touch_errors_mm(touches),
-            **self._revealed_skin(),
+            **({} if self.skin.is_none else {"skin": record_to_json(self.skin)}),
         }
-
-    def to_json(self) -> dict[str, Any]:
-        """Return what the journal records, so that the truth outlives the server."""
-        return {
-            "headToWorld": [float(value) for value in self.head_to_world.ravel()],
-            "target": [float(value) for value in self.target],
-            "fiducials": {k: [float(v) for v in point] for k, point in self.fiducials.items()},
-            **self._revealed_skin(),
-        }
-
-    def _revealed_skin(self) -> dict[str, Any]:
-        """Return nothing where the skin lies as in the images: as before it could shift."""
-        return {} if self.skin.is_none else {"skin": self.skin.to_json()}
-
-    @classmethod
-    def from_json(cls, value: Mapping[str, Any]) -> Truth:
-        """Return what `to_json` gave."""
-        return cls(
-            head_to_world=np.array(value["headToWorld"], dtype=float).reshape(4, 4),
-            target=np.array(value["target"], dtype=float),
-            fiducials={k: np.array(v, dtype=float) for k, v in value["fiducials"].items()},
-            skin=SkinShift.from_json(value.get("skin", {})),
-        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,8 +127,8 @@ class PlacedHead:
         mesh = None if skin.is_none else read_head_mesh(scenario.head_mesh)
         pose = scenario.perturbed_head_to_world(seed)
         truth = Truth.of(scenario, pose, task, skin if skin.is_none else replace(skin, seed=seed))
-        places = truth.in_world(np.array(list(truth.fiducials.values()))) / MM_PER_M
-        fiducials = dict(zip(truth.fiducials, map(tuple, places.tolist()), strict=True))
+        places = truth.in_world(np.array(list(truth.fiducials_ras.values()))) / MM_PER_M
+        fiducials = dict(zip(truth.fiducials_ras, map(tuple, places.tolist()), strict=True))
         return cls(truth, fiducials, mesh)
 
     def measured(self, tip: Vector) -> Vector:

@@ -97,7 +97,7 @@ def _touched(state: TrainingState) -> list[dict[str, Any]]:
         {
             "label": touch.label,
             "positionMm": [MM_PER_M * value for value in touch.position],
-            "simTime": touch.sim_time,
+            "simTimeS": touch.sim_time,
         }
         for touch in state.touches
     ]

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rastrainer.commands import AFTER_THE_TOUCHES, COMMANDS, CommandName
+from rastrainer.json_checks import Setting
 from rastrainer.motion.trajectory import RELEASED_MM
 from rastrainer.protocol import (
     FIDUCIAL_COUNT,
@@ -119,10 +120,10 @@ class TrainingSettings:
         skin_tolerance: the longest distance of the tip to the skin at which it is on it, m.
     """
 
-    acceptance_radius: float = 0.010
+    acceptance_radius: Setting = 0.010
     touch_rule: TouchRule = TouchRule.ON_SKIN
-    skin_tolerance: float = 0.0005
-    landmark_radius: float = 0.020
+    skin_tolerance: Setting = 0.0005
+    landmark_radius: Setting = 0.020
 
     def radius(self, method: RegistrationMethod) -> float:
         """Return the longest distance of the tip to a point that a method has touched, m."""

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.head.trial_head import SkinShift
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import TRACED_METHODS, Phase
 from rastrainer.scenario.scenario import method_of, task_by_method
 from rastrainer_simulator.state import TrainingState
@@ -92,7 +93,8 @@ class TrialStarter:
     def start(self, arguments: Mapping[str, Any], revision: int) -> StartedTrial:
         """Return a trial by the arguments of StartTask; `revision` is the last one before it."""
         number, procedure = self._number, arguments.get("procedure") or ""
-        skin = SkinShift.from_json(arguments.get("skin") or self._scenario.skin.amounts)
+        chosen_skin = arguments.get("skin")
+        skin = record_from_json(SkinShift, chosen_skin) if chosen_skin else self._scenario.skin
         method = method_of(arguments.get("method"))
         task = task_by_method(self._scenario, arguments["task"], method)
         phases = self._phases(procedure, task) if procedure else None

@@ -55,16 +55,8 @@ def run_jobs(
     process.
 
     Args:
-        function: Can be pickled; depends on nothing but the job.
-        jobs: Can be pickled.
         engine: `processes`, or `dask` (package `distributed`).
-        workers: Processes on this machine; one per core by default.
         address: Of a Dask scheduler, for more than one machine; a local cluster by default.
-        name_of: Returns the name of a job for error messages.
-
-    Raises:
-        InputError: Dask is not installed, or there is no scheduler at the address.
-        WorkerDiedError: several processes in turn died at one job.
     """
     workers = workers or os.cpu_count() or 1
     if engine == DASK:
@@ -117,10 +109,7 @@ class CohortRun:
 
     Attributes:
         found: Trials that had been played before, if the cohort was resumed.
-        played: Trials that were finished and stored now.
         stuck: Trials played now in which the virtual trainee did not reach a fiducial.
-        seconds: Wall time of playing and storing.
-        simulated_s: Trial time of the trials that were finished now.
     """
 
     found: int
@@ -149,12 +138,6 @@ def simulate_cohort(
     the missing trials are played, with the same result. Questionnaires, breaks and trial runs are
     left out, also in the stored protocol: virtual trainees have no opinion and need no rest.
     `on_trial` is called with the number of finished trials.
-
-    Raises:
-        InputError: the folder holds something else, a task or procedure is not in the scenario,
-            journals are wanted of procedures, trials are not registered by fiducials, or the
-            engine fails.
-        WorkerDiedError: several worker processes in turn died at one trial; the study is resumable.
     """
     if with_journals and protocol.procedures:
         raise InputError(

@@ -96,9 +96,7 @@ def first_hits(mesh: HeadMesh, eye: np.ndarray, ahead: np.ndarray, spacing: floa
     (ray and triangle by Möller and Trumbore 1997), and the nearest hit of each ray is kept.
 
     Args:
-        mesh: The surface.
         eye: (3,) float, RAS mm, outside of it.
-        ahead: (3,) float, the direction of view; the surface is before the eye.
         spacing: Of the grid: the tangent of the angle between neighboring rays in the middle.
     """
     frame = _frame(np.asarray(ahead, dtype=float))
@@ -152,8 +150,6 @@ class RangeCamera:
     """A camera before the head.
 
     Attributes:
-        eye: (3,) float, RAS mm.
-        noise_mm: Standard deviation of a distance, along the ray.
         spacing_mm: Between points on skin that faces the camera.
     """
 

@@ -43,7 +43,6 @@ class MethodPoints:
     """The points that one method registers.
 
     Attributes:
-        method: the method.
         moving_mm: (n, 3) float, World, touched points; those of a surface match give its start.
         fixed_mm: (n, 3) float, RAS, where they belong.
         normals: (n, 3) float, of the skin there, RAS; None where the error has no direction.
@@ -62,13 +61,10 @@ class MethodResult:
     """How a method registered a trial.
 
     Attributes:
-        method: the method.
         points: number of points whose residuals count.
         residual_mm: their root mean square, mm. It does not show the error.
         matrix: (4, 4) float, World→RAS, mm.
-        errors: expected at each target, with their intervals.
         true_mm: (m,) float, the true target error; None where the truth is unknown.
-        warnings: what looks wrong.
     """
 
     method: RegistrationMethod
@@ -100,15 +96,7 @@ def register_by(
     head_to_world: np.ndarray | None = None,
     starts: int = STARTS,
 ) -> MethodResult:
-    """Register points by their method.
-
-    Args:
-        points: of one method.
-        mesh: the head, RAS mm.
-        targets: (m, 3) float, RAS mm.
-        head_to_world: (4, 4) float, mm, the truth, where it is known.
-        starts: of a surface match.
-    """
+    """Register points by their method."""
     fit = register(points.moving_mm, points.fixed_mm)
     if len(points.cloud_mm):
         match = match_surface(points.cloud_mm, mesh, fit.matrix, starts=starts)
@@ -188,12 +176,9 @@ class MethodStudy:
     """What the virtual trials have in common.
 
     Attributes:
-        scenario: with the head and its landmarks.
         task: whose fiducials are touched.
         shift_mm: root mean square length of the skin's shift; each trial has its own.
         indentation_mm: how deep the tip presses into the skin.
-        noise: of each method.
-        starts: of a surface match.
     """
 
     scenario: Scenario

@@ -38,7 +38,6 @@ class OutcomeModel:
 
     Attributes:
         task_times_s: Median completion time of each task at the first trial in the first mode.
-        task_fle_mm: Localization error of each task, the same length.
         trainee_time_sd: Between trainees, of the logarithm of the time.
         trainee_fle_sd: Between trainees, of the logarithm of the localization error.
         interaction_sd: How differently modes affect trainees, of both logarithms.
@@ -46,13 +45,9 @@ class OutcomeModel:
         learning: b; the n-th trial takes n^−b of the first one's time.
         carries_practice: Whether n counts the trials of both modes, as for the virtual trainees
             that are played; otherwise each mode starts from 1.
-        mode_time: Factor on the time in each mode; 1 for those left out.
-        mode_fle: Factor on the localization error in each mode.
-        accuracy_learning: As `learning`, of the localization error.
         trade_off: k; a trial that takes x times as long as the trainee's others of its kind has a
             localization error x^−k times as large.
         lapses: Share of trials in which a touch slips, is noticed and taken back.
-        lapse_time: Factor on the time of such a trial.
         mode_bias_mm: By how many mm the view of a mode misleads all touches alike; 0 for those left
             out.
     """
@@ -186,7 +181,6 @@ class RejectionRates:
     """Of one outcome over many studies: false positives without a true effect, power with one.
 
     Attributes:
-        outcome: One of those that the report tests.
         t_test: Share with p < .05 by the t-test, with the period where the orders allow it.
         holm: Share that holds after the correction for all outcomes.
         ranks: Share with p < .05 by the rank test.
@@ -215,11 +209,6 @@ def rejection_rates(
     """Return the rates for two modes, tested on trainee means as the report does it.
 
     Args:
-        model: The truth.
-        trainees: Of each study.
-        modes: Two.
-        studies: How many to draw.
-        seed: Of the draws.
         orders: The modes in the order of each trainee; by default that of `modes` for all.
     """
     random = np.random.default_rng(seed)

@@ -16,6 +16,7 @@ from rastrainer.errors import RASTrainerError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.journal.folder import SUFFIX
 from rastrainer.journal.journal_file import file_stamp, iso
+from rastrainer.json_records import record_from_json
 from rastrainer.procedure.record import ProcedureRecord, UsedRegistration
 from rastrainer.protocol import Mode, Phase, Proximity
 from rastrainer.scenario.scenario import Scenario
@@ -68,7 +69,6 @@ class VirtualTrial:
     Attributes:
         touches_mm: (15, 3) float, World, mm, in the order of the task.
         fiducials_mm: (15, 3) float, the same points in the MRI, RAS mm.
-        head_to_world: (4, 4) float, mm.
         completion_time_s: simulated time from the start to the last touch.
     """
 
@@ -93,18 +93,11 @@ def play_virtual_trial(
 
     Args:
         simulation: free for the next trial.
-        task_name: of the scenario.
-        seed: of the head's pose and of the hands.
-        skill: of the hands.
         dt: the simulation's step in s.
         on_step: is called after each step as a recorder wants it.
         trainee: pseudonym; by default derived from the seed.
         mode: goes into the record; the hands do not see it.
         trial_id: UUID; by default derived from the simulation's seed and the trial's number.
-
-    Raises:
-        InputError: there is no such task.
-        UnfinishedTrialError: the trainee did not get to a fiducial.
     """
     scenario = simulation.setup.scenario
     task = scenario.task(task_name)
@@ -177,8 +170,6 @@ class PlaySettings:
     """How the jobs of a cohort are played.
 
     Attributes:
-        scenario: Folder; None for the one that comes with RASTrainer.
-        step_s: Length of a step of the simulation.
         references: Of the score, by task; the scenario's for tasks that it leaves out.
         records: Folder for the journals; None for none.
     """
@@ -229,7 +220,7 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
     recorder.record.measured()
     entries = _dated(recorder.entries.taken(), job.started)
     registered = next(entry for entry in entries if entry["kind"] == "registered")
-    record = TrialRecord.from_json(registered["record"])
+    record = record_from_json(TrialRecord, registered["record"])
     if settings.records is not None:
         _write_journal(settings.records, entries, job.started)
     scenario = simulation.setup.scenario
@@ -282,19 +273,19 @@ class _EntryRecorder:
 
 def _dated(entries: list[dict[str, Any]], started: datetime) -> list[dict[str, Any]]:
     """Date entries from the trial's start, in simulated time."""
-    zero = entries[0]["simTime"]
+    zero = entries[0]["simTimeS"]
 
     def utc(sim_time: float) -> str:
         return iso(started + timedelta(seconds=sim_time - zero))
 
     for entry in entries:
-        entry["utc"] = utc(entry["simTime"])
+        entry["utc"] = utc(entry["simTimeS"])
         if entry["kind"] == "registered":
             record = entry["record"]
             # A virtual trainee plays as fast as the machine can, in no simulator.
             record.pop("played", None)
             for point in record["points"]:
-                point["utc"] = utc(point["simTime"])
+                point["utc"] = utc(point["simTimeS"])
             record["startedUtc"] = utc(zero)
             record["completedUtc"] = record["points"][-1]["utc"]
     return entries

@@ -26,13 +26,7 @@ class TrialJob:
     """One trial to be played.
 
     Attributes:
-        trainee: Pseudonym, `V0001` and on.
-        step: Name of the protocol's step.
-        mode: `desktop` or `hmd`.
-        task: Name of the task.
-        skill: Of the hands in this trial.
         seed: Of the head's pose and of the hands.
-        started: Its date and time.
         procedure: That it continues with; "" for the touches alone.
     """
 

@@ -41,13 +41,11 @@ class Skill:
     """The properties of a trainee's hands.
 
     Attributes:
-        speed_mm_s: fastest travel of the tip.
         gain_per_s: how briskly the remaining distance is closed.
         aim_sd_mm: standard deviation of the aim on the skin, along each of its two directions.
         settled_mm: how far beside its aim the tip may be for a touch.
         tremor_mm_s: standard deviation of the hand's unwanted velocity, along each axis.
         overshoot: how far the first aim goes past the fiducial, as a share of the distance.
-        reaction_s: pause before each new movement.
         dwell_s: how long the tip is held still before a touch.
         slip_at: the fiducial (1 is the first) at which the trainee slips by 4 mm, notices and
             undoes the touch; None for a trainee who never does.
@@ -72,9 +70,7 @@ class Observation:
     """What the trainee sees.
 
     Attributes:
-        tip_mm: (3,) float, of the tool, World, mm.
         is_in_contact: whether the tool is shown to touch the head.
-        phase: of the trial.
         next_point: number of the fiducial to touch, from 1; None if there is none.
     """
 
@@ -93,8 +89,6 @@ class ScriptedTrainee:
         normals: (n, 3) float, the skin's outward unit normals there, World.
         head_center_mm: (3,) float, around which the hand travels, World, mm.
         vertex_mm: (3,) float, the highest point of the head, World, mm.
-        skill: the properties of the hands.
-        seed: of the tremor and the aim.
     """
 
     def __init__(

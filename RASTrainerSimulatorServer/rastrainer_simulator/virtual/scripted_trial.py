@@ -14,6 +14,7 @@ from rastrainer.errors import RASTrainerError
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import String, Transform
 from rastrainer.igtl.message import Message
+from rastrainer.json_records import record_from_json
 from rastrainer.procedure.checks import planned_bone
 from rastrainer.procedure.plan import ProcedureTrajectory, read_procedure_meshes
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName, Mode, Phase, Proximity
@@ -39,11 +40,7 @@ class ScriptedTrialResult:
 
 
 def send_hello(client: Client, name: str) -> None:
-    """Greet the server, and subscribe to poses even while the arm is still: they are our clock.
-
-    Raises:
-        TrialStoppedError: it speaks another version of the protocol.
-    """
+    """Greet the server, and subscribe to poses even while the arm is still: they are our clock."""
     hello = {"protocolVersion": PROTOCOL_VERSION, "client": name, "steady": True}
     send(client, CommandName.HELLO, hello)
 
@@ -63,10 +60,6 @@ def play_trial(
     `StartTask` gets the same seed, by which the scripted trainee knows where the head is, as a
     person sees on the screen. `on_progress` gets every new `SimState`. `procedure` is to follow the
     registration; it is carried out by others.
-
-    Raises:
-        TrialStoppedError: the server refused a command, or the tip did not reach a fiducial.
-        LinkError: the connection was lost.
     """
     head_to_world = scenario.perturbed_head_to_world(seed)
     trainee = ScriptedTrainee.of(scenario, task_name, head_to_world, skill or Skill(), seed)
@@ -117,7 +110,7 @@ class _View:
             self._on_progress(state)
         point = state["nextPoint"]
         return Observation(
-            sim_time_s=float(tip.metadata["simTime"]),
+            sim_time_s=float(tip.metadata["simTimeS"]),
             tip_mm=np.array(tip.content.matrix)[:3, 3],
             is_in_contact=state["proximity"] == Proximity.CONTACT.value,
             phase=Phase(state["phase"]),
@@ -137,11 +130,7 @@ def _state(message: Message) -> dict[str, Any]:
 
 
 def send(client: Client, name: str, arguments: dict[str, Any]) -> dict[str, Any]:
-    """Have a command carried out, and return the data of its answer.
-
-    Raises:
-        TrialStoppedError: it was refused.
-    """
+    """Have a command carried out, and return the data of its answer."""
     reply = client.send_command(name, arguments, ANSWER_TIMEOUT_S)
     if not reply.ok:
         raise TrialStoppedError(f"{name} was refused: {reply.error}")
@@ -169,10 +158,6 @@ def play_procedure(
 
     The touches are registered as Slicer's side does; the robot aligns the guide by itself. Depths
     are fed by the plan as the registration shows it. `on_progress` gets what was done, in words.
-
-    Raises:
-        TrialStoppedError: the server refused a command, or a tool did not get where it should.
-        LinkError: the connection was lost.
     """
     answer = send(client, CommandName.GET_TRIAL, {"trialId": trial_id})
     registered = register_trial(GivenPoints.of_answer(answer), scenario)
@@ -189,7 +174,7 @@ def play_procedure(
         _place(client, trajectory, number, bone.inner_mm)
         on_progress(f"{trajectory.name}: the electrode is placed")
     answer = send(client, CommandName.GET_TRIAL, {"trialId": trial_id})
-    return TrialRecord.from_json(answer["record"])
+    return record_from_json(TrialRecord, answer["record"])
 
 
 def _place(client: Client, trajectory: ProcedureTrajectory, number: int, inner_mm: float) -> None:

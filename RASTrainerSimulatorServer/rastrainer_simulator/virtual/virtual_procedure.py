@@ -48,7 +48,6 @@ class ProcedureHands:
     Attributes:
         entry_sd_mm: Of the guide's axis at the entry, along each of two axes.
         angle_sd_deg: Of its direction, about each of two axes.
-        depth_sd_mm: Of the instrument's depth.
         plunge_mm: Mean of how far the drill goes past the inner table (exponential).
         check_sd_mm: Of the touch of a checkpoint, along each of three axes.
         pace: Times are those of the score's reference, divided by this.
@@ -78,14 +77,7 @@ class ProcedureHands:
 
 @dataclass(frozen=True)
 class ProcedureSetting:
-    """Where a procedure is carried out.
-
-    Attributes:
-        procedure: The plan.
-        skull: Its mesh, RAS mm.
-        sha256: Of the plan, from `Procedure.sha256`.
-        head_to_world: (4, 4) float, mm, the true pose.
-    """
+    """Where a procedure is carried out."""
 
     procedure: Procedure
     skull: HeadMesh
@@ -100,15 +92,7 @@ def carry_out(
     hands: ProcedureHands,
     random: np.random.Generator,
 ) -> ProcedureRecord:
-    """Return the record of a procedure.
-
-    Args:
-        setting: Plan, skull and true pose.
-        used: The registration by which the plan is shown.
-        touching_s: How long the touches took.
-        hands: Of the trainee.
-        random: Of the draws.
-    """
+    """Return the record of a procedure."""
     instruments = tuple(
         _placed(each, setting, used, hands, random) for each in setting.procedure.trajectories
     )

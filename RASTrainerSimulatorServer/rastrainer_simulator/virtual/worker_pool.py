@@ -38,12 +38,6 @@ def run_on_workers(
 
     Args:
         function: Can be pickled. What it raises is raised here.
-        jobs: Can be pickled.
-        workers: Most processes at a time.
-        name_of: Returns the name of a job for error messages.
-
-    Raises:
-        WorkerDiedError: `ATTEMPTS` processes died at one job.
     """
     pool = _Pool(function, workers, name_of)
     try:

@@ -11,7 +11,7 @@ def phase(stage, trajectory=0):
 
 def samples(depths_mm, start_s=0.0):
     return [
-        {"kind": "sample", "simTime": start_s + 0.02 * number, "feedMm": depth}
+        {"kind": "sample", "simTimeS": start_s + 0.02 * number, "feedMm": depth}
         for number, depth in enumerate(depths_mm)
     ]
 

@@ -6,7 +6,13 @@ from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, NO_LINE, encode_line
 from rastrainer.journal.recording import read_track
 
-HEADER = {"kind": "header", "format": FORMAT, "version": FORMAT_VERSION, "simTime": 0.0, "tickS": 0}
+HEADER = {
+    "kind": "header",
+    "format": FORMAT,
+    "version": FORMAT_VERSION,
+    "simTimeS": 0.0,
+    "tickS": 0,
+}
 
 
 @pytest.fixture
@@ -15,7 +21,13 @@ def written(tmp_path):
 
     def write(*postures):
         samples = [
-            {"kind": "sample", "simTime": 1.0 + row, "tipMm": [0, 0, row], "clearanceMm": 9, "q": q}
+            {
+                "kind": "sample",
+                "simTimeS": 1.0 + row,
+                "tipMm": [0, 0, row],
+                "clearanceMm": 9,
+                "q": q,
+            }
             for row, q in enumerate(postures)
         ]
         lines, previous = [], NO_LINE

@@ -200,7 +200,7 @@ def test_unintended_contact_is_never_longer_than_all_contact(seed):
 
 
 def entry(kind, time, **more):
-    return {"kind": kind, "simTime": time, **more}
+    return {"kind": kind, "simTimeS": time, **more}
 
 
 def recorded(**of_each):

@@ -168,7 +168,7 @@ def test_the_shortest_path_runs_over_a_bulge_and_straight_across_a_hollow():
 
 
 def entry(kind, time, **more):
-    return {"kind": kind, "simTime": time, **more}
+    return {"kind": kind, "simTimeS": time, **more}
 
 
 def test_a_recording_excludes_pauses_and_undone_touches():
@@ -208,9 +208,9 @@ def test_touches_that_could_not_be_written_do_not_count():
     "malformed",
     [
         {"kind": "touch", "label": "1"},
-        {"kind": "touch", "label": "1", "simTime": 1.0, "positionMm": ["1", "2", "x"]},
-        {"kind": "trace", "simTime": 1.0, "positionMm": [1.0, 2.0]},
-        {"kind": "sample", "simTime": 10**400, "tipMm": [1, 2, 3], "clearanceMm": 1.0},
+        {"kind": "touch", "label": "1", "simTimeS": 1.0, "positionMm": ["1", "2", "x"]},
+        {"kind": "trace", "simTimeS": 1.0, "positionMm": [1.0, 2.0]},
+        {"kind": "sample", "simTimeS": 10**400, "tipMm": [1, 2, 3], "clearanceMm": 1.0},
     ],
     ids=["missing", "words", "two coordinates", "huge"],
 )

@@ -12,6 +12,7 @@ from rastrainer.commands import (
     decode_json_object,
 )
 from rastrainer.json_checks import MAX_MESSAGE_VALUES, MAX_RECORD_VALUES
+from rastrainer.json_records import record_from_json
 from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.procedure.plan import MAX_TRAJECTORIES, ProcedureKind
 from rastrainer.procedure.record import (
@@ -39,7 +40,7 @@ PHASES = ["running", *(phase.value for phase in PROCEDURE_PHASES)]
 def largest_record():
     """The record of a trial whose procedure reaches every limit, with all digits."""
     turned = [*np.eye(4).ravel().tolist()]
-    checked = {"name": "C" * 60, "positionMm": [DIGITS] * 3, "errorMm": DIGITS, "simTime": DIGITS}
+    checked = {"name": "C" * 60, "positionMm": [DIGITS] * 3, "errorMm": DIGITS, "simTimeS": DIGITS}
     per_attempt, more = divmod(MAX_TOUCHED_CHECKPOINTS, MAX_ATTEMPTS)
     assert more == 0
     attempt = {
@@ -84,7 +85,7 @@ def test_slicer_accepts_the_record_of_the_longest_procedure_and_a_study_stores_i
     record = largest_record()
     text = json.dumps(record)
     assert MAX_MESSAGE_VALUES < text.count(",") < MAX_RECORD_VALUES
-    read = TrialRecord.from_json(decode_answer_object(text)).procedure
+    read = record_from_json(TrialRecord, decode_answer_object(text)).procedure
     assert len(read.attempts) == MAX_ATTEMPTS
     assert sum(len(attempt.checkpoints) for attempt in read.attempts) == MAX_TOUCHED_CHECKPOINTS
     assert len(read.instruments) == MAX_TRAJECTORIES

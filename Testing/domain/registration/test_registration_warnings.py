@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from rastrainer.json_records import record_to_json
 from rastrainer.registration.fits import KINDS
 from rastrainer.registration.registration import register
 
@@ -154,4 +155,8 @@ def test_warnings_name_the_points_and_the_improvement(touched_head):
     (warning,) = register(moving, fixed).warnings
     assert warning.message.startswith("Points 4 and 11 seem to be exchanged")
     assert warning.message.endswith("mm).")
-    assert warning.to_json() == {"code": "order", "points": ["4", "11"], "message": warning.message}
+    assert record_to_json(warning) == {
+        "code": "order",
+        "points": ["4", "11"],
+        "message": warning.message,
+    }

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import pytest
 
+from rastrainer.json_records import record_from_json
 from rastrainer.report.report import report_html
 from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAbortedTrial
 from rastrainer.study.database.study import Study
@@ -79,7 +80,7 @@ def test_started_and_finished_trials_are_those_of_one_method():
 
     def aborted(number, **changes):
         record = make_aborted(number, trainee="A", mode="hmd", **changes)
-        return StoredAbortedTrial(AbortedTrial.from_json(record))
+        return StoredAbortedTrial(record_from_json(AbortedTrial, record))
 
     rows = (*map(row, range(1, 6)), *(row(number, "landmarks") for number in range(6, 9)))
     data = StudyData("x", rows, has_order=True, aborted=(aborted(900), aborted(901)))
@@ -103,7 +104,7 @@ def test_an_aborted_trial_counts_as_not_passed_in_the_lc_cusum():
     def aborted(number, hour, **changes):
         started = f"2024-05-17T{hour:02d}:30:00Z"
         record = make_aborted(number, trainee="A", mode="hmd", startedUtc=started, **changes)
-        return StoredAbortedTrial(AbortedTrial.from_json(record))
+        return StoredAbortedTrial(record_from_json(AbortedTrial, record))
 
     rows = tuple(row(number) for number in range(1, 13))
     whole = StudyData("x", rows, has_order=True)
@@ -160,7 +161,7 @@ def test_aborted_trials_and_their_touches_are_exported(path):
 
 
 def test_a_reason_never_becomes_a_formula_in_a_spreadsheet():
-    record = AbortedTrial.from_json(make_aborted(reason="=1+1"))
+    record = record_from_json(AbortedTrial, make_aborted(reason="=1+1"))
     text = aborted_csv([StoredAbortedTrial(record, "s", "@SUM(A1:A9)")])
     assert "'=1+1" in text
     assert "'@SUM(A1:A9)" in text

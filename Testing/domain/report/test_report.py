@@ -14,7 +14,7 @@ from scipy.stats import pearsonr
 
 from rastrainer.errors import InputError
 from rastrainer.report.comparisons import compare_modes, mode_delays, paired_means
-from rastrainer.report.elements import Cell, paragraph
+from rastrainer.report.page import Cell, paragraph
 from rastrainer.report.published_tables import (
     cohort_scores,
     complexity_correlation,
@@ -473,4 +473,4 @@ def test_a_study_without_any_consent_is_refused(tmp_path):
 def test_no_line_ends_between_a_number_and_its_unit():
     text = "at most 8 s and 160 mm, 5 % of 12 studies, 3 sets"
     assert paragraph(text) == ("<p>at most 8\xa0s and 160\xa0mm, 5\xa0% of 12 studies, 3 sets</p>")
-    assert Cell("Time, s [95 %]").html("td") == "<td>Time,\xa0s [95\xa0%]</td>"
+    assert Cell("Time, s [95 %]").html() == "<td>Time,\xa0s [95\xa0%]</td>"

@@ -161,7 +161,7 @@ MIRRORED = [1, 0, 0, 480, 0, -1, 0, -17, 0, 0, 1, 218, 0, 0, 0, 1]
         ("stand.diameterMm", 0, "stand.diameterMm must be a number from 1"),
         ("provenance.license", 5, "provenance.license must be printable text"),
         ("skin", 2, "skin must be an object of shiftMm"),
-        ("skin", {"shiftMm": -1}, "skin must be an object .* each a number from 0 to 20"),
+        ("skin", {"shiftMm": -1}, "skin.shiftMm must be a number from 0 to 20 mm"),
         ("skin", {"shift": 1}, "skin must be an object of shiftMm and indentationMm"),
     ],
 )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import socket
 import threading
 from pathlib import Path
@@ -18,7 +17,6 @@ from rastrainer.study.database.database import (
     LockWait,
     PostgresAddress,
     StudyUnreachableError,
-    path_beside_study,
     study_place,
 )
 from rastrainer.study.database.postgres_connecting import postgres_error
@@ -127,21 +125,6 @@ def test_only_the_driver_is_imported_from_the_simulators_folder(tmp_path, monkey
     with pytest.raises(ImportError):
         __import__("other_of_simulator")
     del postgres_connecting.sys.modules["psycopg"]
-
-
-def test_a_studys_files_lie_beside_it_or_in_a_private_folder_for_its_address(tmp_path, monkeypatch):
-    monkeypatch.setattr(Path, "home", lambda: tmp_path)
-    assert path_beside_study(tmp_path / "study.db") == tmp_path / "study.db"
-    assert not (tmp_path / "RASTrainer").exists()
-    one, same, other = (
-        path_beside_study(PostgresAddress("host", name)) for name in ("study", "study", "other")
-    )
-    assert one == same != other
-    options = {"sslmode": "verify-ca"}
-    assert path_beside_study(PostgresAddress("host", "study", "seat", 5432, options)) == one
-    assert one.parent == tmp_path / "RASTrainer" / "studies"
-    if os.name == "posix":
-        assert one.parent.stat().st_mode & 0o077 == 0
 
 
 @pytest.fixture

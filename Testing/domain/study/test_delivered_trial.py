@@ -8,8 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.scenario.scenario import load_scenario
+from rastrainer.study import delivered_trial
+from rastrainer.study.database import study as database
 from rastrainer.study.database.study import Study
 from rastrainer.study.delivered_trial import (
     score_references,
@@ -55,7 +58,7 @@ def exact_touches(number, task="task-1"):
 def reviewed(study, number, task="task-1"):
     """A trial with exact touches, stored with its results."""
     record = exact_touches(number, task)
-    registered = analyze_trial(TrialRecord.from_json(record), SCENARIO)
+    registered = analyze_trial(record_from_json(TrialRecord, record), SCENARIO)
     analysis = scored_with_journal(registered, TRUTH, SCENARIO, score_references(study))
     study.add_trial(record, [analysis.rigid], score=analysis.score)
     return with_progress(analysis, study)
@@ -78,8 +81,12 @@ def test_the_pass_mark_is_that_of_the_studys_protocol(study):
 
 def test_a_delivered_trial_is_checked_once_and_stored_with_its_unknown_keys(study, monkeypatch):
     checks = []
-    read = TrialRecord.from_json
-    monkeypatch.setattr(TrialRecord, "from_json", lambda value: checks.append(value) or read(value))
+    for module in (delivered_trial, database):
+        monkeypatch.setattr(
+            module,
+            "record_from_json",
+            lambda kind, value: checks.append(value) or record_from_json(kind, value),
+        )
     delivered = exact_touches(1) | {"ofALaterVersion": 1}
     taken = store_delivered(delivered, study, lambda record: analyze_trial(record, SCENARIO))
     assert checks == [delivered]
@@ -90,7 +97,7 @@ def test_a_delivered_trial_is_checked_once_and_stored_with_its_unknown_keys(stud
 
 
 def test_scoring_a_registered_trial_neither_registers_nor_estimates_again(study, monkeypatch):
-    registered = analyze_trial(TrialRecord.from_json(exact_touches(1)), SCENARIO)
+    registered = analyze_trial(record_from_json(TrialRecord, exact_touches(1)), SCENARIO)
     monkeypatch.setattr("rastrainer.trial.touch_registration.register_all_kinds", None)
     monkeypatch.setattr("rastrainer.trial.touch_registration.target_error", None)
     scored = scored_with_journal(registered, TRUTH, SCENARIO, score_references(study))

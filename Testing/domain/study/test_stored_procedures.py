@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.procedure.plan import ProcedureKind
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredProcedure
@@ -30,8 +31,8 @@ def record(number, procedure=None):
         completedUtc=f"2999-01-01T10:0{number}:30Z",
     )
     if procedure is not None:
-        value["procedure"] = procedure.to_json()
-    return TrialRecord.from_json(value)
+        value["procedure"] = record_to_json(procedure)
+    return record_from_json(TrialRecord, value)
 
 
 def test_an_outcome_is_stored_beside_the_score_of_the_touches(study):

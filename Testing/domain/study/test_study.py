@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.fits import KINDS
 from rastrainer.registration.registration import register
@@ -75,7 +76,7 @@ def test_a_trial_with_an_invalid_pseudonym_is_refused(study, name):
 
 
 def test_a_trial_is_checked_before_anything_is_computed_from_it(study):
-    trial = TrialRecord.from_json(record())
+    trial = record_from_json(TrialRecord, record())
     assert study.check_trial(trial)
     assert study.trainees() == ()
     study.add_trial(trial)
@@ -83,7 +84,7 @@ def test_a_trial_is_checked_before_anything_is_computed_from_it(study):
     with pytest.raises(InputError, match="Another trial is stored under the UUID"):
         study.check_trial(replace(trial, task="task-2"))
     with pytest.raises(InputError, match="A pseudonym must be"):
-        study.check_trial(TrialRecord.from_json(record(8, trainee="T-001 ")))
+        study.check_trial(record_from_json(TrialRecord, record(8, trainee="T-001 ")))
     study.delete_trainee("T-001")
     with pytest.raises(DeletedTrialError):
         study.check_trial(trial)
@@ -144,7 +145,7 @@ def test_a_trial_is_stored_with_all_its_results(study, results):
     delivered = record(weather="fine")
     assert study.add_trial(delivered, registrations, errors, score)
     stored = study.trial(delivered["trialId"])
-    assert stored.record == TrialRecord.from_json(delivered)
+    assert stored.record == record_from_json(TrialRecord, delivered)
     assert stored.registrations == {
         r.kind: StoredRegistration.of(r, errors[r.kind]) for r in registrations
     }
@@ -156,7 +157,7 @@ def test_a_trial_is_stored_with_all_its_results(study, results):
 def test_a_trial_delivered_twice_is_stored_once(study, results):
     assert study.add_trial(record(), *results)
     assert not study.add_trial(record(seed=None))
-    assert not study.add_trial(TrialRecord.from_json(record()))
+    assert not study.add_trial(record_from_json(TrialRecord, record()))
     assert len(study.history("T-001")) == 1
     assert study.trial(record()["trialId"]).score == results[2]
 
@@ -346,7 +347,9 @@ def test_everything_about_one_trainee_is_exported_and_nothing_about_others(
     assert export_trainee(study, "a", tmp_path / "a.json") == 1
     text = (tmp_path / "a.json").read_text()
     (trial,) = json.loads(text)["trials"]
-    assert TrialRecord.from_json(trial["record"]) == TrialRecord.from_json(record(1, trainee="a"))
+    assert record_from_json(TrialRecord, trial["record"]) == record_from_json(
+        TrialRecord, record(1, trainee="a")
+    )
     assert (trial["true_tre_mm"], trial["motion"]) == (0.5, {"path_mm": 2500.5})
     assert record(2)["trialId"] not in text
 

@@ -6,6 +6,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import json_object
+from rastrainer.json_records import record_from_json
 from rastrainer.trial.how_played import HowPlayed, PlayRecording
 
 
@@ -13,7 +14,7 @@ def played(*entries) -> HowPlayed:
     """Return how a trial was played whose entries follow each other by a second."""
     recording = PlayRecording()
     for number, entry in enumerate(entries):
-        recording.add({"simTime": float(number), "monotonic": float(number), **entry})
+        recording.add({"simTimeS": float(number), "monotonicS": float(number), **entry})
     return recording.played()
 
 
@@ -51,11 +52,11 @@ def test_another_speed_after_an_interruption_is_not_hidden_by_the_first():
 
 
 def test_a_simulator_that_is_held_up_is_slow_by_the_clock():
-    held_up = {"kind": "reach", "simTime": 2.0, "monotonic": 4.0}
+    held_up = {"kind": "reach", "simTimeS": 2.0, "monotonicS": 4.0}
     found = played(session(), start(), held_up)
     assert (found.speed, found.pace) == (1.0, 0.5)
     # What passes until a trial is resumed is no part of it.
-    assert played(session(), session("continued") | {"monotonic": 900.0}).pace == 1.0
+    assert played(session(), session("continued") | {"monotonicS": 900.0}).pace == 1.0
 
 
 @pytest.mark.parametrize(
@@ -68,9 +69,9 @@ def test_a_simulator_that_is_held_up_is_slow_by_the_clock():
     ],
 )
 def test_a_long_wait_does_not_hide_that_the_simulator_was_held_up(waits, then, pace):
-    late = {"simTime": 2.0, "monotonic": 4.0}
+    late = {"simTimeS": 2.0, "monotonicS": 4.0}
     held_up, wait = {"kind": "reach", **late}, {"kind": "phase", "phase": waits, **late}
-    over = {"kind": "phase", "phase": then, "simTime": 902.0, "monotonic": 904.0}
+    over = {"kind": "phase", "phase": then, "simTimeS": 902.0, "monotonicS": 904.0}
     assert played(session(), start(), held_up, wait, over).pace == pace
     continued = session("continued") | {"phase": waits, **late}
     assert played(session(), start(), held_up, continued, over).pace == pace
@@ -85,6 +86,6 @@ def test_pauses_and_views_are_counted():
 
 def test_it_is_read_as_it_was_written_and_invalid_values_are_refused():
     found = played(session(speed=None), start(seed=1), sample(0, ""), sample(1, "alignment"))
-    assert HowPlayed.from_json(json_object(found)) == found
+    assert record_from_json(HowPlayed, json_object(found)) == found
     with pytest.raises(InputError, match="seedSource"):
-        HowPlayed.from_json(json_object(replace(found, seed_source="dice")))
+        record_from_json(HowPlayed, json_object(replace(found, seed_source="dice")))

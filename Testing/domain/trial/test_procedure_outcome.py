@@ -9,6 +9,7 @@ import pytest
 from rastrainer import transforms
 from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.registration.registration import register
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.trial.analysis import RevealedTruth, analyze_trial, score_arguments
@@ -42,8 +43,8 @@ def record():
         {**point, "positionMm": position.tolist()}
         for point, position in zip(make_record()["points"], touches, strict=True)
     ]
-    value = {**make_record(points=points), "motion": MOTION, "procedure": done.to_json()}
-    return TrialRecord.from_json(json.loads(json.dumps(value)))
+    value = {**make_record(points=points), "motion": MOTION, "procedure": record_to_json(done)}
+    return record_from_json(TrialRecord, json.loads(json.dumps(value)))
 
 
 def test_a_procedure_is_analyzed_and_scored_once_the_truth_is_known(record):

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.procedure.plan import MAX_SAFETY_MM
 from rastrainer.trial import procedure_outcome as scoring
@@ -108,7 +109,7 @@ def test_better_in_all_measures_is_better_for_any_reference(one, other):
 @given(procedures(), references)
 def test_a_score_survives_json_with_its_version(measures, reference):
     first = score_procedure(measures, reference)
-    again = ProcedureScore.from_json(json.loads(json.dumps(first.to_json())))
+    again = record_from_json(ProcedureScore, json.loads(json.dumps(record_to_json(first))))
     assert again == first
     assert again.version == scoring.PROCEDURE_SCORE_VERSION
     assert score(again.measures, again.reference_s) == first.score

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rastrainer.errors import InputError
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.trial import scoring
 from rastrainer.trial.score_reference import score_reference
 from rastrainer.trial.scoring import (
@@ -102,7 +103,9 @@ def test_the_score_depends_on_one_trial_and_not_on_the_mode():
 @given(trials, references)
 def test_a_score_survives_json_with_its_version_and_references(trial, reference):
     first = score_trial(trial, reference)
-    again = TrialScore.from_json(json.loads(json.dumps(first.to_json())))
+    again = record_from_json(
+        TrialScore, json.loads(json.dumps(record_to_json(first, with_defaults=True)))
+    )
     assert again == first
     assert again.version == scoring.SCORE_VERSION
     assert score(again.measures, again.reference) == first.score

@@ -9,6 +9,7 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.trial_head import UNMOVED, SkinShift
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.report.method_comparison import shifted_skin
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.database.study import Study
@@ -44,10 +45,24 @@ def touched(scenario, skin):
         "unintended_contact_path_mm": 0.0,
         "pressing_depth_mm": 0.0,
     }
-    trial_id = "a3bb189e-8bf9-4888-9912-ace4e6543002"
-    whose = (trial_id, "P01", "task-1", "desktop", scenario.name)
-    record = TrialRecord(*whose, UTC, UTC, 60.0, points, 0, 0, {}, motion=motion)
-    return replace(record, skin=replace(skin, seed=0)), pose
+    record = TrialRecord(
+        trial_id="a3bb189e-8bf9-4888-9912-ace4e6543002",
+        trainee="P01",
+        task="task-1",
+        mode="desktop",
+        scenario=scenario.name,
+        started_utc=UTC,
+        completed_utc=UTC,
+        completion_time_s=60.0,
+        points=points,
+        rejected_touches=0,
+        undone_touches=0,
+        versions={},
+        motion=motion,
+        skin=skin,
+    )
+    assert record.skin.seed == 0
+    return record, pose
 
 
 def scored(scenario, skin):
@@ -82,8 +97,8 @@ def test_one_sentence_describes_the_shift_and_its_effect(scenario):
 def test_unshifted_skin_leaves_score_and_record_unchanged(scenario):
     analysis, _truth = scored(scenario, UNMOVED)
     assert analysis.feedback.skin_sentences == ()
-    assert "unshifted_tre_mm" not in analysis.score.to_json()
-    assert "skin" not in analysis.record.to_json()
+    assert "unshiftedTreMm" not in record_to_json(analysis.score)
+    assert "skin" not in record_to_json(analysis.record)
 
 
 def test_a_study_stores_the_skin_shift_and_shows_it_in_tables_and_report(scenario, tmp_path):
@@ -91,7 +106,7 @@ def test_a_study_stores_the_skin_shift_and_shows_it_in_tables_and_report(scenari
     record = analysis.record
     with Study.open(tmp_path / "study.db") as study:
         study.add_trial(
-            record, analysis.fits.values(), analysis.target_errors, delivered=record.to_json()
+            record, analysis.fits.values(), analysis.target_errors, delivered=record_to_json(record)
         )
         study.add_results(record.trial_id, score=analysis.score)
         study.set_truth(record.trial_id, truth.true_tre_mm, truth.head_to_world)
@@ -113,6 +128,6 @@ def test_a_study_stores_the_skin_shift_and_shows_it_in_tables_and_report(scenari
 
 def test_a_truth_with_an_impossible_skin_shift_is_refused():
     answer = {"headToWorld": np.eye(4).ravel().tolist(), "trueTreMm": 1.0}
-    assert RevealedTruth.from_json(answer).skin == UNMOVED
-    with pytest.raises(InputError, match="and skin"):
-        RevealedTruth.from_json({**answer, "skin": {"shiftMm": 1.0, "seed": -1}})
+    assert record_from_json(RevealedTruth, answer).skin == UNMOVED
+    with pytest.raises(InputError, match=r"skin\.seed must be a whole number"):
+        record_from_json(RevealedTruth, {**answer, "skin": {"shiftMm": 1.0, "seed": -1}})

@@ -18,7 +18,7 @@ def make_record(**changes):
         {
             "label": str(i + 1),
             "positionMm": [500.0 + i, -20.0 * i, 300.25],
-            "simTime": 5.0 + 7.5 * i,
+            "simTimeS": 5.0 + 7.5 * i,
             "utc": f"2024-05-17T09:30:{i:02d}.250Z",
         }
         for i in range(15)

@@ -39,6 +39,14 @@ class Player:
         """Start touching the points numbered `first` to `last`."""
         self._begin(lambda client: self._touch(client, first, last))
 
+    def lower(self, number: int) -> None:
+        """Start lowering the tip onto the point with a number."""
+        self._begin(lambda client: self._lower(client, number))
+
+    def capture(self) -> None:
+        """Start touching the skin where the tip is."""
+        self._begin(lambda client: _do(client, "Capture"))
+
     def register(self) -> None:
         """Start registering the touched points."""
         self._begin(lambda client: _do(client, "Register"))
@@ -63,12 +71,18 @@ class Player:
         self._thread.start()
 
     def _touch(self, client: Client, first: int, last: int) -> None:
-        state = json.loads(client.wait_for("SimState", timeout=60).content.text)
-        for above, fiducial, center in list(self._places(state["trialId"]))[first - 1 : last]:
-            _move_to(client, above)
-            lower_onto_skin(client, fiducial, center)
+        for number in range(first, last + 1):
+            above = self._lower(client, number)
             _do(client, "Capture")
             _move_to(client, above)
+
+    def _lower(self, client: Client, number: int) -> np.ndarray:
+        """Lower the tip onto a point; return the place above it."""
+        state = json.loads(client.wait_for("SimState", timeout=60).content.text)
+        above, fiducial, center = list(self._places(state["trialId"]))[number - 1]
+        _move_to(client, above)
+        lower_onto_skin(client, fiducial, center)
+        return above
 
     def _places(self, trial_id: str) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
         (journal,) = self._records.glob(f"*_{trial_id}.journal")

@@ -8,6 +8,7 @@ from datetime import datetime, timedelta, timezone
 from pathlib import Path
 from typing import Any
 
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import TRACED_METHODS
 from rastrainer.study.curriculum.curriculum import Assignment, Curriculum, read_curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore, counted_trials
@@ -71,7 +72,7 @@ def _play(
         method=assignment.method,
     )
     score = gentle_score(seconds, 0.25)
-    record = TrialRecord.from_json(value)
+    record = record_from_json(TrialRecord, value)
     study_trials.add(connection, record, value)
     study_trials.add_results(connection, record.trial_id, (), {}, score)
 

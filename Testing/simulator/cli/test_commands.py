@@ -22,21 +22,16 @@ from rastrainer.registration.registration import register
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import read_study_protocol
-from rastrainer_simulator.cli import register as register_command
 from rastrainer_simulator.cli.main import _parser, main
 from rastrainer_simulator.cli.replays import _summary
-from rastrainer_simulator.cli.results import add_score_parser
 from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record, make_traced
 
 STUDY = Path(__file__).parents[3] / "assets" / "studies" / "published.csv"
 
 
 def run(*words):
-    parser = argparse.ArgumentParser()
-    subparsers = parser.add_subparsers(required=True)
-    register_command.add_parser(subparsers)
-    add_score_parser(subparsers)
-    arguments = parser.parse_args([str(word) for word in words])
+    words = [str(word) for word in words]
+    arguments = _parser(words).parse_args(words)
     return arguments.run(arguments)
 
 

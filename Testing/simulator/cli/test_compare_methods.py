@@ -96,7 +96,7 @@ def test_a_study_is_registered_by_every_method_that_its_trials_allow(
         {
             "label": landmark.name,
             "positionMm": place,
-            "simTime": 5.0 + time,
+            "simTimeS": 5.0 + time,
             "utc": "2024-05-17T09:30:00Z",
         }
         for time, (landmark, place) in enumerate(zip(LANDMARKS, moving.tolist(), strict=True))

@@ -1,6 +1,5 @@
 """The options of a scenario on the command line: used as given, or refused with a sentence."""
 
-import argparse
 import json
 
 import numpy as np
@@ -9,15 +8,13 @@ import pytest
 from rastrainer.head.trial_head import Perturbation
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli import scenario as scenario_command
-from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.cli.main import _parser, main
 from rastrainer_simulator.cli.scenario_options import options_of
 
 
 def wished(*words):
-    parser = argparse.ArgumentParser()
-    scenario_command.add_parser(parser.add_subparsers())
-    return options_of(parser.parse_args(["scenario", "tasks", "draft", *words]), "the volume")
+    given = ["scenario", "tasks", "draft", *words]
+    return options_of(_parser(given).parse_args(given), "the volume")
 
 
 def test_omitted_options_have_their_defaults(tmp_path):

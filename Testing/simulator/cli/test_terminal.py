@@ -7,17 +7,17 @@ import sys
 import pytest
 
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli import doctor_command
-from rastrainer_simulator.cli.doctor.check_result import CheckResult, CheckStatus
+from rastrainer_simulator.cli import doctor
 from rastrainer_simulator.cli.main import main
 
-FINDING = CheckResult("font", CheckStatus.WARNING, "No 汉字 in 10 µm.", "Install one → it works…")
+ANSWERS = [(doctor.WARNING, "No 汉字 in 10 µm.")]
+CHECKS = (("font", lambda _arguments: ANSWERS, "Install one → it works…"),)
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252", "gbk", "utf-8"])
 @pytest.mark.parametrize("words", ["--help", "register --help", "scenario build --help", "doctor"])
 def test_a_terminal_that_lacks_characters_gets_the_others(monkeypatch, encoding, words):
-    monkeypatch.setattr(doctor_command, "_findings", lambda _arguments: [FINDING])
+    monkeypatch.setattr(doctor, "CHECKS", CHECKS)
     written = io.BytesIO()
     monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(written, encoding=encoding))
     try:
@@ -93,7 +93,7 @@ def test_what_the_system_refuses_is_one_sentence_with_the_name(monkeypatch, tmp_
     def refuse(_arguments):
         (tmp_path / "none" / "file").read_text()
 
-    monkeypatch.setattr(doctor_command, "run", refuse)
+    monkeypatch.setattr(doctor, "CHECKS", (("disk", refuse, ""),))
     assert main(["doctor"]) == 2
     assert capsys.readouterr().err == (
         f"rastrainer: {tmp_path / 'none' / 'file'} cannot be used: no such file or directory.\n"

@@ -225,7 +225,7 @@ def test_a_move_reaches_its_target_and_reports_it(trial):
 
 
 def test_a_move_into_the_head_stops_at_the_surface_and_reports_that_it_was_blocked(trial):
-    center = trial.simulation.truth.in_world(trial.simulation.truth.target)
+    center = trial.simulation.truth.in_world(trial.simulation.truth.target_ras)
     assert trial.move_to(center) == "blocked"
     assert trial.state.clearance >= -0.0001
     assert trial.state.proximity is Proximity.CONTACT
@@ -335,7 +335,7 @@ def test_several_commands_in_one_tick_are_each_answered_in_order(trial):
 
 def test_a_simulation_continues_from_anothers_tick_time_revision_and_camera(setup):
     simulation = Simulation(setup, 1)
-    simulation.restart_from(StartingPoint(tick=1000, sim_time=4.0, revision=7, camera="far"))
+    simulation.restart_from(StartingPoint(tick=1000, sim_time_s=4.0, revision=7, camera="far"))
     state = simulation.step(DT, HANDS_OFF).state
     assert (state.tick, state.sim_time, state.camera) == (1001, 4.0 + DT, "far")
     assert state.training.revision == 7
@@ -400,14 +400,14 @@ def test_the_tolerances_of_the_inverse_kinematics_are_settings_of_the_simulation
 
 def hover(truth, label):
     """Return a point 70 mm outside of a fiducial, as seen from the head's target."""
-    fiducial = truth.in_world(truth.fiducials[label])
-    away = fiducial - truth.in_world(truth.target)
+    fiducial = truth.in_world(truth.fiducials_ras[label])
+    away = fiducial - truth.in_world(truth.target_ras)
     return fiducial, fiducial + 70.0 * away / np.linalg.norm(away)
 
 
 def test_a_whole_trial_is_played_by_moves_and_every_touch_is_at_its_fiducial(trial):
     truth = trial.simulation.truth
-    above = truth.in_world(truth.target) + np.array([0.0, 0.0, 240.0])
+    above = truth.in_world(truth.target_ras) + np.array([0.0, 0.0, 240.0])
     for number in range(1, 16):
         fiducial, outside = hover(truth, str(number))
         trial.move_to(outside)

@@ -5,6 +5,7 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.files.ply import read_point_cloud
 from rastrainer.files.point_files import read_markups
+from rastrainer.json_records import record_from_json
 from rastrainer.registration.registration import register
 from rastrainer.study.database.values import StoredRegistration, StoredTrial
 from rastrainer.trial.record import TrialRecord
@@ -15,7 +16,7 @@ LANDMARKS = np.array([[0.0, 90.0, -30.0], [50.0, 60.0, -40.0], [-50.0, 60.0, -40
 
 
 def test_points_of_a_trace_are_exported_in_world_and_registered_coordinates(tmp_path):
-    record = TrialRecord.from_json(record_of())
+    record = record_from_json(TrialRecord, record_of())
     moved = transforms.apply(transforms.rigid(np.eye(3), [100.0, 0.0, 50.0]), LANDMARKS)
     rigid = register(moved, LANDMARKS, labels=record.labels)
     stored = StoredTrial(record, {"rigid": StoredRegistration.of(rigid, None)}, None, None, None)
@@ -32,6 +33,6 @@ def test_points_of_a_trace_are_exported_in_world_and_registered_coordinates(tmp_
 
 
 def test_without_a_registration_they_are_exported_only_in_world_coordinates(tmp_path):
-    stored = StoredTrial(TrialRecord.from_json(record_of()), {}, None, None, None)
+    stored = StoredTrial(record_from_json(TrialRecord, record_of()), {}, None, None, None)
     names = [path.name for path in write_slicer_files(stored, tmp_path)]
     assert names == ["touched-world.mrk.json", "traced-world.mrk.json", "traced-world.ply"]

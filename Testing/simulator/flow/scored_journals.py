@@ -6,6 +6,7 @@ import uuid
 from pathlib import Path
 
 from rastrainer.journal.journal_file import NO_LINE, encode_line
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
@@ -22,18 +23,18 @@ SCORES = (38.0, 52.4, 47.0, 66.6, 71.0, 69.0, 88.0)
 def write_scored(folder, number, *scores, is_safe=True, make=make_record, **changes) -> Path:
     """Write the journal of a trial that was scored as often as there are scores."""
     trial_id = str(uuid.UUID(int=number))
-    record = TrialRecord.from_json(make(trialId=trial_id, trainee=TRAINEE, **changes))
+    record = record_from_json(TrialRecord, make(trialId=trial_id, trainee=TRAINEE, **changes))
     details = {"isAccurate": True, "isUnbiased": True, "isSafe": is_safe}
     found = [{"trialId": trial_id, "score": score, "details": details} for score in scores]
-    registered = {"kind": "registered", "record": record.to_json()}
+    registered = {"kind": "registered", "record": record_to_json(record)}
     scored = ({"kind": "scored", "arguments": arguments} for arguments in found)
     return _write(folder, number, record, registered, *scored)
 
 
 def write_aborted(folder, number, **changes) -> Path:
     """Write the journal of a trial that was aborted."""
-    record = AbortedTrial.from_json(make_aborted(number, trainee=TRAINEE, **changes))
-    return _write(folder, number, record, {"kind": "attempt", "record": record.to_json()})
+    record = record_from_json(AbortedTrial, make_aborted(number, trainee=TRAINEE, **changes))
+    return _write(folder, number, record, {"kind": "attempt", "record": record_to_json(record)})
 
 
 def _write(folder, number, record, *entries) -> Path:

@@ -97,15 +97,15 @@ def test_after_a_trial_the_next_assignment_is_offered_instead_of_the_next_task(p
     page.choose("assignment one")
     page.until_menu(None)
     finished = FinishedPage(page.presenter._session)
-    offered = {item.name: item.label for item in finished.items()}
+    offered = {row.item.name: row.item.label for row in finished.onward()}
     assert offered["next"] == "Next: Task 2"
     outside.services.curricula.take(replace(TOLD, next="four"))
-    offered = {item.name: item.label for item in finished.items()}
+    offered = {row.item.name: row.item.label for row in finished.onward()}
     assert offered["next"] == "Next: Task 4 · Headset"
-    finished.accept("next")
+    finished.back()
     assert page.presenter._session.pages.top.first == "assignments"
     outside.services.curricula.take(replace(TOLD, next=""))
-    assert "next" not in [item.name for item in finished.items()]
+    assert "next" not in [row.item.name for row in finished.onward()]
 
 
 def test_a_locked_task_waits_for_its_gate_and_an_open_one_for_no_earlier_task(menu):

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from rastrainer_simulator.flow.pages.controls import ControlsPage
-from rastrainer_simulator.flow.pages.start import SettingsPage
 from rastrainer_simulator.flow.running_presenter import RunningPresenter
-from rastrainer_simulator.flow.session.preferences import Preferences, write_preferences
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, DEFAULT_BINDINGS, read_bindings
 from rastrainer_simulator.input.controls import IDLE_S
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.presenter import Hello
-from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label
+from rastrainer_simulator.texts.texts import Texts, input_label
 from Testing.simulator.flow.trainee import STEP_S, Keys
 
 
@@ -347,27 +344,6 @@ def test_hostile_settings_files_are_reported_and_the_defaults_used(loop, outside
     assert len(warnings) == 2
     assert all(text.endswith("The defaults are used.") for text in warnings)
     assert running.presenter.controls.bindings == DEFAULT_BINDINGS
-    running.close()
-
-
-def test_a_window_without_chinese_letters_says_so_in_english_and_offers_other_languages(
-    loop, outside
-):
-    others = tuple(tag for tag in LANGUAGES if tag != "zh-Hans")
-    services = replace(outside.services, languages=others)
-    write_preferences(services.config / "preferences.json", Preferences(language="zh-Hans"))
-    running = RunningPresenter(loop, services, has_gamepad=False)
-    running.advance(0.01)
-    (warning,) = running.presenter.screen.warnings
-    assert "no font with Chinese characters" in warning.text
-    session = running.presenter._session
-    settings = SettingsPage(session)
-    chosen = []
-    for _ in others:
-        settings.step("language", -1)
-        chosen.append(session.preferences.language)
-    assert chosen == [*reversed(others)]
-    assert settings.menu().items[0].help == warning.text
     running.close()
 
 

@@ -53,8 +53,8 @@ def test_touch_undo_proximity_contact_and_finish_give_sound_and_vibration_exactl
     pilot.presenter.subscribe(lambda _news: pilot.presenter.rumble(0.0, 0.0))
     pilot.start("task-1")
     truth = pilot.loop.truth
-    center = truth.in_world(truth.target) / MM_PER_M
-    top = truth.in_world(truth.fiducials["1"]) / MM_PER_M
+    center = truth.in_world(truth.target_ras) / MM_PER_M
+    top = truth.in_world(truth.fiducials_ras["1"]) / MM_PER_M
     outward = (top - center) / np.linalg.norm(top - center)
     pilot.steer_to(top + 0.06 * outward, 0.02)
     pilot.steer_to(top - 0.02 * outward, 0.001, fine=True)

@@ -11,6 +11,7 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.head.mesh import read_head_mesh
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.procedure_outcome import procedure_outcome
@@ -203,7 +204,7 @@ def score(operation: Operation) -> None:
     trainee = operation.trainee
     trainee.until_menu("waiting")
     data = trainee.submit("GetTrial", trialId=operation.registration["trialId"]).data
-    record = TrialRecord.from_json(data["record"])
+    record = record_from_json(TrialRecord, data["record"])
     truth = trainee.submit("SubmitRegistration", **operation.registration).data
     head_to_world = np.reshape(truth["headToWorld"], (4, 4))
     scenario = trainee.loop.setup.scenario

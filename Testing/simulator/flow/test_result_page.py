@@ -160,7 +160,9 @@ def test_the_worst_point_is_practiced_again_and_nothing_is_recorded(registered, 
     assert screen.status[0] == "Task 1: practice of point 7"
     registered.until(lambda: not registered.presenter._flow._tutorial_screen._is_homing, "the arm")
     truth = registered.loop.truth
-    place, center = (truth.in_world(p) / MM_PER_M for p in (truth.fiducials["7"], truth.target))
+    place, center = (
+        truth.in_world(p) / MM_PER_M for p in (truth.fiducials_ras["7"], truth.target_ras)
+    )
     registered.touch(place, center)
     registered.until_menu("practiced")
     assert registered.menu.facts[0].label == "Error of your touch"

@@ -137,10 +137,10 @@ def test_a_poor_touch_of_the_trial_run_is_named_with_the_key_that_takes_it_back(
     trainee.start(TRIAL_RUN)
     session = trainee.presenter._session
     truth = loop.truth
-    place = truth.in_world(truth.fiducials["1"]) / MM_PER_M
+    place = truth.in_world(truth.fiducials_ras["1"]) / MM_PER_M
     screen = trainee.presenter._flow._trial_screen
     screen._points = {**screen._points, "1": tuple(np.add(place, (0.0, 0.005, 0.0)).tolist())}
-    center = truth.in_world(truth.target) / MM_PER_M
+    center = truth.in_world(truth.target_ras) / MM_PER_M
     trainee.touch(place, center)
     trainee.steer_to(place + 0.2 * (place - center), 0.005)
     trainee.step(15)

@@ -169,7 +169,9 @@ def test_a_stray_key_after_a_trial_does_not_create_another_trainee(trainee):
 def test_a_trial_run_with_one_point_does_not_count_as_done(trainee):
     trainee.start("trial-run")
     truth = trainee.loop.truth
-    point, center = (truth.in_world(p) / MM_PER_M for p in (truth.fiducials["1"], truth.target))
+    point, center = (
+        truth.in_world(p) / MM_PER_M for p in (truth.fiducials_ras["1"], truth.target_ras)
+    )
     trainee.touch(point, center)
     trainee.tap("menu")
     trainee.until_menu("trial")
@@ -203,8 +205,8 @@ def test_after_a_refused_touch_the_skin_is_announced_again_once_the_tip_has_move
     trainee.tap("touch")
     trainee.until(lambda: trainee.presenter.screen.instruction.tone == "warning")
     truth = trainee.loop.truth
-    center = truth.in_world(truth.target) / MM_PER_M
-    trainee.lower_onto(truth.in_world(truth.fiducials["1"]) / MM_PER_M, center)
+    center = truth.in_world(truth.target_ras) / MM_PER_M
+    trainee.lower_onto(truth.in_world(truth.fiducials_ras["1"]) / MM_PER_M, center)
     trainee.until(lambda: trainee.state.touch == "on skin", "the skin")
     trainee.step(15)
     assert trainee.presenter.screen.instruction.text.startswith("On the skin")
@@ -257,7 +259,7 @@ def test_guidance_cannot_change_during_a_trial(trainee):
 
 def test_the_direction_to_the_target_is_shown_in_words_in_the_trial_run(trainee):
     trainee.start("trial-run")
-    target = trainee.loop.truth.in_world(trainee.loop.truth.fiducials["1"])
+    target = trainee.loop.truth.in_world(trainee.loop.truth.fiducials_ras["1"])
     away = sum((a - MM_PER_M * b) ** 2 for a, b in zip(target, trainee.tip, strict=True)) ** 0.5
     words = trainee.presenter.screen.status[3].split()
     assert words[:2] == ["Point", "1:"]
@@ -350,13 +352,13 @@ def test_straying_from_the_path_to_the_next_point_is_reported_and_staying_on_it_
     truth = pilot.loop.truth
     center, first, second = (
         truth.in_world(point) / MM_PER_M
-        for point in (truth.target, truth.fiducials["1"], truth.fiducials["2"])
+        for point in (truth.target_ras, truth.fiducials_ras["1"], truth.fiducials_ras["2"])
     )
     pilot.touch(first, center)
     pilot.touch(second, center)
     found = [screen.instruction.text for screen in pilot.watcher.screens]
     assert [text for text in found if "off the way" in text] == []
-    aside = np.cross(second - center, truth.in_world(truth.fiducials["3"]) / MM_PER_M - center)
+    aside = np.cross(second - center, truth.in_world(truth.fiducials_ras["3"]) / MM_PER_M - center)
     aside *= 0.09 / np.linalg.norm(aside)
     pilot.steer_to(1.4 * (second - center) + center, 0.02)
     pilot.steer_to(1.4 * (second - center) + center + aside, 0.02)
@@ -372,7 +374,9 @@ def test_straying_from_the_path_to_the_next_point_is_reported_and_staying_on_it_
 def test_a_correct_touch_raises_no_alarm_and_names_the_button(pilot):
     pilot.start("task-1")
     truth = pilot.loop.truth
-    point, center = (truth.in_world(p) / MM_PER_M for p in (truth.fiducials["1"], truth.target))
+    point, center = (
+        truth.in_world(p) / MM_PER_M for p in (truth.fiducials_ras["1"], truth.target_ras)
+    )
     pilot.touch(point, center)
     shown = [screen for screen in pilot.watcher.screens if screen.menu is None]
     assert [screen.warnings for screen in shown if screen.warnings] == []
@@ -385,7 +389,7 @@ def test_a_correct_touch_raises_no_alarm_and_names_the_button(pilot):
 def test_a_contact_that_happens_while_the_presenter_advances_raises_one_alarm(pilot, monkeypatch):
     pilot.start("task-1")
     truth = pilot.loop.truth
-    above = truth.in_world(truth.target) / MM_PER_M + (0.0, 0.0, 0.13)
+    above = truth.in_world(truth.target_ras) / MM_PER_M + (0.0, 0.0, 0.13)
     pilot.steer_to(above, 0.01)
     controls = pilot.presenter.controls
     advance = controls.advance
@@ -404,7 +408,7 @@ def test_a_contact_that_happens_while_the_presenter_advances_raises_one_alarm(pi
 def test_a_pressed_tool_is_reported_with_its_depth_in_both_languages(pilot):
     pilot.start("task-1")
     truth = pilot.loop.truth
-    above = truth.in_world(truth.target) / MM_PER_M + (0.0, 0.0, 0.13)
+    above = truth.in_world(truth.target_ras) / MM_PER_M + (0.0, 0.0, 0.13)
     pilot.steer_to(above, 0.01)
     pilot.steer_to(above - (0.0, 0.0, 0.13), 0.0, fine=True, ends_in_contact=True)
     pilot.hands.push(0.0, 0.0, 0.0, False)

@@ -408,9 +408,9 @@ def test_a_finished_tutorial_is_remembered_per_device(tmp_path):
         {"formatVersion": 9},
         {"device": "nose"},
         {"errorsMm": [1.0]},
-        {"seconds": -1},
+        {"durationS": -1},
         {"trainee": ""},
-        {"stepSeconds": {"right": "long"}},
+        {"stepTimesS": {"right": "long"}},
     ],
     ids=lambda change: next(iter(change)),
 )

@@ -308,9 +308,9 @@ class Trainee:
     def play(self, task: str) -> None:
         """Touch all points of the running trial, as the head stands in it."""
         truth = self.loop.truth
-        center = truth.in_world(truth.target) / MM_PER_M
+        center = truth.in_world(truth.target_ras) / MM_PER_M
         for label in [str(number) for number in range(1, 16)]:
-            self.touch(truth.in_world(truth.fiducials[label]) / MM_PER_M, center)
+            self.touch(truth.in_world(truth.fiducials_ras[label]) / MM_PER_M, center)
         assert self.state.training.phase is Phase.COMPLETE, task
         self.step(2)
 

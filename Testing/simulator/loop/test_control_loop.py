@@ -15,6 +15,7 @@ import pytest
 from rastrainer.commands import CommandName, check_arguments
 from rastrainer.journal.folder import number_of
 from rastrainer.journal.journal_file import Integrity, read_journal
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import Phase
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.simulation import Simulation
@@ -132,7 +133,7 @@ def test_a_whole_trial_is_recorded_delivered_scored_and_replayed_bit_for_bit(
     assert report.compared["sample"] > 20
     assert report.motion["undone_touches"] == 1
     assert report.motion == trial["record"]["motion"]
-    record = TrialRecord.from_json(trial["record"])
+    record = record_from_json(TrialRecord, trial["record"])
     assert record.undone_touches == 1
 
 
@@ -258,7 +259,7 @@ def test_on_a_full_disk_the_trial_pauses_and_continues_once_there_is_room(
     reading = read_journal(journals(tmp_path)[0])
     assert reading.integrity is Integrity.INTACT
     assert replay(reading, anywhere).difference is None
-    record = TrialRecord.from_json(reading.of_kind("registered")[-1]["record"])
+    record = record_from_json(TrialRecord, reading.of_kind("registered")[-1]["record"])
     assert record.labels == tuple(str(i) for i in range(1, 16))
 
 

@@ -262,7 +262,7 @@ def test_ending_the_simulator_and_starting_another_trial_aborts_the_first(simula
         assert server.loop.unacknowledged() == ()
         server.start()
         (record,) = wait_for_offer(server)
-        assert (record.trial_id, record.reason) == (trial_id, "not gone on with")
+        assert (record.trial_id, record.reason) == (trial_id, "abandoned")
         assert (record.phase, len(record.points), record.undone_touches) == ("running", 3, 1)
         assert record.elapsed_s == pytest.approx(elapsed, abs=0.05)
         assert server.do(CommandName.ACKNOWLEDGE_TRIAL, trialId=trial_id).ok

@@ -13,6 +13,7 @@ from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, read_journal
 from rastrainer.journal.recording import Recording
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import Phase, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.record import TrialRecord
@@ -211,7 +212,7 @@ def test_the_trials_clock_is_stopped_until_it_is_resumed(simulation, tmp_path):
         server.start()
         assert server.do(CommandName.CAPTURE).ok
         server.move(ticks=100)
-    last = max(entry["simTime"] for entry in read_journal(server.path).entries)
+    last = max(entry["simTimeS"] for entry in read_journal(server.path).entries)
     with Server(simulation, tmp_path) as server:
         elapsed = server.taken_up.elapsed
         server.move(ticks=500)
@@ -220,7 +221,7 @@ def test_the_trials_clock_is_stopped_until_it_is_resumed(simulation, tmp_path):
         server.finish()
         (record,) = server.loop.unacknowledged()
         at_end = server.loop.latest.sim_time
-    started = read_journal(server.path).header["before"]["sim_time"]
+    started = read_journal(server.path).header["before"]["simTimeS"]
     assert elapsed == pytest.approx(last - started, abs=1e-6)
     assert elapsed <= record.completion_time_s < at_end - started - 500 * 0.004
     times = Recording.of(read_journal(server.path).entries).trajectory().times_s
@@ -307,7 +308,7 @@ def test_a_full_disk_when_the_trial_is_resumed_pauses_it_again(
     reading = read_journal(server.path)
     assert reading.integrity is Integrity.INTACT
     assert replay(reading, anywhere).difference is None
-    record = TrialRecord.from_json(reading.of_kind("registered")[-1]["record"])
+    record = record_from_json(TrialRecord, reading.of_kind("registered")[-1]["record"])
     assert record.labels == tuple(str(i) for i in range(1, 16))
 
 
@@ -339,7 +340,7 @@ def test_a_forged_journal_is_refused_with_a_message(simulation, tmp_path, change
         server.do(CommandName.CAPTURE)
         server.move(ticks=30)
     entries = [dict(entry) for entry in read_journal(server.path).entries]
-    entries.append({"kind": "proximity", "to": "free", "tick": entries[-1]["tick"], "simTime": 0})
+    entries.append({"kind": "proximity", "to": "free", "tick": entries[-1]["tick"], "simTimeS": 0})
     for entry in entries:
         if entry["kind"] == change["kind"]:
             entry.update(change)

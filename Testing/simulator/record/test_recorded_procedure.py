@@ -12,6 +12,7 @@ from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.journal.recording import Recording, WholeRecording, read_track
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.study.journal_check import check_journal
@@ -190,9 +191,9 @@ def test_the_record_has_every_attempt_and_instrument(finished, planned):
     path, record = finished
     (registered,) = read_journal(path).of_kind("registered")
     written = registered["record"] | {"journalSha256": registered["sha256"]}
-    delivered = TrialRecord.from_json(json.loads(json.dumps(record.to_json())))
-    assert TrialRecord.from_json(written) == delivered
-    truth = RevealedTruth.from_json(registered["truth"] | {"trueTreMm": 0.0})
+    delivered = record_from_json(TrialRecord, json.loads(json.dumps(record_to_json(record))))
+    assert record_from_json(TrialRecord, written) == delivered
+    truth = record_from_json(RevealedTruth, registered["truth"] | {"trueTreMm": 0.0})
     check_journal(delivered, truth, path.read_bytes(), planned.scenario)
     procedure = record.procedure
     first, accepted = procedure.attempts
@@ -307,7 +308,7 @@ def test_an_abort_in_a_phase_is_recorded_with_the_phase(simulation, tmp_path, ph
     assert len(record.points) == 15
     assert record.counts_as_failed
     assert record.elapsed_s >= elapsed
-    assert AbortedTrial.from_json(json.loads(json.dumps(record.to_json()))) == record
+    assert record_from_json(AbortedTrial, json.loads(json.dumps(record_to_json(record)))) == record
 
 
 def test_a_paused_procedure_is_aborted_in_the_phase_in_which_it_was_paused(simulation, tmp_path):
@@ -338,10 +339,10 @@ def test_a_trial_with_touches_only_has_no_procedure_in_its_journal(simulation, t
         server.move()
         server.finish()
         (record,) = server.loop.unacknowledged()
-    text = server.path.read_text().replace('"procedure":{"self_alignment"', "")
+    text = server.path.read_text().replace('"procedure":{"selfAlignment"', "")
     assert '"procedure"' not in text
     assert '"feedMm"' not in text
-    assert "procedure" not in record.to_json()
+    assert "procedure" not in record_to_json(record)
 
 
 @pytest.fixture(scope="module")

@@ -9,6 +9,7 @@ import pytest
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, read_journal
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import MIN_TRACE_POINTS, Phase, RegistrationMethod
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
@@ -91,7 +92,7 @@ def test_a_stroke_cut_off_by_a_kill_keeps_its_written_points_and_the_trial_repla
     assert record.method is RegistrationMethod.SURFACE
     assert [point[:3] for point in record.trace[:kept]] == written[-kept:]
     assert record.completion_time_s < record.trace[-1][3]
-    assert TrialRecord.from_json(record.to_json()) == record
+    assert record_from_json(TrialRecord, record_to_json(record)) == record
     assert [point.label for point in record.points] == [each.name for each in LANDMARKS[:3]]
 
 
@@ -138,7 +139,7 @@ def test_a_trial_with_landmarks_other_than_the_scenarios_is_not_replayed(airy):
 
 
 def record_of(**changes):
-    point = {"positionMm": [1.0, 2.0, 3.0], "simTime": 1.0, "utc": "2024-05-17T09:30:00Z"}
+    point = {"positionMm": [1.0, 2.0, 3.0], "simTimeS": 1.0, "utc": "2024-05-17T09:30:00Z"}
     values = {
         "trialId": "a3bb189e-8bf9-4888-9912-ace4e6543002",
         "trainee": "P01",
@@ -160,9 +161,9 @@ def record_of(**changes):
 
 
 def test_a_record_with_a_trace_is_read():
-    record = TrialRecord.from_json(record_of())
+    record = record_from_json(TrialRecord, record_of())
     assert record.trace_mm.shape == (30, 3)
-    assert record.to_json() | record_of() == record.to_json()
+    assert record_to_json(record) | record_of() == record_to_json(record)
 
 
 LINE = [[1.0, 2.0, float(number), 2.0] for number in range(501)]
@@ -173,11 +174,11 @@ LINE = [[1.0, 2.0, float(number), 2.0] for number in range(501)]
     [
         pytest.param({"trace": LINE}, "at most 500 points", id="too long"),
         pytest.param({"trace": LINE[:29]}, "needs at least 30", id="too short"),
-        pytest.param({"trace": [[1, 2, 3]] * 30}, "x, y, z, simTime", id="without time"),
-        pytest.param({"trace": [["1", 2, 3, 4]] * 30}, "x, y, z, simTime", id="text"),
-        pytest.param({"trace": [{"x": 1}] * 30}, "x, y, z, simTime", id="objects"),
-        pytest.param({"trace": [[1, 2, 9e9, 4]] * 30}, "x, y, z, simTime", id="far"),
-        pytest.param({"trace": "long"}, "x, y, z, simTime", id="no list"),
+        pytest.param({"trace": [[1, 2, 3]] * 30}, "x, y, z, simTimeS", id="without time"),
+        pytest.param({"trace": [["1", 2, 3, 4]] * 30}, "x, y, z, simTimeS", id="text"),
+        pytest.param({"trace": [{"x": 1}] * 30}, "x, y, z, simTimeS", id="objects"),
+        pytest.param({"trace": [[1, 2, 9e9, 4]] * 30}, "x, y, z, simTimeS", id="far"),
+        pytest.param({"trace": "long"}, "x, y, z, simTimeS", id="no list"),
         pytest.param({"trace": [[1, 2, 3, 4 - n / 50] for n in range(30)]}, "time", id="back"),
         pytest.param({"method": "landmarks"}, "must hold no trace", id="unwanted"),
         pytest.param({"method": "scan"}, "method", id="not played"),
@@ -188,7 +189,7 @@ LINE = [[1.0, 2.0, float(number), 2.0] for number in range(501)]
 )
 def test_a_record_that_does_not_fit_its_method_is_refused_with_a_message(changes, said):
     with pytest.raises(InputError, match=said):
-        TrialRecord.from_json(record_of(**changes))
+        record_from_json(TrialRecord, record_of(**changes))
 
 
 def test_aborted_and_interrupted_trials_report_their_method_and_how_much_was_traced(

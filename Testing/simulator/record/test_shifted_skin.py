@@ -10,6 +10,7 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.trial_head import UNMOVED, SkinShift
 from rastrainer.journal.journal_file import read_journal
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import Phase
 from rastrainer.study.journal_check import check_journal
 from rastrainer.trial.analysis import RevealedTruth
@@ -84,13 +85,13 @@ def test_points_on_shifted_skin_stay_hidden_and_survive_a_kill_and_a_replay(simu
             CommandName.SUBMIT_REGISTRATION, trialId=record.trial_id, **REGISTRATION
         )
     assert record.skin == SkinShift(3.0, 0, 0.5)
-    assert record.to_json()["skin"] == SKIN
-    assert TrialRecord.from_json(record.to_json()) == record
+    assert record_to_json(record)["skin"] == SKIN
+    assert record_from_json(TrialRecord, record_to_json(record)) == record
     np.testing.assert_allclose(record.trace_mm[: len(places)], places, atol=1e-9)
     assert revealed.data["skin"] == {**SKIN, "seed": SEED}
     reading = read_journal(server.path)
     assert replay(reading, simulation.setup).difference is None
-    truth, journal = RevealedTruth.from_json(revealed.data), server.path.read_bytes()
+    truth, journal = record_from_json(RevealedTruth, revealed.data), server.path.read_bytes()
     check_journal(record, truth, journal, simulation.setup.scenario)
     assert archived_trial(reading).truth.skin == SkinShift(3.0, SEED, 0.5)
 

@@ -11,6 +11,7 @@ from rastrainer.commands import CommandName, check_arguments, decode_json_object
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, Integrity, read_journal, stamp
 from rastrainer.json_checks import MAX_DEPTH
+from rastrainer.json_records import record_to_json
 from rastrainer.trial.record import TouchedPoint, TrialRecord
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_archive import (
@@ -62,8 +63,8 @@ def write_trial(folder, *more, trial_id=TRIAL_ID):
     header = {"kind": "header", "format": FORMAT, "version": FORMAT_VERSION}
     registered = {
         "kind": "registered",
-        "record": RECORD.to_json() | {"trialId": trial_id},
-        "truth": TRUTH.to_json(),
+        "record": record_to_json(RECORD) | {"trialId": trial_id},
+        "truth": record_to_json(TRUTH),
         "seed": 7,
     }
     samples = [{"kind": "sample", "i": i} for i in range(2000)]
@@ -100,7 +101,7 @@ def test_the_truth_of_an_older_trial_is_revealed_only_for_a_registration(tmp_pat
     path = write_trial(tmp_path)
     archive = TrialArchive(tmp_path)
     before = archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
-    assert before["record"] == sealed(path).to_json()
+    assert before["record"] == record_to_json(sealed(path))
     assert not {"headToWorld", "trueTreMm", "seed"} & set(before)
     answer = archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION, NOW)
     assert answer["headToWorld"] == list(HEAD_TO_WORLD.ravel())
@@ -206,14 +207,18 @@ def test_an_altered_journal_is_named_and_not_delivered(tmp_path):
         {"record": None},
         {"record": {}},
         {"truth": {}},
-        {"truth": TRUTH.to_json() | {"headToWorld": [1.0, 2.0]}},
-        {"truth": TRUTH.to_json() | {"fiducials": {"1": [0.0, 0.0, 0.0]}}},
-        {"truth": TRUTH.to_json() | {"target": "the nose"}},
+        {"truth": record_to_json(TRUTH) | {"headToWorld": [1.0, 2.0]}},
+        {"truth": record_to_json(TRUTH) | {"fiducialsRas": {"1": [0.0, 0.0, 0.0]}}},
+        {"truth": record_to_json(TRUTH) | {"targetRas": "the nose"}},
     ],
     ids=["no record", "empty record", "no truth", "half a matrix", "one fiducial", "no target"],
 )
 def test_a_journal_with_valid_hashes_and_odd_content_is_named_and_blocks_no_other(tmp_path, odd):
-    registered = {"kind": "registered", "record": RECORD.to_json(), "truth": TRUTH.to_json()}
+    registered = {
+        "kind": "registered",
+        "record": record_to_json(RECORD),
+        "truth": record_to_json(TRUTH),
+    }
     path = write_trial(tmp_path, registered | odd)
     other_id = TRIAL_ID.replace("5c6f", "0000")
     write_trial(tmp_path, trial_id=other_id)

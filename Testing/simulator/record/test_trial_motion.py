@@ -8,6 +8,7 @@ import pytest
 
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.journal.recording import Recording
+from rastrainer.json_records import record_from_json
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.cli.main import main
@@ -53,7 +54,7 @@ def test_the_register_tick_leaves_the_metrics_to_the_journal_writer(setup, tmp_p
 
 def test_the_record_has_the_same_metrics_as_the_journal_to_the_last_bit(journal):
     (registered,) = journal.of_kind("registered")
-    record = TrialRecord.from_json(registered["record"])
+    record = record_from_json(TrialRecord, registered["record"])
     assert len(record.motion) > 20
     assert record.motion == trial_motion(Recording.of(journal.entries).trajectory())
     assert record.motion["completion_time_s"] == pytest.approx(record.completion_time_s, abs=1e-9)
@@ -74,7 +75,7 @@ def test_metrics_of_a_part_are_those_of_the_trial_up_to_then(journal):
 
 
 def test_anything_after_the_trial_changes_nothing(journal):
-    again = Recording.of([*journal.entries, {"kind": "acknowledged", "simTime": 1e6}])
+    again = Recording.of([*journal.entries, {"kind": "acknowledged", "simTimeS": 1e6}])
     assert trial_motion(again.trajectory()) == trial_motion(
         Recording.of(journal.entries).trajectory()
     )

@@ -112,12 +112,28 @@ def at_clearance(clearance):
 
 
 @pytest.mark.parametrize("pushed", [0.7, 1.0])
-def test_slow_motion_is_slow_near_the_skin_however_far_a_stick_is_pushed(pushed):
-    fine = push(0.0, 0.0, -pushed, fine=True)
+@pytest.mark.parametrize(("upward", "at_skin"), [(-1.0, 0.001), (1.0, 0.003)])
+def test_slow_motion_is_slow_near_the_skin_however_far_a_stick_is_pushed(pushed, upward, at_skin):
+    fine = push(0.0, 0.0, upward * pushed, fine=True)
     speeds = [speed_after(at_clearance(mm / 1000.0), fine) for mm in (-0.1, 0.0, 2.0, 6.0, 10.0)]
     assert speeds == sorted(speeds)
-    assert speeds[0] == speeds[2] == pytest.approx(0.003)
+    assert speeds[0] == speeds[1] == pytest.approx(at_skin)
+    assert speeds[2] == pytest.approx(0.003)
     assert speeds[-1] == speed_after(Hand(), fine)
+
+
+def test_slow_motion_along_the_skin_keeps_its_direction_and_is_slowed_by_its_way_down_alone():
+    along = at_clearance(0.0).step(push(1.0, 0.0, -0.1, fine=True)).displacement
+    assert unit(along) == pytest.approx(unit((1.0, 0.0, -0.1)))
+    assert speed_after(at_clearance(0.0), push(1.0, 0.0, -0.1, fine=True)) == pytest.approx(0.003)
+    hand = at_clearance(0.0)
+    assert speed_after(hand, push(1.0, 0.0, -1.0, fine=True)) == pytest.approx(0.001 * 2**0.5)
+
+
+def test_a_tip_in_slow_motion_is_not_deep_in_the_skin_half_a_second_after_it_got_there():
+    hand = at_clearance(0.0)
+    depth = sum(-hand.step(push(0.0, 0.0, -1.0, fine=True)).displacement[2] for _ in range(125))
+    assert 0.0 < depth <= 0.0005 * (1 + 1e-9)
 
 
 def test_near_the_skin_only_slow_motion_is_limited_and_never_sped_up():

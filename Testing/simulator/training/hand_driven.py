@@ -74,7 +74,7 @@ class Trial:
         return self.do(CommandName.START_TASK, task=task, trainee="P01", mode="desktop", **others)
 
     def fiducial(self, label):
-        return self.place(self.training.truth.fiducials[label])
+        return self.place(self.training.truth.fiducials_ras[label])
 
     def place(self, point):
         """Return a point of the head, RAS mm, where it truly is, World, m."""

@@ -7,6 +7,7 @@ import pytest
 
 from rastrainer.commands import CommandName
 from rastrainer.head.mesh import HeadMesh
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import TouchRule
 from rastrainer.scenario.points import LABELS, Task
 from rastrainer.scenario.scenario import load_scenario
@@ -110,7 +111,7 @@ def score_of(scenario, hands, meanwhile=lambda _trial: None, settings=None):
     for point, kept in zip(record["points"], trial.state.touches, strict=True):
         point["positionMm"] = [MM_PER_M * value for value in kept.position]
     pose = RevealedTruth(tuple(truth.head_to_world.ravel().tolist()), 0.0)
-    return analyze_trial(TrialRecord.from_json(record), scenario, truth=pose).score
+    return analyze_trial(record_from_json(TrialRecord, record), scenario, truth=pose).score
 
 
 @pytest.fixture(params=_with_soak(HANDS, MORE_HANDS))

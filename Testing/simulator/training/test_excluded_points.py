@@ -8,6 +8,7 @@ import pytest
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import Phase
 from rastrainer.registration.registration import register
 from rastrainer.transforms import MM_PER_M
@@ -53,7 +54,7 @@ def submit(scenario, task, choose):
     record = make_record(task=task, motion=MOTION)
     for point, touch in zip(record["points"], touches, strict=True):
         point.update(label=touch.label, positionMm=[MM_PER_M * v for v in touch.position])
-    record = TrialRecord.from_json(record)
+    record = record_from_json(TrialRecord, record)
     fiducials = np.asarray(scenario.task(task).fiducials, dtype=float)
     rows = choose(fiducials)
     fit = register(record.positions_mm[rows], fiducials[rows])
@@ -89,7 +90,7 @@ def test_all_touches_are_scored_whatever_registration_was_submitted(scenario, ta
         analyze_trial(
             one.record,
             scenario,
-            truth=RevealedTruth.from_json(json.loads(json.dumps(one.reply.data))),
+            truth=record_from_json(RevealedTruth, json.loads(json.dumps(one.reply.data))),
         )
         for one in (cheated, honest)
     ]
@@ -120,4 +121,4 @@ def test_each_touch_must_be_at_its_own_fiducial(scenario, task):
 def test_a_record_with_fewer_touches_is_refused():
     record = make_record()
     with pytest.raises(InputError, match="a list of 15 points"):
-        TrialRecord.from_json({**record, "points": record["points"][:10]})
+        record_from_json(TrialRecord, {**record, "points": record["points"][:10]})

@@ -165,9 +165,9 @@ class Pilot:
         self._simulation, self._notes = Simulation(setup, seed), _Notes()
         self._do(CommandName.START_TASK, task=task, trainee="cheat", seed=seed)
         truth = self._simulation.truth
-        self.fiducials = truth.in_world(np.array(list(truth.fiducials.values())))
+        self.fiducials = truth.in_world(np.array(list(truth.fiducials_ras.values())))
         self.normals = fiducial_normals(setup.scenario, task) @ truth.head_to_world[:3, :3].T
-        self._center = truth.in_world(truth.target)
+        self._center = truth.in_world(truth.target_ras)
         self._mesh = read_head_mesh(setup.scenario.head_mesh)
 
     @property

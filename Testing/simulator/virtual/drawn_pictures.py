@@ -31,6 +31,7 @@ COVERED = ((0.77, 0.0, 1.0, 0.27), (0.05, 0.86, 0.95, 1.0), (0.3, 0.0, 0.7, 0.11
 """What lies over the main picture: the inset, the hints and the instruction; shares of its
 width and height from the upper left corner: left, top, right, bottom."""
 OFF_SKIN_M = 0.002
+"""Rays end so far above the marks on the skin."""
 BEHIND_TIP_M = 0.004
 """The middle of the tip's colored marker."""
 END_ON_DEG = 15.0
@@ -174,10 +175,11 @@ class DrawnPictures:
             and sight.is_past_tool(camera.position, number),
             "tip": sight.is_free(camera.position, marker) and not is_end_on,
         }
-        places = {"fiducial": fiducial, "number": number, "tip": _vector(tip)}
+        on_skin = np.array(fiducial) - OFF_SKIN_M * self._places.outward[label]
+        places = {"fiducial": on_skin, "number": number, "tip": tip}
         spots = {}
         for name, place in places.items():
-            spot = self._spot(axes @ (np.array(place) - eye), half, height_px, covered)
+            spot = self._spot(axes @ (place - eye), half, height_px, covered)
             if reached[name] and spot is not None:
                 spots[name] = away * spot
         outline = (self._places.outline - eye) @ axes.T

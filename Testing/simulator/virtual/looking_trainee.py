@@ -12,17 +12,21 @@ from rastrainer_simulator.state import TouchStage
 from Testing.simulator.flow.trainee import Trainee
 from Testing.simulator.virtual.drawn_pictures import DrawnPictures, Look
 
-LOOK_STEPS = 10
-"""Steps of the simulation between two looks."""
+LOOK_STEPS, LATE_LOOKS = 10, 3
+"""Steps of the simulation between two looks, and how many of these it reacts late: 0.24 to 0.32 s
+after what there is to see, as people do."""
 GAIN_PER_S = 2.5
 HOVER_M = 0.03
 """How far off the skin the tip travels."""
 OVER_M = 0.01
 """Nearer than this to the position above the fiducial, the tip is lowered."""
-AIM_M = 0.0012
-"""The aim on the skin."""
+SLOWLY_M_S = 0.019
+"""Near the skin, as a tone and the ring tell, the tip is moved in slow motion."""
+AIM_M, COARSE_AIM_M = 0.0012, 0.002
+"""The aim on the skin, and that of hands that push one stick at a time."""
 GO_AROUND_M = 0.03
 """Farther from the fiducial than this, what the tip approaches is not its goal."""
+LIFT_LOOKS = 15
 LOST_LOOKS = 12
 """After so many looks without the tip, the view zooms out again."""
 ZOOM_LOOKS = 12
@@ -31,6 +35,8 @@ TURN_LOOKS = 8
 NEAR_VIEW_M = 0.08
 """Nearer to the fiducial than this, the best view shows the tip, too."""
 PATIENCE_S = 60.0
+STEEP = 0.5
+"""Where the upward part of the skin's normal is less, the tip comes level, by one stick alone."""
 
 
 class NotTouchedError(AssertionError):
@@ -60,7 +66,8 @@ class LookingTrainee:
         trainee: at the presenter.
         hands: what it steers with.
         pictures: what it looks at.
-        late_looks: how many looks late it reacts to what it sees.
+        is_one_by_one: whether its hands push one stick at a time: it then comes down onto a
+            fiducial by one of them alone, and does not follow the skin's normal.
     """
 
     def __init__(
@@ -68,14 +75,16 @@ class LookingTrainee:
         trainee: Trainee,
         hands: TrainedHands,
         pictures: DrawnPictures,
-        late_looks: int = 0,
+        is_one_by_one: bool = False,
     ) -> None:
         self._trainee = trainee
         self._hands = hands
         self._pictures = pictures
-        self._looks: deque[Look] = deque(maxlen=1 + late_looks)
+        self._looks: deque[Look] = deque(maxlen=1 + LATE_LOOKS)
+        self._is_one_by_one = is_one_by_one
+        self._aim_m = COARSE_AIM_M if is_one_by_one else AIM_M
         self._label = ""
-        self._outward = np.array([0.0, 0.0, 1.0])
+        self._normal = self._outward = np.array([0.0, 0.0, 1.0])
         self._is_far_away = False
         self._goals: list[np.ndarray | None] = [None, None]
 
@@ -95,7 +104,8 @@ class LookingTrainee:
     def _touch(self) -> None:
         """Find the next fiducial, travel to it and touch it, until the touch counts."""
         kept, give_up = self._kept, self._trainee.state.sim_time + PATIENCE_S
-        self._lift()
+        if kept:
+            self._lift()
         self._find()
         while self._kept == kept:
             now = self._trainee.state.sim_time
@@ -121,12 +131,19 @@ class LookingTrainee:
             if is_identified and "fiducial" in picture.spots:
                 self._goals[index] = picture.spots["fiducial"]
         if look.outward is not None:
-            self._outward = look.outward
+            self._normal, self._outward = look.outward, self._along_one(look.outward)
         return look
+
+    def _along_one(self, outward: np.ndarray) -> np.ndarray:
+        """Return the way off the skin, (3,) float: up or level where one stick has to do."""
+        if not self._is_one_by_one:
+            return outward
+        parts = outward * ([0, 0, 1] if outward[2] > STEEP else [1, 1, 0])
+        return parts / np.linalg.norm(parts)
 
     def _lift(self) -> None:
         """Lift the tip off the skin, until its color says that it is far from the head."""
-        for _ in range(40):
+        for _ in range(LIFT_LOOKS):
             look = self._look()
             if look.stage is TouchStage.FAR:
                 break
@@ -234,16 +251,19 @@ class LookingTrainee:
             height = -float(to_fiducial @ self._outward)
             beside = to_fiducial + height * self._outward
             off = float(np.linalg.norm(beside))
-            if look.stage is TouchStage.ON_SKIN and off < AIM_M:
+            missed = to_fiducial - (to_fiducial @ self._normal) * self._normal
+            if look.stage is TouchStage.ON_SKIN and np.linalg.norm(missed) < self._aim_m:
                 self._hands.stop()
                 return True
             if look.stage not in (TouchStage.FAR, TouchStage.NEAR, None):
-                upward = 0.01
-            elif off > AIM_M + 0.3 * max(0.0, height):
-                upward = 0.0
+                velocity = GAIN_PER_S * missed + 0.01 * self._normal
             else:
-                upward = -max(0.004, min(0.05, GAIN_PER_S * height))
-            self._push(look, GAIN_PER_S * beside + upward * self._outward)
+                is_beside = off > self._aim_m + 0.3 * max(0.0, height)
+                down = 0.0 if is_beside else max(0.004, min(0.05, GAIN_PER_S * height))
+                velocity = GAIN_PER_S * beside - down * self._outward
+            if look.stage is not TouchStage.FAR:
+                velocity *= min(1.0, SLOWLY_M_S / float(np.linalg.norm(velocity)))
+            self._push(look, velocity)
         return False
 
     def _press(self) -> None:

@@ -38,8 +38,6 @@ LIMIT_S = 300.0
 """A trial ends here: the trial run lasts five minutes, and no model has longer for a task."""
 POINTS = 15
 MODELS = ("looks", "reads")
-LATE_LOOKS = 2
-"""A person at a device reacts this many looks, 0.16 s, late."""
 GREEN_MM = 0.5
 """Pressed in less than this, the tip is green on the point."""
 
@@ -131,7 +129,6 @@ def play(
     seed: int,
     limit_s: float = LIMIT_S,
     device: str = "pad",
-    late_looks: int = 0,
 ) -> Outcome:
     """Let a model (one of `MODELS`) play a task, until all is touched or its time is over.
 
@@ -145,20 +142,22 @@ def play(
     ):
         trainee.start(task)
         trainee.loop.subscribe(landings.take)
-        if isinstance(trainee.hands, TrainedMouse):
-            trainee.hands.show_sticks()
+        hands = trainee.hands
+        is_mouse = isinstance(hands, TrainedMouse)
+        if is_mouse:
+            hands.show_sticks()
         if model == "looks":
             pictures = DrawnPictures(setup, seed)
             with suppress(NotTouchedError):
-                LookingTrainee(trainee, trainee.hands, pictures, late_looks).play(limit_s)
+                LookingTrainee(trainee, hands, pictures, is_mouse).play(limit_s)
         else:
-            ReadingTrainee(trainee, trainee.hands).play(limit_s)
+            ReadingTrainee(trainee, hands).play(limit_s)
         state, truth = trainee.state, trainee.loop.truth
         touches = state.training.touches
         errors_mm = [
             float(np.linalg.norm(MM_PER_M * np.array(touch.position) - place))
             for touch in touches
-            for place in [truth.in_world(truth.fiducials[touch.label])]
+            for place in [truth.in_world(truth.fiducials_ras[touch.label])]
         ]
         is_complete = state.training.phase is Phase.COMPLETE
         return Outcome(
@@ -248,7 +247,7 @@ def play_devices(count: int, *devices: str) -> None:
         given_up = 0
         for number, task in enumerate(tasks):
             if len(landings) < count:
-                played = play(setup, "looks", task, 11 + number, LIMIT_S, device, LATE_LOOKS)
+                played = play(setup, "looks", task, 11 + number, LIMIT_S, device)
                 landings.extend(played.landings)
                 given_up += played.touches < POINTS
         kept = landings[:count]

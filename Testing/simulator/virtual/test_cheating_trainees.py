@@ -41,7 +41,7 @@ def cheat(setup, task):
 def touch_errors(played):
     """Return how far each touch is from its fiducial, (15, 3) float, World, mm."""
     record, truth = played.record, played.truth
-    fiducials = [truth.in_world(truth.fiducials[label]) for label in record.labels]
+    fiducials = [truth.in_world(truth.fiducials_ras[label]) for label in record.labels]
     return record.positions_mm - np.array(fiducials)
 
 

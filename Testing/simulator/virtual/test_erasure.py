@@ -88,7 +88,7 @@ def test_a_journal_being_written_stops_the_deletion_before_it_starts(copied):
     folder = copied / RECORDS
     path = next(p for p in journals(folder) if read_journal(p).header["trainee"] == "V0001")
     journal = Journal.reopened(read_journal(path))
-    journal.write([{"kind": "acknowledged", "simTime": 0.0}], sync=False)
+    journal.write([{"kind": "acknowledged", "simTimeS": 0.0}], sync=False)
     with Study.open(copied / DATABASE) as study:
         with pytest.raises(InputError, match="if the trial is still running, end it first"):
             erase_trainee(study, "V0001", folder)

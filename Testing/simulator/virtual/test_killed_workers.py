@@ -58,7 +58,7 @@ def tables(path):
 
 def journals(folder):
     """Return the entries of all journals without the time of writing, which is in the hashes."""
-    clock = ("monotonic", "previous", "sha256")
+    clock = ("monotonicS", "previous", "sha256")
     found = {}
     for path in (folder / RECORDS).iterdir():
         entries = [json.loads(line) for line in path.read_text().splitlines()]

@@ -7,6 +7,7 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.procedure.plan import read_procedure_meshes
 from rastrainer.procedure.record import ProcedureRecord, UsedRegistration
@@ -40,7 +41,7 @@ def analyzed(meshes, hands, seed=1):
     matrix = transforms.inverse(TRUTH @ OFF)
     used = UsedRegistration(tuple(float(value) for value in matrix.ravel()), 0.5, 0.4)
     done = carry_out(setting, used, 100.0, hands, np.random.default_rng(seed))
-    assert ProcedureRecord.from_json(done.to_json()) == done
+    assert record_from_json(ProcedureRecord, record_to_json(done)) == done
     return done, analyze_procedure(done, SEEG, meshes, TRUTH)
 
 

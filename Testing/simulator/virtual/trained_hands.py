@@ -7,6 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from rastrainer_simulator.presentation.presenter import Hello
+from Testing.sdl_virtual_gamepad import VirtualGamepad
 from Testing.simulator.flow.mouse import VIEW, Mouse
 from Testing.simulator.flow.trainee import Keys, Pad, Trainee
 
@@ -18,28 +19,38 @@ HELD_SHARE = 0.4
 """Keys are held for parts of a velocity that are this share of its largest, or more."""
 HELD_SLOWLY_M_S, RELEASED_FAST_M_S = 0.08, 0.045
 """For less than the first, keys are held with Shift; without it they are released at the second."""
-TAP_STEPS, WAIT_LOOKS = 10, 2
+TAP_STEPS, WAIT_LOOKS = 10, 3
 """How many steps of the simulation a tap lasts (0.08 s), and how many looks are waited for."""
 KEPT_STICK_SHARE = 0.4
 """A mouse keeps the stick that it drags if its part of the way is this share of the other's."""
 DOWN_LAST = 0.3
 """A mouse lowers the tip once less than this share of the way down is left to go level."""
+LEVEL_M_S = 0.004
+"""A mouse goes level no longer for less than this, if there is more to go up or down."""
 STICK_PX = 100.0
 """Radius of a stick on the screen; a mouse pushes it by whole pixels."""
-CHANGE_STEPS = 30
-"""Steps of the simulation that it takes to let go of a stick on the screen and seize another."""
-THUMB_SD = 0.04
-"""How far a thumb lands from where it is meant to be, of a stick's radius."""
+CHANGE_STEPS, POINT_STEPS = 30, 60
+"""Steps of the simulation (0.008 s) that it takes a thumb, and a mouse's pointer, to get from one
+stick or button on the screen to another."""
+THUMB_SD, STICK_SD = 0.04, 0.02
+"""How far a thumb lands from where it is meant to be on a screen and on a gamepad's stick, of the
+stick's radius."""
+FAST_M_S = 0.04
+"""Slow motion is left for speeds above this, where leaving it takes time."""
 DRAG_DEG, PINCH = 20.0, 2.0
 """A drag over the picture turns the view so far, a pinch takes the eye so much farther away."""
 
 
-def stick_push(velocity: np.ndarray) -> tuple[np.ndarray, bool]:
-    """Return the sticks' push, (3,) float, and whether slowly, for a velocity of the tip, m/s."""
+def stick_push(velocity: np.ndarray, is_fine: bool | None = None) -> tuple[np.ndarray, bool]:
+    """Return the sticks' push, (3,) float, and whether slowly, for a velocity of the tip, m/s.
+
+    `is_fine` is whether slow motion is on, None where it can be switched at once.
+    """
     wanted = float(np.linalg.norm(velocity))
     speed = min(wanted, FASTEST_M_S)
-    is_fine = speed < FINE_SPEED_M_S
-    share = speed / (FINE_SPEED_M_S if is_fine else SPEED_M_S)
+    if is_fine is None:
+        is_fine = speed < FINE_SPEED_M_S
+    share = min(1.0, speed / (FINE_SPEED_M_S if is_fine else SPEED_M_S))
     push = DEAD_ZONE + (1.0 - DEAD_ZONE) * share**0.5
     return velocity * push / max(wanted, 1e-9), is_fine
 
@@ -49,9 +60,14 @@ class TrainedPad(Pad):
 
     BUTTONS: ClassVar = {**Pad.BUTTONS, "view_farther": "leftstick"}
 
+    def __init__(self, trainee: Trainee, plugged: VirtualGamepad) -> None:
+        super().__init__(trainee, plugged)
+        self._random = np.random.default_rng(3)
+
     def move(self, velocity: np.ndarray) -> None:
         """Push the sticks for a velocity of the tip, (3,) float, m/s: right, forward, up."""
         push, is_fine = stick_push(velocity)
+        push += self._random.normal(0.0, STICK_SD, 3) * (push != 0.0)
         self.push(*push.tolist(), is_fine)
 
     def stop(self) -> None:
@@ -125,41 +141,51 @@ class _OnPicture:
 
 
 class TrainedMouse(_OnPicture, Mouse):
-    """Drags one of the sticks on the screen at a time, and clicks the rest."""
+    """Drags one of the sticks on the screen at a time, and clicks the rest.
+
+    After each change it looks where the tip is by now, before it drags.
+    """
 
     def __init__(self, trainee: Trainee) -> None:
         super().__init__(trainee, "page")
-        self._stick, self._was_fine = "", False
+        self._stick, self._was_fine, self._waits = "", False, 0
 
     def show_sticks(self) -> None:
         """Have the sticks shown, which is offered to who clicks."""
         for control in ("best_view", "sticks"):
             self.tap(control)
-            self._trainee.step(CHANGE_STEPS)
+            self._trainee.step(POINT_STEPS)
 
     def move(self, velocity: np.ndarray) -> None:
         """Drag a stick for a velocity of the tip, (3,) float, m/s: right, forward, up."""
+        if self._waits > 0:
+            self._waits -= 1
+            return
         level, upright = float(np.linalg.norm(velocity[:2])), abs(float(velocity[2]))
         kept = {"level": level, "upright": upright}.get(self._stick, 0.0)
-        if kept < KEPT_STICK_SHARE * max(level, upright):
-            # First above the point, then down.
-            share = DOWN_LAST if velocity[2] < 0.0 else 1.0
-            self._stick = "level" if level >= share * upright else "upright"
-            self._let_go()
-        wanted = velocity * ([1, 1, 0] if self._stick == "level" else [0, 0, 1])
-        push, is_fine = stick_push(wanted)
-        if is_fine != self._was_fine:
-            self._was_fine = is_fine
-            self._let_go()
-        self.push(*(np.round(STICK_PX * push) / STICK_PX).tolist(), is_fine)
+        stick, is_fine = self._stick, max(level, upright) < FINE_SPEED_M_S
+        if kept < KEPT_STICK_SHARE * max(level, upright) or level < LEVEL_M_S < upright:
+            # Near the point first above it, then down.
+            is_near = max(level, upright) < FASTEST_M_S
+            share = DOWN_LAST if velocity[2] < 0.0 and is_near else 1.0
+            stick = "level" if level >= max(LEVEL_M_S, share * upright) else "upright"
+        if self._was_fine:
+            is_fine = max(level, upright) < FAST_M_S
+        if (stick, is_fine) != (self._stick, self._was_fine):
+            self._change(stick, is_fine)
+        else:
+            push, _ = stick_push(velocity * ([1, 1, 0] if stick == "level" else [0, 0, 1]), is_fine)
+            self.push(*(np.round(STICK_PX * push) / STICK_PX).tolist(), is_fine)
 
     def stop(self) -> None:
         """Let go of the sticks."""
         self.push(0.0, 0.0, 0.0, self._was_fine)
 
-    def _let_go(self) -> None:
+    def _change(self, stick: str, is_fine: bool) -> None:
+        """Point at another stick, and before at the hint for slow motion where it is switched."""
         self.stop()
-        self._trainee.step(CHANGE_STEPS)
+        self._trainee.step(POINT_STEPS * (1 + (is_fine != self._was_fine)))
+        self._stick, self._was_fine, self._waits = stick, is_fine, WAIT_LOOKS
 
 
 class Thumbs(_OnPicture):

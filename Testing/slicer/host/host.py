@@ -235,7 +235,10 @@ class Host(User):
             self._vtk_messages.close()
 
     def made_widget(self) -> Any:
-        """Return the module's widget; if its `setup` raises, Slicer prints that and continues."""
+        """Return the module's widget; if its `setup` raises, Slicer prints that and continues.
+
+        As a user does, it waits until the widget is built.
+        """
         if self.widget is None:
             self._frame = class_named("qSlicerScriptedLoadableModuleWidget")()
             self._frame.setMRMLScene(self.scene)
@@ -252,6 +255,9 @@ class Host(User):
             self.widget.setup()
         except Exception as exception:
             FAILURES.catch(exception)
+        building = getattr(self.widget, "_building", None)
+        while building is not None and not building.isOver:
+            self.process_events()
 
     def _execute_module(self) -> ModuleType:
         """Read the module's file, as if for the first time."""

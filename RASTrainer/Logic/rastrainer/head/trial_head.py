@@ -9,7 +9,6 @@ places move alike. Its size and its reach are stated, not measured.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Any
@@ -18,11 +17,10 @@ import numpy as np
 from numpy.random import default_rng
 
 from rastrainer import transforms
-from rastrainer.commands import skin_amounts
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.json_checks import number
+from rastrainer.json_checks import number, whole_number
 from rastrainer.protocol import SKIN_KEYS, SKIN_LIMIT_MM
 
 
@@ -77,7 +75,7 @@ REACH_MM = 50.0
 WAVES = 128
 BASE_MM = 30.0
 """So far above the flat base, where the images end, the shift grows from none to all."""
-LARGEST_MM = SKIN_LIMIT_MM
+_Amount = Annotated[float, number(0, SKIN_LIMIT_MM, "mm")]
 INVERSIONS = 8
 """Steps by which a shift is taken back; each leaves a part of what was wrong, 4 % for 2 mm."""
 
@@ -87,34 +85,31 @@ class SkinShift:
     """How the skin lies in the operation, compared with the images.
 
     Attributes:
-        rms_mm: Root mean square length of the shift, over seeds; 0 for none.
-        seed: Which shift.
-        indentation_mm: How deep the tip presses into the skin.
-
-    Raises:
-        InputError: on construction, if a length is not within 0 to 20 mm.
+        shift_mm: root mean square length of the shift, over seeds; 0 for none.
+        seed: which shift; secret like the head's pose.
+        indentation_mm: how deep the tip presses into the skin.
     """
 
-    rms_mm: float = 0.0
-    seed: int = 0
-    indentation_mm: float = 0.0
+    shift_mm: _Amount = 0.0
+    seed: Annotated[int, whole_number(0, 2**63 - 1)] = 0
+    indentation_mm: _Amount = 0.0
 
     def __post_init__(self) -> None:
-        for name, value in (("skin shift", self.rms_mm), ("indentation", self.indentation_mm)):
-            if not 0.0 <= value <= LARGEST_MM:
-                raise InputError(f"The {name} must be 0 to {LARGEST_MM:g} mm, not {value:g} mm.")
+        for name, value in (("skin shift", self.shift_mm), ("indentation", self.indentation_mm)):
+            if not 0.0 <= value <= SKIN_LIMIT_MM:
+                raise InputError(f"The {name} must be 0 to {SKIN_LIMIT_MM:g} mm, not {value:g} mm.")
 
     @property
     def is_none(self) -> bool:
         """Whether the skin lies as in the images."""
-        return self.rms_mm == self.indentation_mm == 0.0
+        return self.shift_mm == self.indentation_mm == 0.0
 
     @cached_property
     def _waves(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         random = np.random.default_rng([self.seed, WAVES])
         vectors = random.normal(0.0, 1.0 / REACH_MM, (WAVES, 3))
         phases = random.uniform(0.0, 2.0 * np.pi, WAVES)
-        sizes = random.normal(0.0, self.rms_mm * np.sqrt(2.0 / (3.0 * WAVES)), (WAVES, 3))
+        sizes = random.normal(0.0, self.shift_mm * np.sqrt(2.0 / (3.0 * WAVES)), (WAVES, 3))
         return vectors, phases, sizes
 
     def moved(self, points: np.ndarray, mesh: HeadMesh) -> np.ndarray:
@@ -125,7 +120,7 @@ class SkinShift:
             mesh: The head of the images; at its base the shift is none.
         """
         points = np.asarray(points, dtype=float)
-        if self.rms_mm == 0.0:
+        if self.shift_mm == 0.0:
             return np.zeros_like(points)
         vectors, phases, sizes = self._waves
         field = np.cos(points @ vectors.T + phases) @ sizes
@@ -166,24 +161,7 @@ class SkinShift:
     @property
     def amounts(self) -> dict[str, float]:
         """What everyone may know: all but the seed."""
-        return {"shiftMm": self.rms_mm, "indentationMm": self.indentation_mm}
-
-    def to_json(self) -> dict[str, Any]:
-        return {**self.amounts, "seed": self.seed}
-
-    @classmethod
-    def from_json(cls, value: Any) -> SkinShift:
-        """Return the shift in a JSON object; missing values are 0.
-
-        Raises:
-            ValueError: anything else; the words follow "must be".
-        """
-        given = dict(value) if isinstance(value, Mapping) else value
-        seed = given.pop("seed", 0) if isinstance(given, dict) else 0
-        if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-            raise ValueError("an object whose seed is a whole number from 0")
-        amounts = skin_amounts(given)
-        return cls(amounts.get("shiftMm", 0.0), seed, amounts.get("indentationMm", 0.0))
+        return {"shiftMm": self.shift_mm, "indentationMm": self.indentation_mm}
 
 
 UNMOVED = SkinShift()
@@ -195,8 +173,9 @@ def read_skin(fields: Fields, name: str = "skin") -> SkinShift:
     if name not in fields.names():
         return UNMOVED
     entry = fields.fields(name)
-    for key in entry.names():
-        if key not in SKIN_KEYS:
-            raise entry.error(key[:40], f"left out; a skin has {' and '.join(SKIN_KEYS)}")
-    amounts = {key: entry.number(key, 0, LARGEST_MM) for key in entry.names()}
-    return SkinShift(amounts.get("shiftMm", 0.0), 0, amounts.get("indentationMm", 0.0))
+    entry.check_names(SKIN_KEYS, "a skin")
+    amounts = (
+        entry.number(key, 0, SKIN_LIMIT_MM) if key in entry.names() else 0.0 for key in SKIN_KEYS
+    )
+    shift_mm, indentation_mm = amounts
+    return SkinShift(shift_mm, 0, indentation_mm)

@@ -13,14 +13,16 @@ import os
 import re
 import sys
 import uuid
-from collections.abc import Collection, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated
 
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import FIRST_BYTES, MAX_LINE_BYTES, SEED_SUFFIX
-from rastrainer.json_checks import decode_finite_json
+from rastrainer.json_checks import decode_finite_json, text, whole_number
+from rastrainer.json_records import record_from_json, record_to_json
+from rastrainer.protocol import NUMBER_LIMIT
 
 if sys.platform == "win32":
     import msvcrt
@@ -57,6 +59,7 @@ LOCK_NAME = ".simulator.lock"
 MAX_LOCK_BYTES = 4096
 STARTED_BY = "RASTRAINER_STARTED_BY"
 """Environment variable: the program that starts a simulator."""
+_Text = Annotated[str, text(1000, 0)]
 
 
 @dataclass(frozen=True)
@@ -72,12 +75,12 @@ class FolderHolder:
         page: address of its page; empty if none.
     """
 
-    pid: int = 0
-    started: str = ""
-    started_by: str = ""
-    host: str = ""
-    port: int = 0
-    page: str = ""
+    pid: Annotated[int, whole_number(0, 2**63)] = 0
+    started: _Text = ""
+    started_by: _Text = ""
+    host: _Text = ""
+    port: Annotated[int, whole_number(0, 65_535)] = 0
+    page: _Text = ""
 
 
 def write_holder(descriptor: int, holder: FolderHolder) -> None:
@@ -86,7 +89,7 @@ def write_holder(descriptor: int, holder: FolderHolder) -> None:
     Raises:
         OSError: it cannot be written.
     """
-    content = json.dumps(asdict(holder)).encode("ascii")
+    content = json.dumps(record_to_json(holder)).encode("ascii")
     os.lseek(descriptor, 0, os.SEEK_SET)
     os.write(descriptor, content)
     os.ftruncate(descriptor, len(content))
@@ -110,16 +113,10 @@ def read_holder(folder: Path) -> FolderHolder | None:
 
 def read_open_holder(descriptor: int) -> FolderHolder:
     """Return the holder named in an open lock file."""
-    with contextlib.suppress(OSError, ValueError, TypeError):
+    with contextlib.suppress(OSError, ValueError):
         os.lseek(descriptor, 0, os.SEEK_SET)
-        said = decode_finite_json(os.read(descriptor, MAX_LOCK_BYTES).decode("ascii"))
-        nobody = FolderHolder()
-        known = {
-            name: type(getattr(nobody, name))(said[name])
-            for name in FolderHolder.__dataclass_fields__
-            if name in said
-        }
-        return FolderHolder(**known)
+        content = os.read(descriptor, MAX_LOCK_BYTES).decode("ascii")
+        return record_from_json(FolderHolder, decode_finite_json(content))
     return FolderHolder()
 
 
@@ -227,18 +224,14 @@ class JournalNumber:
         series: UUID of the numbering, which begins with the first journal of a folder.
     """
 
-    number: int = 0
-    series: str = ""
+    number: Annotated[int, whole_number(0, NUMBER_LIMIT)] = 0
+    series: Annotated[str, text(36, 0)] = ""
 
     def following(self) -> JournalNumber:
         return JournalNumber(self.number + 1, self.series or str(uuid.uuid4()))
 
 
 UNNUMBERED = JournalNumber()
-
-
-def header_number(header: Mapping[str, Any]) -> JournalNumber:
-    return JournalNumber(header.get("number", 0), header.get("series", ""))
 
 
 def newest_journal(folder: Path) -> Path | None:

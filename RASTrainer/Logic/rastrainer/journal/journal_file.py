@@ -44,8 +44,8 @@ def stamp(tick: int, sim_time: float) -> dict[str, Any]:
     """Return the times that every entry of a journal carries, in s and as ISO 8601."""
     return {
         "tick": tick,
-        "simTime": sim_time,
-        "monotonic": time.monotonic(),
+        "simTimeS": sim_time,
+        "monotonicS": time.monotonic(),
         "utc": iso(datetime.now(timezone.utc)),
     }
 

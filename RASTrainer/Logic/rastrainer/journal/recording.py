@@ -102,7 +102,7 @@ class Recording:
 
     def _add_sample(self, entry: Mapping[str, Any]) -> bool:
         """Keep a sample that is later than the last one; return whether it was kept."""
-        time = self._trial_time(entry["simTime"])
+        time = self._trial_time(entry["simTimeS"])
         if self._paused_since is not None:
             return False
         if self._samples and time <= self._samples[-_COLUMNS]:
@@ -120,11 +120,11 @@ class Recording:
 
     def _event_time(self, entry: Mapping[str, Any]) -> float:
         """Return the trial time of an event: that of the tick before its line."""
-        return self._trial_time(entry["simTime"] - self._tick_s)
+        return self._trial_time(entry["simTimeS"] - self._tick_s)
 
     def _header(self, entry: Mapping[str, Any]) -> None:
         self._tick_s = entry["tickS"]
-        self._start_s = entry["simTime"] - self._tick_s
+        self._start_s = entry["simTimeS"] - self._tick_s
         # Absent where the scenario does not give it.
         self._shortest_path = entry.get("shortestPathMm")
 
@@ -145,7 +145,7 @@ class Recording:
 
     def _trace(self, entry: Mapping[str, Any]) -> None:
         # A point is left at the end of its tick, unlike a touch.
-        self._traced.append(Touch("", _position(entry), self._trial_time(entry["simTime"])))
+        self._traced.append(Touch("", _position(entry), self._trial_time(entry["simTimeS"])))
 
     def _stroke(self, entry: Mapping[str, Any]) -> None:
         del self._traced[entry["kept"] :]
@@ -154,7 +154,7 @@ class Recording:
         self._cameras += 1
 
     def _phase(self, entry: Mapping[str, Any]) -> None:
-        now = entry["simTime"] - self._tick_s
+        now = entry["simTimeS"] - self._tick_s
         if entry["phase"] in self.STANDING_STILL:
             if self._paused_since is None:
                 self._paused_since = now
@@ -172,11 +172,11 @@ class Recording:
     def _continued(self, entry: Mapping[str, Any]) -> None:
         """Exclude the time of an interruption."""
         if entry["phase"] == Phase.PAUSED.value and self._paused_since is None:
-            self._paused_since = entry["since"]
+            self._paused_since = entry["sinceS"]
 
     def _proximity(self, entry: Mapping[str, Any]) -> None:
         # This event is at the end of its tick, unlike those of commands.
-        now, state = self._trial_time(entry["simTime"]), Proximity(entry["to"])
+        now, state = self._trial_time(entry["simTimeS"]), Proximity(entry["to"])
         # What begins and ends while the time stands still is left out.
         counts = self._paused_since is None
         if self._state is Proximity.FREE:
@@ -202,7 +202,7 @@ class Recording:
         head_to_world = np.array(truth["headToWorld"], dtype=float).reshape(4, 4)
         self._fiducials = {
             label: transforms.apply(head_to_world, np.array(position, dtype=float))
-            for label, position in truth["fiducials"].items()
+            for label, position in truth["fiducialsRas"].items()
         }
 
 
@@ -338,7 +338,7 @@ class _ReplayRecording(WholeRecording):
     def add(self, entry: Mapping[str, Any]) -> None:
         super().add(entry)
         if entry["kind"] in EVENTS:
-            seen_s = entry["simTime"] if self._paused_since is None else self._paused_since
+            seen_s = entry["simTimeS"] if self._paused_since is None else self._paused_since
             # Keep events in order, also in the tick in which a trial is paused.
             before_s = self.events[-1].time_s if self.events else 0.0
             self.events.append(RecordedEvent(max(before_s, self._trial_time(seen_s)), entry))

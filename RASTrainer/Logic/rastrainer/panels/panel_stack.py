@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from types import SimpleNamespace
 from typing import Any
 
 import slicer
@@ -55,24 +56,33 @@ class PanelStack:
     """Loads the panels into a widget, one below the other.
 
     Attributes:
-        ui: all their widgets by name.
+        ui: all their widgets by name, once they are loaded.
     """
 
-    def __init__(
+    def __init__(self) -> None:
+        self.ui: Any = SimpleNamespace()
+        self._panels: list[Any] = []
+
+    def build(
         self, container: Any, resourcePath: Callable[[str], str], session: ModuleSession
-    ) -> None:
+    ) -> Iterator[None]:
+        """Build all in small steps, each for a turn of the event loop."""
         layout = container.layout()
-        names = [kind.__name__ for kind in PANELS]
-        widgets = [slicer.util.loadUI(resourcePath(f"UI/RASTrainer{name}.ui")) for name in names]
-        for place, widget in enumerate(widgets):
+        for place, kind in enumerate(PANELS):
+            widget = slicer.util.loadUI(resourcePath(f"UI/RASTrainer{kind.__name__}.ui"))
             layout.insertWidget(place, widget)
             # Nodes can be chosen only from a scene.
             widget.setMRMLScene(slicer.mrmlScene)
-        self.ui = slicer.util.childWidgetVariables(container)
-        configureWidgets(vars(self.ui).values())
-        sections: dict[type, Any] = {kind: kind(self.ui, session) for kind in (*SECTIONS, *NESTED)}
-        line = NextStepPanel(self.ui, session, _actions(sections))
-        self._panels = [*sections.values(), line]
+            named = vars(slicer.util.childWidgetVariables(widget))
+            configureWidgets(named.values())
+            vars(self.ui).update(named)
+            yield
+        sections: dict[type, Any] = {}
+        for kind in (*SECTIONS, *NESTED):
+            yield
+            sections[kind] = kind(self.ui, session)
+            self._panels.append(sections[kind])
+        self._panels.append(NextStepPanel(self.ui, session, _actions(sections)))
 
     def close(self) -> None:
         """Stop listening."""

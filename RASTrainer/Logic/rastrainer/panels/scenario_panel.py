@@ -79,11 +79,15 @@ class ScenarioPanel:
 
     def show(self) -> None:
         """Show the chosen head and the fiducials of the chosen task."""
-        with showErrors(_("The scenario cannot be shown."), waitCursor=True):
+        with showErrors(_("The scenario cannot be shown.")):
             name = chosenData(self._ui.scenarioComboBox)
-            self._logic.show(name, self._session.task)
-            self._session.slices.show(self._logic.find(name).target_position)
-            fitThreeDViews()
+            target = self._logic.find(name).target_position
+
+            def showTarget() -> None:
+                self._session.slices.show(target)
+                fitThreeDViews()
+
+            self._logic.show(name, self._session.task, showTarget)
 
     def loadIntoSimulator(self) -> None:
         """Load the chosen head into the simulator."""

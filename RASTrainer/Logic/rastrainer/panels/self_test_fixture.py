@@ -50,7 +50,9 @@ class SelfTestFixture:
         self.session = ModuleSession(slicer.mrmlScene, places, desktopKit, settings, callSoon)
         self._container = slicer.util.loadUI(resourcePath("UI/RASTrainer.ui"))
         self._container.setMRMLScene(slicer.mrmlScene)
-        self._panels = PanelStack(self._container, resourcePath, self.session)
+        self._panels = PanelStack()
+        for _step in self._panels.build(self._container, resourcePath, self.session):
+            pass
         self.ui = self._panels.ui
 
     def __enter__(self) -> SelfTestFixture:

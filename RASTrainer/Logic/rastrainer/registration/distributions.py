@@ -17,13 +17,7 @@ MAX_STEPS = 40
 
 
 def f_tail(value: float, numerator: float, denominator: float) -> float:
-    """Return the probability that an F variable exceeds `value`.
-
-    Args:
-        value: Not below 0; may be infinite.
-        numerator: Degrees of freedom of the numerator.
-        denominator: Degrees of freedom of the denominator.
-    """
+    """Return the probability that an F variable exceeds `value`."""
     if math.isinf(value):
         return 0.0
     x = denominator / (denominator + numerator * value)
@@ -151,7 +145,6 @@ def _bracket(
     zero that it expects, so that the end on the farther side comes near, too.
 
     Args:
-        offset: The function.
         low: An argument below the zero, and the function there.
         high: An argument above the zero, and the function there.
         tolerance: Width of the bracket, a share of its upper end; not reached in rare cases.

@@ -33,8 +33,6 @@ class Registration:
     """A fit of paired points and how well it fits them.
 
     Attributes:
-        kind: `rigid`, `similarity` or `affine`.
-        labels: Names of the n points.
         moving_mm: (n, 3) float, the points that were mapped.
         fixed_mm: (n, 3) float, where they belong.
         matrix: (4, 4) float, maps moving to fixed.
@@ -147,9 +145,6 @@ def register_all_kinds(
     """Return the fits by kind: the rigid one, and the similarity and affine ones that are possible.
 
     Args:
-        moving: as of `register`, as the others.
-        fixed: points in the order of the moving ones.
-        labels: of the points.
         weights: of the points in the rigid fit; the other kinds have none.
     """
     fits = {RIGID: register(moving, fixed, RIGID, labels, weights)}

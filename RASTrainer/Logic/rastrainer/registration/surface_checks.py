@@ -33,9 +33,7 @@ class MatchMeasures:
 
     Attributes:
         rms_mm: Root mean square of the inliers' residuals. It does not predict the target error.
-        inlier_share: Share of the points that count.
         converged: Whether the best fit has stopped moving.
-        starts: Number of starts.
         best_starts: How many of the starts ended in the best minimum.
         spread_mm: Largest distance at the head's center between the best and where another start
             ended.
@@ -134,7 +132,6 @@ def find_match_warnings(
     `poor-fit`.
 
     Args:
-        measures: Of the match.
         residuals_mm: (n,) float, of all points.
         is_inlier: (n,) bool, whether a point counts.
     """
@@ -255,7 +252,6 @@ def slide_of(
         places: (n, 3) float, RAS mm, the points where the match puts them.
         normals: (n, 3) float, the directions in which their distances grow.
         rms_mm: σ, of the residuals; at least 1 mm.
-        mesh: The head.
     """
     noise = max(rms_mm, LEAST_NOISE_MM)
     center = places.mean(axis=0)

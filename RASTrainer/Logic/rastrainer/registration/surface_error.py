@@ -137,8 +137,6 @@ def next_best_place(
     −k·CJᵀJC/(1 + k·JCJᵀ) (Sherman and Morrison 1950), so all places are compared at once.
 
     Args:
-        knowledge: Of the points so far.
-        mesh: The head.
         targets: (m, 3) float, RAS mm.
         allowed: (v,) bool, the vertices that can be reached, at least one.
     """

@@ -331,10 +331,6 @@ def lowest_nearby(
     """Return the lowest minimum found next to a fit of one start, as a fit of one start.
 
     Args:
-        points: (n, 3) float, World mm, those of the fit.
-        mesh: The surface, RAS mm.
-        fit: The fit.
-        tolerance_mm: As of `fit_to_surface`.
         gate_mm: Up to which distance points count.
         seed: Of the places from which the fit is repeated.
     """

@@ -57,7 +57,6 @@ class SurfaceMatch(MatchMeasures):
         residuals_mm: (n,) float, their lengths.
         normals: (n, 3) float, RAS, unit directions in which the residuals grow.
         is_inlier: (n,) bool, whether a point counts; the others are too far off.
-        iterations: Steps to the best fit.
         warnings: What looks wrong, to be shown before the match is accepted.
     """
 

@@ -89,10 +89,8 @@ def expected_tre(
     standard deviation σ on each axis adds 3σ².
 
     Args:
-        registration: The registration.
         targets: (m, 3) float, in mm.
         localization: The FLE; by default the isotropic one that explains the residuals.
-        common_bias_sd_mm: σ.
     """
     localization = localization or isotropic_error(registration)
     covariances = _propagated(registration, targets, localization.covariances)
@@ -116,7 +114,6 @@ def target_error(
     leaves the common offset alone.
 
     Args:
-        registration: The registration.
         target: (3,) float, in the fixed space, in mm.
         localization: The FLE; by default the isotropic one that explains the residuals.
         confidence: Least probability that the error lies in the interval.
@@ -151,9 +148,6 @@ def error_of_covariance(
         target: (3,) float, in the fixed space, in mm.
         covariance: (3, 3) float, mm², without the common offset.
         fle_mm: The error of a point that it was computed from.
-        degrees_of_freedom: How well its size is known.
-        confidence: As of `target_error`.
-        common_bias_sd_mm: As of `target_error`.
     """
     variances = np.linalg.eigvalsh(covariance).clip(min=0.0)
     independent = float(variances.sum())

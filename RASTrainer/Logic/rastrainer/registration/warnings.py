@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
 from rastrainer import transforms
+from rastrainer.json_checks import text
 from rastrainer.registration.distributions import f_tail
 from rastrainer.registration.fits import (
     AFFINE,
@@ -44,10 +45,7 @@ class RegistrationWarning:
 
     code: str
     points: tuple[str, ...]
-    message: str
-
-    def to_json(self) -> dict[str, Any]:
-        return {"code": self.code, "points": list(self.points), "message": self.message}
+    message: Annotated[str, text(500)]
 
 
 def find_warnings(

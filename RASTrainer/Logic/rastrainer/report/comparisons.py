@@ -42,13 +42,9 @@ class ModeComparison:
     Attributes:
         first: Mode that is subtracted.
         second: Mode that it is subtracted from.
-        trainees: Those who did both.
-        first_means: Means in the first mode, (n,) float.
         order: By how many periods each trainee did the second mode later than the first, (n,)
             float; None if unknown.
-        result: The tests, or None.
         adjusted_p: p of the t-test, adjusted by Holm's method; None if only described.
-        reason: Why there is no result; "" otherwise.
     """
 
     outcome: Outcome

@@ -8,22 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from rastrainer.number_text import fixed, p_text, percent, significant
-from rastrainer.report.elements import (
-    FAINT,
-    INK,
-    Axis,
-    Cell,
-    Line,
-    Sheet,
-    axis_over,
-    bullets,
-    figure,
-    mode_color,
-    paragraph,
-    section,
-    table,
-    y_grid,
-)
+from rastrainer.report import page, svg
 from rastrainer.report.paired_statistics import interval_text
 from rastrainer.statistics.trend import (
     ALPHA,
@@ -41,21 +26,21 @@ from rastrainer.study.study_data import StudyData, values_of
 SHOWN = ("completion_time_s", "rmse_mm", "score")
 MIN_CURVE_TRIALS = 8
 """With fewer trials the plateau is too uncertain to report."""
-HEADER: Line = [
-    *(
-        "Outcome",
-        Cell("mode", kind="text"),
-        "n",
-        "trials",
-        "first",
-        "last",
-        "change [95 %]",
-        "p (Page)",
-        "p (Holm)",
-    ),
-    "alone: better / steady / undecided",
+HEADER: page.Line = [
+    *("Outcome", page.text("mode"), "n", "trials", "first", "last", "change [95 %]"),
+    *("p (Page)", "p (Holm)", "alone: better / steady / undecided"),
 ]
 
+WORDS = (
+    "First and last: means of the trainees at their first trial and at the last that all of them "
+    "did. Change: between these two by each trainee's regression line over ln(trial), the mean of "
+    "all. Page's test (one-sided) asks whether all trainees together get better: that is shown "
+    "where its p, corrected by Holm's method for all such tests of this table, is below "
+    f"{percent(ALPHA)}. Each trainee alone: better by the permutation test of the slope "
+    "(one-sided; one in twenty who do not learn passes it by chance), steady where a change by "
+    f"{percent(STEADY)} of the mean is excluded, and undecided where the trials allow both; these "
+    "tests are not corrected for being several."
+)
 Points = dict[str, list[tuple[float, float]]]
 
 
@@ -64,23 +49,43 @@ def learning(data: StudyData) -> str:
     points, trends = _all_points(data), learning_trends(data)
     charts, rows, sentences = [], [], []
     for (outcome, mode), own in points.items():
-        trend, index = trends.get((outcome, mode)), data.modes.index(mode)
+        trend = trends.get((outcome, mode))
         curve = _curve(trend, outcome)
-        charts.append(_chart(data, outcome, mode, index, own, curve))
+        fitted = []
+        if curve is not None:
+            last = max(map(len, own.values()))
+            fitted = [(x, curve.at(x)) for x in np.linspace(1, last, 60)]
+        values = values_of(data.trials, outcome.name)
+        charts.append(
+            learning_curves(
+                f"{short_mode_title(mode)}: {outcome.heading}",
+                svg.mode_color(mode, data.modes.index(mode)),
+                own,
+                "trial" if data.has_order else "task",
+                fitted,
+                (min(values), max(values)),
+            )
+        )
         if data.has_order:
             rows.append(_row(outcome, mode, trend, len(own)))
         if curve is not None and trend is not None and len(trend.means) >= MIN_CURVE_TRIALS:
-            sentences.append(_sentence(outcome, mode, curve))
-    return section(
+            sentences.append(
+                f"{outcome.title}, {mode_title(mode)}: the means follow a·n^−b + c with "
+                f"a = {fixed(curve.gain, outcome.digits)} {outcome.unit}, "
+                f"b = {fixed(curve.rate, 2)} and "
+                f"c = {fixed(curve.plateau, outcome.digits)} {outcome.unit} "
+                f"(R² = {fixed(curve.r_squared, 2)})."
+            )
+    return page.section(
         "Learning curves",
-        figure(
+        page.figure(
             charts,
             "Thin: each trainee. Thick: the means of all or, where getting better is shown, the "
             "curve that is fitted to them.",
         ),
-        *([table([HEADER], rows, "wide"), paragraph(_words(), "small")] if rows else []),
-        bullets(sentences) if sentences else "",
-        paragraph(_limits(data)),
+        *([page.table([HEADER], rows, "wide"), page.paragraph(WORDS, "small")] if rows else []),
+        page.bullets(sentences),
+        page.paragraph(_limits(data)),
     )
 
 
@@ -121,27 +126,8 @@ def _curve(trend: CohortTrend | None, outcome: Outcome) -> LearningCurve | None:
     return fit_learning_curve(trend.means) if len(trend.means) >= MIN_FIT_TRIALS else None
 
 
-def _chart(
-    data: StudyData,
-    outcome: Outcome,
-    mode: str,
-    index: int,
-    points: Points,
-    curve: LearningCurve | None,
-) -> str:
-    x_title = "trial" if data.has_order else "task"
-    fitted = []
-    if curve is not None:
-        last = max(len(own) for own in points.values())
-        fitted = [(x, curve.at(x)) for x in np.linspace(1, last, 60)]
-    heading = f"{short_mode_title(mode)}: {outcome.heading}"
-    span = values_of(data.trials, outcome.name)
-    color = mode_color(mode, index)
-    return learning_curves(heading, color, points, x_title, fitted, (min(span), max(span)))
-
-
-def _row(outcome: Outcome, mode: str, trend: CohortTrend | None, trainees: int) -> Line:
-    start: Line = [outcome.heading, Cell(mode_title(mode), kind="text")]
+def _row(outcome: Outcome, mode: str, trend: CohortTrend | None, trainees: int) -> page.Line:
+    start: page.Line = [outcome.heading, page.text(mode_title(mode))]
     if trend is None:
         return [*start, str(trainees), "too few", *["–"] * (len(HEADER) - 4)]
     change = "–"
@@ -158,28 +144,6 @@ def _row(outcome: Outcome, mode: str, trend: CohortTrend | None, trainees: int) 
         *("–" if p is None else p_text(p) for p in (trend.p, trend.adjusted_p)),
         " / ".join(map(str, counts)),
     ]
-
-
-def _sentence(outcome: Outcome, mode: str, curve: LearningCurve) -> str:
-    return (
-        f"{outcome.title}, {mode_title(mode)}: the means follow a·n^−b + c with "
-        f"a = {fixed(curve.gain, outcome.digits)} {outcome.unit}, b = {fixed(curve.rate, 2)} and "
-        f"c = {fixed(curve.plateau, outcome.digits)} {outcome.unit} "
-        f"(R² = {fixed(curve.r_squared, 2)})."
-    )
-
-
-def _words() -> str:
-    return (
-        "First and last: means of the trainees at their first trial and at the last that all of "
-        "them did. Change: between these two by each trainee's regression line over ln(trial), the "
-        "mean of all. Page's test (one-sided) asks whether all trainees together get better: that "
-        "is shown where its p, corrected by Holm's method for all such tests of this table, is "
-        f"below {percent(ALPHA)}. Each trainee alone: better by the permutation test of the slope "
-        "(one-sided; one in twenty who do not learn passes it by chance), steady where a change by "
-        f"{percent(STEADY)} of the mean is excluded, and undecided where the trials allow both; "
-        "these tests are not corrected for being several."
-    )
 
 
 def _limits(data: StudyData) -> str:
@@ -215,20 +179,16 @@ def learning_curves(
     """Return the chart of every trainee's values over the trials, with the curve of all.
 
     Args:
-        heading: With the unit.
-        color: Of the mode.
         trainees: Pseudonym → points (trial number, value).
-        x_title: Below the axis.
         curve: A fitted curve; by default the means are connected.
         span: Further values that the axis must include, to make charts comparable.
     """
-    sheet = Sheet(WIDTH, HEIGHT, heading)
-    sheet.text(10, 16, heading, 12.5, INK, weight="600")
+    sheet = svg.Sheet(WIDTH, HEIGHT, heading)
     points = [point for own in trainees.values() for point in own]
     numbers = sorted({x for x, _ in points})
-    axis = axis_over([*span, *(y for _, y in points)], BOTTOM, TOP)
-    y_grid(sheet, axis, LEFT, RIGHT)
-    across = Axis(numbers[0] - 0.35, numbers[-1] + 0.35, LEFT, RIGHT)
+    axis = svg.axis_over([*span, *(y for _, y in points)], BOTTOM, TOP)
+    svg.y_grid(sheet, axis, LEFT, RIGHT)
+    across = svg.Axis(numbers[0] - 0.35, numbers[-1] + 0.35, LEFT, RIGHT)
     opacity = 0.55 if len(trainees) <= 12 else max(0.08, 6 / len(trainees))
     for name, own in trainees.items():
         sheet.polyline([(across.at(x), axis.at(y)) for x, y in own], color, 1.2, opacity)
@@ -236,9 +196,9 @@ def learning_curves(
             for x, y in own:
                 sheet.dot(across.at(x), axis.at(y), 2.6, color, 0.8, f"{name}: {significant(y, 4)}")
     means = [(x, float(np.mean([y for n, y in points if n == x]))) for x in numbers]
-    sheet.polyline([(across.at(x), axis.at(y)) for x, y in curve or means], INK, 2.4)
+    sheet.polyline([(across.at(x), axis.at(y)) for x, y in curve or means], svg.INK, 2.4)
     ticks = numbers if len(numbers) <= 12 else across.ticks(6)
     for tick in ticks:
-        sheet.text(across.at(tick), BOTTOM + 16, f"{tick:g}", 10, FAINT, "middle")
-    sheet.text((LEFT + RIGHT) / 2, HEIGHT - 8, x_title, 10, FAINT, "middle")
+        sheet.text(across.at(tick), BOTTOM + 16, f"{tick:g}", 10, svg.FAINT, "middle")
+    sheet.text((LEFT + RIGHT) / 2, HEIGHT - 8, x_title, 10, svg.FAINT, "middle")
     return sheet.svg()

@@ -13,17 +13,8 @@ import numpy as np
 
 from rastrainer.number_text import fixed, p_text
 from rastrainer.protocol import RegistrationMethod
+from rastrainer.report import page
 from rastrainer.report.comparisons import ModeComparison, compare_modes, tested, with_adjusted_p
-from rastrainer.report.elements import (
-    Cell,
-    Line,
-    bullets,
-    figure,
-    heading,
-    paragraph,
-    section,
-    table,
-)
 from rastrainer.report.mode_comparison import Series, grouped_bars
 from rastrainer.report.paired_statistics import interval_text, what_it_shows
 from rastrainer.statistics.intervals import mean
@@ -69,31 +60,31 @@ SKIN_HEADER = (
 
 
 def method_comparison(data: StudyData) -> str:
-    """Return the section; "" where all trials were registered by one method.
-
-    Args:
-        data: With the trials of all methods.
-    """
+    """Return the section; "" where all trials were registered by one method."""
     by_method = as_conditions(data)
     methods = [name for name in TITLES if name in by_method.modes]
     if len(methods) < 2:
         return ""
     pairs = compare_methods(by_method)
     parts = [
-        paragraph(INTRO),
-        table([_HEADER], [_row(by_method, each) for each in methods], "wide"),
+        page.paragraph(INTRO),
+        page.table([_HEADER], [_row(by_method, each) for each in methods], "wide"),
     ]
-    parts.append(figure([_picture(by_method, methods)], "Every trial at the scenario's target."))
+    parts.append(
+        page.figure([_picture(by_method, methods)], "Every trial at the scenario's target.")
+    )
     if pairs:
         parts += [
-            heading("Differences between methods"),
-            paragraph(PAIRED),
-            bullets(_findings(pairs)),
-            table([_PAIR_HEADER], [_pair_row(each) for each in pairs], "wide"),
+            page.heading("Differences between methods"),
+            page.paragraph(PAIRED),
+            page.bullets(_findings(pairs)),
+            page.table([_PAIR_HEADER], [_pair_row(each) for each in pairs], "wide"),
         ]
     else:
-        parts.append(paragraph("No trainee played two methods in one mode: nothing is tested."))
-    return section("Methods of registration", *parts)
+        parts.append(
+            page.paragraph("No trainee played two methods in one mode: nothing is tested.")
+        )
+    return page.section("Methods of registration", *parts)
 
 
 def as_conditions(data: StudyData) -> StudyData:
@@ -136,18 +127,17 @@ def _findings(pairs: Sequence[ModeComparison]) -> list[str]:
     return sentences or ["The true errors of too few trainees are known: nothing is tested."]
 
 
-def _row(by_method: StudyData, method: str) -> Line:
+def _row(by_method: StudyData, method: str) -> page.Line:
     trials = by_method.of_mode(method)
     trainees = {trial.trainee for trial in trials}
     means = [_mean_text(trials, outcome) for outcome in OUTCOMES]
-    held = [_is_inside(t) for t in trials if {"tre_low_mm", "true_tre_mm"} <= set(t.values)]
+    held = [
+        values["tre_low_mm"] <= values["true_tre_mm"] <= values["tre_high_mm"]
+        for values in (trial.values for trial in trials)
+        if {"tre_low_mm", "true_tre_mm"} <= set(values)
+    ]
     inside = f"{sum(held)} of {len(held)}" if held else "–"
     return [TITLES[method], str(len(trainees)), str(len(trials)), *means, inside]
-
-
-def _is_inside(trial: TrialRow) -> bool:
-    values = trial.values
-    return values["tre_low_mm"] <= values["true_tre_mm"] <= values["tre_high_mm"]
 
 
 def _mean_text(trials: Sequence[TrialRow], outcome: Outcome) -> str:
@@ -178,12 +168,12 @@ def _picture(by_method: StudyData, methods: Sequence[str]) -> str:
     return grouped_bars("Residual and target error, mm", names, series, "method")
 
 
-def _pair_row(pair: ModeComparison) -> Line:
+def _pair_row(pair: ModeComparison) -> page.Line:
     outcome, result = pair.outcome, pair.result
-    start: Line = [outcome.heading, TITLES[pair.first], TITLES[pair.second]]
+    start: page.Line = [outcome.heading, TITLES[pair.first], TITLES[pair.second]]
     start = [*start, str(len(pair.trainees))]
     if result is None:
-        return [*start, Cell(pair.reason, 4, kind="text")]
+        return [*start, page.Cell(pair.reason, 4, kind="text")]
     return [
         *start,
         interval_text(result.mean_difference, result.interval, outcome.digits),
@@ -202,17 +192,17 @@ def shifted_skin(data: StudyData) -> str:
             groups.setdefault((*amounts, trial.method), []).append(trial)
     if not groups:
         return ""
-    rows = [_skin_row(*key, groups[key]) for key in sorted(groups)]
-    return section("Shifted skin", paragraph(SKIN_INTRO), table([SKIN_HEADER], rows, "wide"))
-
-
-def _skin_row(shift: float, indentation: float, method: str, trials: Sequence[TrialRow]) -> Line:
     names = ("rmse_mm", "expected_tre_mm", "true_tre_mm", "unshifted_tre_mm")
-    means = [_mean_of(trials, name) for name in names]
-    by = TITLES.get(method, method)
-    return [fixed(shift, 1), fixed(indentation, 1), by, str(len(trials)), *means]
-
-
-def _mean_of(trials: Sequence[TrialRow], name: str) -> str:
-    values = values_of(trials, name)
-    return fixed(float(np.mean(values)), 2) if values else "–"
+    rows = [
+        [
+            *(fixed(shift, 1), fixed(indentation, 1), TITLES.get(method, method), str(len(trials))),
+            *(
+                fixed(float(np.mean(values)), 2) if (values := values_of(trials, name)) else "–"
+                for name in names
+            ),
+        ]
+        for (shift, indentation, method), trials in sorted(groups.items())
+    ]
+    return page.section(
+        "Shifted skin", page.paragraph(SKIN_INTRO), page.table([SKIN_HEADER], rows, "wide")
+    )

@@ -8,26 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.number_text import fixed
+from rastrainer.report import page, svg
 from rastrainer.report.comparisons import ModeComparison, tested
-from rastrainer.report.elements import (
-    FAINT,
-    INK,
-    Axis,
-    Cell,
-    Line,
-    Sheet,
-    axis_over,
-    figure,
-    legend,
-    mode_color,
-    number,
-    paragraph,
-    section,
-    table,
-    y_grid,
-)
 from rastrainer.report.paired_statistics import interval_text
-from rastrainer.statistics.paired import PairedComparison
 from rastrainer.study.outcomes import (
     MAIN_OUTCOMES,
     MOTION_OUTCOMES,
@@ -48,18 +31,18 @@ def mode_comparison(data: StudyData) -> str:
         for outcome in MAIN_OUTCOMES
         if outcome.name in SHOWN and any(outcome.name in trial.values for trial in data.trials)
     ]
-    parts = [figure([chart], "") for chart in charts[:-1]]
-    last = figure(
+    parts = [page.figure([chart], "") for chart in charts[:-1]]
+    last = page.figure(
         charts[-1:], "Modes compared task by task, as in the paper's Fig. 8, with every trial."
     )
-    return section("The modes, task by task", *parts, last)
+    return page.section("The modes, task by task", *parts, last)
 
 
 def _chart(data: StudyData, outcome: Outcome) -> str:
     series = [
         Series(
             mode_title(mode),
-            mode_color(mode, index),
+            svg.mode_color(mode, index),
             tuple(
                 tuple(values_of((t for t in data.of_mode(mode) if t.task == task), outcome.name))
                 for task in data.tasks
@@ -88,12 +71,11 @@ def grouped_bars(
     heading: str, groups: Sequence[str], series: Sequence[Series], by: str = "task and mode"
 ) -> str:
     """Return the chart; bars are means, whiskers one standard deviation (n − 1)."""
-    sheet = Sheet(WIDTH, HEIGHT, f"{heading} by {by}")
-    sheet.text(LEFT - 34, 16, heading, 12.5, INK, weight="600")
-    legend(sheet, LEFT, 34, [(one.name, one.color) for one in series])
+    sheet = svg.Sheet(WIDTH, HEIGHT, heading, f"{heading} by {by}", LEFT - 34)
+    svg.legend(sheet, LEFT, 34, [(one.name, one.color) for one in series])
     everything = [value for one in series for values in one.values for value in values]
-    axis = axis_over(everything, BOTTOM, TOP + 6, from_zero=True)
-    y_grid(sheet, axis, LEFT, RIGHT)
+    axis = svg.axis_over(everything, BOTTOM, TOP + 6, from_zero=True)
+    svg.y_grid(sheet, axis, LEFT, RIGHT)
     slot = (RIGHT - LEFT) / len(groups)
     width = min(46.0, slot * 0.72 / len(series))
     for column, group in enumerate(groups):
@@ -102,12 +84,14 @@ def grouped_bars(
             x = center + (index - (len(series) - 1) / 2) * width
             if one.values[column]:
                 _bar(sheet, axis, x, width * 0.88, one.color, one.values[column])
-        sheet.text(center, HEIGHT - 18, group, 11, INK, "middle")
-    sheet.text(LEFT, HEIGHT - 3, "bar: mean; whisker: ± 1 SD; dot: one trial", 9.5, FAINT)
+        sheet.text(center, HEIGHT - 18, group, 11, svg.INK, "middle")
+    sheet.text(LEFT, HEIGHT - 3, "bar: mean; whisker: ± 1 SD; dot: one trial", 9.5, svg.FAINT)
     return sheet.svg()
 
 
-def _bar(sheet: Sheet, axis, x: float, width: float, color: str, values: Sequence[float]) -> None:
+def _bar(
+    sheet: svg.Sheet, axis, x: float, width: float, color: str, values: Sequence[float]
+) -> None:
     mean = float(np.mean(values))
     zero, top = axis.at(0.0), axis.at(mean)
     sheet.rect(x - width / 2, min(zero, top), width, abs(zero - top), color, 0.32)
@@ -131,22 +115,18 @@ STACK = 38.0
 def distribution_chart(heading: str, lanes: Sequence[tuple[str, str, Sequence[float]]]) -> str:
     """Return the chart of lanes with name, color and values."""
     height = 54 + LANE_HEIGHT * len(lanes)
-    sheet = Sheet(LANE_WIDTH, height, f"Distribution of {heading}")
-    sheet.text(10, 16, heading, 12.5, INK, weight="600")
+    sheet = svg.Sheet(LANE_WIDTH, height, heading, f"Distribution of {heading}")
     everything = [value for _, _, values in lanes for value in values]
-    axis = axis_over(everything, LANE_LEFT, LANE_RIGHT)
-    for tick in axis.ticks():
-        x = axis.at(tick)
-        sheet.line(x, 28, x, height - 24, "#e3e7ec")
-        sheet.text(x, height - 10, number(tick), 10, FAINT, "middle")
+    axis = svg.axis_over(everything, LANE_LEFT, LANE_RIGHT)
+    svg.x_grid(sheet, axis, 28, height - 24)
     for index, (name, color, values) in enumerate(lanes):
         y = 32 + LANE_HEIGHT * (index + 0.5)
-        sheet.text(LANE_LEFT - 10, y + 4, name, 11, INK, "end")
+        sheet.text(LANE_LEFT - 10, y + 4, name, 11, svg.INK, "end")
         _lane(sheet, axis, y, color, values)
     return sheet.svg()
 
 
-def _lane(sheet: Sheet, axis: Axis, y: float, color: str, values: Sequence[float]) -> None:
+def _lane(sheet: svg.Sheet, axis: svg.Axis, y: float, color: str, values: Sequence[float]) -> None:
     ordered = np.sort(np.asarray(values, dtype=float))
     shown = ordered
     if len(ordered) > MAX_LANE_DOTS:
@@ -185,11 +165,11 @@ def distributions(data: StudyData) -> str:
         for index, mode in enumerate(data.modes):
             values = values_of(data.of_mode(mode), outcome.name)
             if values:
-                lanes.append((short_mode_title(mode), mode_color(mode, index), values))
+                lanes.append((short_mode_title(mode), svg.mode_color(mode, index), values))
         if lanes:
             charts.append(distribution_chart(outcome.heading, lanes))
     caption = "All trials; below the dots the middle half, the median, and the whole range."
-    return section("Distributions", figure(charts, caption))
+    return page.section("Distributions", page.figure(charts, caption))
 
 
 def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
@@ -204,36 +184,28 @@ def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
         values = [values_of(data.of_mode(mode), outcome.name) for mode in data.modes]
         means = [_mean_and_sd(own, outcome.digits) if own else "–" for own in values]
         counts = " / ".join(str(len(own)) for own in values)
-        rows.append([outcome.heading, *means, counts, *_effect(compared.get(outcome.name))])
-    definitions: list[Line] = [
-        [
-            outcome.title,
-            Cell(outcome.definition, kind="text"),
-            Cell(outcome.source, kind="text"),
-        ]
+        result, effect = compared.get(outcome.name), "–"
+        if result is not None and result.hedges_gz is not None and result.gz_interval is not None:
+            effect = interval_text(result.hedges_gz, result.gz_interval, 2)
+        n = "–" if result is None else str(result.n)
+        rows.append([outcome.heading, *means, counts, n, effect])
+    definitions = [
+        [outcome.title, page.text(outcome.definition), page.text(outcome.source)]
         for outcome in outcomes
     ]
     modes = [mode_title(mode) for mode in data.modes]
-    return section(
+    return page.section(
         "Motion metrics",
-        paragraph(
+        page.paragraph(
             "Mean ± standard deviation of the trials; described, not tested. g_z is of the n "
             "trainees who did both modes."
         ),
-        table([["Metric", *modes, "trials", "n", "g_z [95 %]"]], rows),
-        table(
-            [["Metric", Cell("Definition", kind="text"), Cell("Source", kind="text")]], definitions
+        page.table([["Metric", *modes, "trials", "n", "g_z [95 %]"]], rows),
+        page.table(
+            [["Metric", page.text("Definition"), page.text("Source")]],
+            definitions,
         ),
     )
-
-
-def _effect(result: PairedComparison | None) -> list[str]:
-    """Return the number of trainees and the effect size, if known."""
-    if result is None:
-        return ["–", "–"]
-    if result.hedges_gz is None or result.gz_interval is None:
-        return [str(result.n), "–"]
-    return [str(result.n), interval_text(result.hedges_gz, result.gz_interval, 2)]
 
 
 def _mean_and_sd(values: Sequence[float], digits: int) -> str:

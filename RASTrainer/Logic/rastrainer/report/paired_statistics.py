@@ -7,24 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from rastrainer.number_text import fixed, p_text, signed, significant
+from rastrainer.report import page, svg
 from rastrainer.report.comparisons import ModeComparison, tested
-from rastrainer.report.elements import (
-    FAINT,
-    INK,
-    Axis,
-    Cell,
-    Line,
-    Sheet,
-    axis_over,
-    figure,
-    heading,
-    mode_color,
-    number,
-    paragraph,
-    section,
-    table,
-    y_grid,
-)
 from rastrainer.statistics.intervals import ALPHA
 from rastrainer.statistics.paired import PairedComparison, equivalence_margin
 from rastrainer.study.outcomes import mode_name, mode_title, short_mode_title
@@ -79,14 +63,8 @@ def what_it_shows(
     """Return a sentence that says what the comparison shows, never more.
 
     Args:
-        name: Of the outcome, such as "Completion time".
-        unit: Of it, "" where it has none.
-        first: Name of the first condition.
-        second: Name of the second condition.
         comparison: Second minus first.
-        adjusted_p: Its p, adjusted for the number of outcomes.
         digits: After the point, of the difference and its interval.
-        several: What p was adjusted for.
     """
     low, high = comparison.interval
     difference = comparison.mean_difference
@@ -121,17 +99,17 @@ def paired_statistics(comparisons: Sequence[ModeComparison]) -> str:
         "one-sided tests at the 5 % level show the true difference to lie; how small a difference "
         "may be neglected must be decided before the study."
     )
-    return section(
+    return page.section(
         "Paired statistics",
-        paragraph(intro),
+        page.paragraph(intro),
         _table(comparisons),
         *_order(comparisons),
-        figure(
+        page.figure(
             [paired_lines(comparison) for comparison in comparisons[:6]],
             "Every trainee's means in both modes (thick: the mean of all), and the mean difference "
             "with its 95 % interval on an axis of its own.",
         ),
-        figure([effect_sizes(comparisons)], "Standardized paired differences.")
+        page.figure([effect_sizes(comparisons)], "Standardized paired differences.")
         if any(result.gz_interval for _one, result in tested(comparisons))
         else "",
     )
@@ -153,7 +131,7 @@ def _order(comparisons: Sequence[ModeComparison]) -> list[str]:
         if result.sequences is not None
     ]
     if not separated:
-        return [paragraph(order_caveat(comparisons))]
+        return [page.paragraph(order_caveat(comparisons))]
     one = separated[0][0]
     first, second = mode_name(one.first), mode_name(one.second)
     rows = []
@@ -172,9 +150,9 @@ def _order(comparisons: Sequence[ModeComparison]) -> list[str]:
         "between sequences [95\N{NO-BREAK SPACE}%]",
     ]
     return [
-        heading("What the order of the modes did"),
-        table([header], rows, "wide"),
-        paragraph(SEPARATED.format(first=first, second=second), "small"),
+        page.heading("What the order of the modes did"),
+        page.table([header], rows, "wide"),
+        page.paragraph(SEPARATED.format(first=first, second=second), "small"),
     ]
 
 
@@ -192,16 +170,16 @@ def _table(comparisons: Sequence[ModeComparison]) -> str:
         "p (Holm)",
         "rank test p",
     ]
-    return table([[*headers, "g_z"]], rows, "wide")
+    return page.table([[*headers, "g_z"]], rows, "wide")
 
 
-def _row(comparison: ModeComparison) -> Line:
+def _row(comparison: ModeComparison) -> page.Line:
     outcome, result = comparison.outcome, comparison.result
     both = (comparison.first_means, comparison.second_means)
     means = [outcome.text(float(values.mean())) for values in both]
     start = [outcome.heading, str(len(comparison.trainees)), *means]
     if result is None:
-        return [*start, Cell(comparison.reason, 7, kind="text")]
+        return [*start, page.Cell(comparison.reason, 7, kind="text")]
     return [
         *start,
         interval_text(result.mean_difference, result.interval, outcome.digits + 1),
@@ -228,16 +206,20 @@ DIFFERENCE = 268
 def paired_lines(comparison: ModeComparison) -> str:
     """Return the chart of one outcome; differences have their own axis on the right."""
     outcome = comparison.outcome
-    sheet = Sheet(PAIRED_WIDTH, PAIRED_HEIGHT, f"{outcome.title} of every trainee in both modes")
-    sheet.text(10, 16, outcome.heading, 12.5, INK, weight="600")
+    described = f"{outcome.title} of every trainee in both modes"
+    sheet = svg.Sheet(PAIRED_WIDTH, PAIRED_HEIGHT, outcome.heading, described)
     both = np.concatenate([comparison.first_means, comparison.second_means])
-    axis = axis_over(both.tolist(), PAIRED_BOTTOM, PAIRED_TOP)
-    y_grid(sheet, axis, PAIRED_LEFT, SECOND + 22)
-    colors = [mode_color(mode, i) for i, mode in enumerate((comparison.first, comparison.second))]
+    axis = svg.axis_over(both.tolist(), PAIRED_BOTTOM, PAIRED_TOP)
+    svg.y_grid(sheet, axis, PAIRED_LEFT, SECOND + 22)
+    colors = [
+        svg.mode_color(mode, i) for i, mode in enumerate((comparison.first, comparison.second))
+    ]
     opacity = 0.75 if len(comparison.trainees) <= 12 else max(0.12, 8 / len(comparison.trainees))
     pairs = zip(comparison.trainees, comparison.first_means, comparison.second_means, strict=True)
     for trainee, first, second in pairs:
-        sheet.polyline([(FIRST, axis.at(first)), (SECOND, axis.at(second))], FAINT, 1.1, opacity)
+        sheet.polyline(
+            [(FIRST, axis.at(first)), (SECOND, axis.at(second))], svg.FAINT, 1.1, opacity
+        )
         for x, value, color in ((FIRST, first, colors[0]), (SECOND, second, colors[1])):
             sheet.dot(
                 x,
@@ -248,30 +230,30 @@ def paired_lines(comparison: ModeComparison) -> str:
                 f"{trainee}: {significant(value, 4)}",
             )
     means = [float(comparison.first_means.mean()), float(comparison.second_means.mean())]
-    sheet.polyline([(FIRST, axis.at(means[0])), (SECOND, axis.at(means[1]))], INK, 2.6)
+    sheet.polyline([(FIRST, axis.at(means[0])), (SECOND, axis.at(means[1]))], svg.INK, 2.6)
     for x, mode in ((FIRST, comparison.first), (SECOND, comparison.second)):
-        sheet.text(x, PAIRED_HEIGHT - 20, short_mode_title(mode), 11, INK, "middle")
+        sheet.text(x, PAIRED_HEIGHT - 20, short_mode_title(mode), 11, svg.INK, "middle")
     _difference(sheet, comparison)
     return sheet.svg()
 
 
-def _difference(sheet: Sheet, comparison: ModeComparison) -> None:
+def _difference(sheet: svg.Sheet, comparison: ModeComparison) -> None:
     result = comparison.result
     if result is None:
-        sheet.text(DIFFERENCE, (PAIRED_TOP + PAIRED_BOTTOM) / 2, "no test", 10, FAINT, "middle")
+        sheet.text(DIFFERENCE, (PAIRED_TOP + PAIRED_BOTTOM) / 2, "no test", 10, svg.FAINT, "middle")
         return
     low, high = result.interval
-    axis = axis_over([low, high, 0.0, 1.1 * low, 1.1 * high], PAIRED_BOTTOM, PAIRED_TOP)
+    axis = svg.axis_over([low, high, 0.0, 1.1 * low, 1.1 * high], PAIRED_BOTTOM, PAIRED_TOP)
     for tick in axis.ticks(4):
         y = axis.at(tick)
         sheet.line(DIFFERENCE - 22, y, DIFFERENCE + 22, y, "#9aa5b1" if tick == 0 else "#eceff2")
-        sheet.text(DIFFERENCE + 28, y + 3.5, number(tick), 9.5, FAINT)
-    sheet.line(DIFFERENCE, axis.at(low), DIFFERENCE, axis.at(high), INK, 2)
+        sheet.text(DIFFERENCE + 28, y + 3.5, svg.number(tick), 9.5, svg.FAINT)
+    sheet.line(DIFFERENCE, axis.at(low), DIFFERENCE, axis.at(high), svg.INK, 2)
     for end in (low, high):
-        sheet.line(DIFFERENCE - 6, axis.at(end), DIFFERENCE + 6, axis.at(end), INK, 2)
-    sheet.dot(DIFFERENCE, axis.at(result.mean_difference), 5, INK)
-    sheet.text(DIFFERENCE, PAIRED_HEIGHT - 20, "difference", 11, INK, "middle")
-    sheet.text(DIFFERENCE, PAIRED_HEIGHT - 7, "mean, 95 % interval", 9, FAINT, "middle")
+        sheet.line(DIFFERENCE - 6, axis.at(end), DIFFERENCE + 6, axis.at(end), svg.INK, 2)
+    sheet.dot(DIFFERENCE, axis.at(result.mean_difference), 5, svg.INK)
+    sheet.text(DIFFERENCE, PAIRED_HEIGHT - 20, "difference", 11, svg.INK, "middle")
+    sheet.text(DIFFERENCE, PAIRED_HEIGHT - 7, "mean, 95 % interval", 9, svg.FAINT, "middle")
 
 
 EFFECTS_WIDTH, EFFECT_HEIGHT = 680, 27
@@ -288,44 +270,41 @@ def effect_sizes(comparisons: Sequence[ModeComparison]) -> str:
     ]
     reach = max([1.0, *(abs(end) for _comparison, _gz, interval in shown for end in interval)])
     reach = min(MAX_EFFECT_SIZE, reach * 1.05)
-    axis = Axis(-reach, reach, EFFECTS_LEFT, EFFECTS_RIGHT)
+    axis = svg.Axis(-reach, reach, EFFECTS_LEFT, EFFECTS_RIGHT)
     height = 64 + EFFECT_HEIGHT * len(shown)
-    sheet = Sheet(EFFECTS_WIDTH, height, "Effect sizes with their intervals")
-    for tick in axis.ticks(8):
-        x = axis.at(tick)
-        sheet.line(x, 24, x, height - 32, "#7b8794" if tick == 0 else "#e3e7ec")
-        sheet.text(x, height - 18, number(tick), 10, FAINT, "middle")
+    sheet = svg.Sheet(EFFECTS_WIDTH, height, "", "Effect sizes with their intervals")
+    svg.x_grid(sheet, axis, 24, height - 32, 8, "#7b8794")
     for index, (comparison, gz, interval) in enumerate(shown):
         _effect_size(
             sheet, axis, 42 + EFFECT_HEIGHT * index, comparison.outcome.title, gz, interval
         )
     if shown:
         first, second = (mode_title(mode) for mode in (shown[0][0].first, shown[0][0].second))
-        sheet.text(axis.at(0) - 8, 14, f"← higher with {first}", 10, FAINT, "end")
-        sheet.text(axis.at(0) + 8, 14, f"higher with {second} →", 10, FAINT)
+        sheet.text(axis.at(0) - 8, 14, f"← higher with {first}", 10, svg.FAINT, "end")
+        sheet.text(axis.at(0) + 8, 14, f"higher with {second} →", 10, svg.FAINT)
     sheet.text(
         (EFFECTS_LEFT + EFFECTS_RIGHT) / 2,
         height - 3,
         "Hedges' g_z with 95 % interval",
         10,
-        FAINT,
+        svg.FAINT,
         "middle",
     )
     return sheet.svg()
 
 
 def _effect_size(
-    sheet: Sheet, axis: Axis, y: float, title: str, gz: float, interval: tuple[float, float]
+    sheet: svg.Sheet, axis: svg.Axis, y: float, title: str, gz: float, interval: tuple[float, float]
 ) -> None:
     low, high = interval
-    sheet.text(EFFECTS_LEFT - 14, y + 4, title, 11, INK, "end")
+    sheet.text(EFFECTS_LEFT - 14, y + 4, title, 11, svg.INK, "end")
     ends = [max(low, axis.low), min(high, axis.high)]
-    sheet.line(axis.at(ends[0]), y, axis.at(ends[1]), y, INK, 2)
+    sheet.line(axis.at(ends[0]), y, axis.at(ends[1]), y, svg.INK, 2)
     if low < axis.low:
-        sheet.text(axis.at(axis.low) - 3, y + 4, "◂", 12, INK, "middle")
+        sheet.text(axis.at(axis.low) - 3, y + 4, "◂", 12, svg.INK, "middle")
     if high > axis.high:
-        sheet.text(axis.at(axis.high) + 3, y + 4, "▸", 12, INK, "middle")
+        sheet.text(axis.at(axis.high) + 3, y + 4, "▸", 12, svg.INK, "middle")
     if axis.low <= gz <= axis.high:
-        sheet.dot(axis.at(gz), y, 5, INK)
+        sheet.dot(axis.at(gz), y, 5, svg.INK)
     words = f"{fixed(gz, 2)} [{fixed(low, 2)}, {fixed(high, 2)}]"
-    sheet.text(EFFECTS_RIGHT + 14, y + 4, words, 10, FAINT)
+    sheet.text(EFFECTS_RIGHT + 14, y + 4, words, 10, svg.FAINT)

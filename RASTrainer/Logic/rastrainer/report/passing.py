@@ -10,16 +10,8 @@ import numpy as np
 
 from rastrainer.number_text import counted, percent
 from rastrainer.protocol import RegistrationMethod
+from rastrainer.report import page, svg
 from rastrainer.report.comparisons import SCORE, compared_method
-from rastrainer.report.elements import (
-    bullets,
-    figure,
-    heading,
-    mode_color,
-    paragraph,
-    section,
-    table,
-)
 from rastrainer.report.learning import learning_curves
 from rastrainer.statistics.competence import (
     FALSE_DISCOVERY,
@@ -61,12 +53,12 @@ def started_trials(data: StudyData) -> str:
     scored = [stored for stored in data.aborted if not stored.record.is_trial_run]
     runs = len(data.aborted) - len(scored)
     total = len(data.trials) + len(scored)
-    parts = [paragraph(f"{len(data.trials)} of {total} started trials were finished.")]
+    parts = [page.paragraph(f"{len(data.trials)} of {total} started trials were finished.")]
     if scored:
-        parts.append(table([STARTED_HEADER], _started_rows(data, scored)))
+        parts.append(page.table([STARTED_HEADER], _started_rows(data, scored)))
         failed = sum(stored.record.counts_as_failed for stored in scored)
         parts.append(
-            paragraph(
+            page.paragraph(
                 "Tasks of trainees who aborted none are left out of the table. An aborted trial "
                 f"with a touch ({failed} of {len(scored)}) counts as not passed in the pass mark's "
                 "LC-CUSUM; it has no score and no time for anything else here, so that what "
@@ -76,24 +68,24 @@ def started_trials(data: StudyData) -> str:
         )
     if runs:
         parts.append(
-            paragraph(
+            page.paragraph(
                 f"{counted(runs, 'trial run')} {'was' if runs == 1 else 'were'} ended without "
                 "being registered, as is usual; none counts."
             )
         )
-    parts += [paragraph(sentence, "warning") for sentence in _missing(data)]
+    parts += [page.paragraph(sentence, "warning") for sentence in _missing(data)]
     if repeats := _repeats(scored):
-        parts += [heading("Steps of the protocol that were repeated"), bullets(repeats)]
+        parts += [page.heading("Steps of the protocol that were repeated"), page.bullets(repeats)]
     silent = sum(not stored.repeat_reason for stored in scored)
     if data.protocol is not None and silent:
         parts.append(
-            paragraph(
+            page.paragraph(
                 f"For {counted(silent, 'aborted trial')} no reason of a repeat is stored: the "
                 "step was not repeated, was skipped, or its repeat had arrived before.",
                 "small",
             )
         )
-    return section("Started trials", *parts)
+    return page.section("Started trials", *parts)
 
 
 def _missing(data: StudyData) -> list[str]:
@@ -164,23 +156,23 @@ def passing(data: StudyData) -> str:
         return ""
     mark = pass_mark_of(data.protocol, compared_method(data))
     if mark is None:
-        return section("Pass mark", paragraph(_no_mark(data), "warning"))
+        return page.section("Pass mark", page.paragraph(_no_mark(data), "warning"))
     found = {mode: _failures(data, mode, mark) for mode in data.modes}
     found = {mode: failures for mode, failures in found.items() if failures}
     competence = {
         mode: {trainee: competence_of(own) for trainee, own in failures.items()}
         for mode, failures in found.items()
     }
-    return section(
+    return page.section(
         "Pass mark",
-        table(
+        page.table(
             [HEADER], [_row(data, mode, found[mode], competence[mode]) for mode in found], "wide"
         ),
-        figure(
+        page.figure(
             [_chart(data, mode, charts) for mode, charts in competence.items()],
             "LC-CUSUM of every trainee; thick: the limit at which competence is shown.",
         ),
-        paragraph(_words(data, mark), "small"),
+        page.paragraph(_words(data, mark), "small"),
     )
 
 
@@ -240,7 +232,7 @@ def _chart(data: StudyData, mode: str, charts: dict[str, LcCusum]) -> str:
     last = max(len(chart.scores) for chart in charts.values())
     return learning_curves(
         f"{short_mode_title(mode)}: LC-CUSUM",
-        mode_color(mode, data.modes.index(mode)),
+        svg.mode_color(mode, data.modes.index(mode)),
         points,
         "trial",
         [(1.0, limit), (float(last), limit)],

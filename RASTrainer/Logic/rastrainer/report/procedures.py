@@ -10,17 +10,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer.number_text import counted, fixed, percent
-from rastrainer.report.elements import (
-    INK,
-    SCATTER_LEFT,
-    bullets,
-    figure,
-    heading,
-    paragraph,
-    scatter_sheet,
-    section,
-    table,
-)
+from rastrainer.report import page, svg
 from rastrainer.statistics.intervals import Estimate, mean
 from rastrainer.study.study_data import StudyData, TrialRow
 from rastrainer.trial.procedure_outcome import (
@@ -28,6 +18,7 @@ from rastrainer.trial.procedure_outcome import (
     ENTRY_LIMIT_MM,
     PLUNGE_LIMIT_MM,
     TARGET_LIMIT_MM,
+    ProcedureScore,
 )
 
 KINDS = {
@@ -37,9 +28,9 @@ KINDS = {
 }
 """Title and color of each kind."""
 PUBLISHED = (
-    ("phantoms: RONNA G3, ROSA, Leksell", "0.43, 0.53, 0.72", "10.3389/fnbot.2022.762317"),
-    ("patients, DBS", "1.91", "10.1093/neuros/nyaa428"),
-    ("patients, SEEG", "2.34", "10.1093/neuros/nyaa428"),
+    ("phantoms: RONNA G3, ROSA, Leksell", "0.43, 0.53, 0.72", "doi:10.3389/fnbot.2022.762317"),
+    ("patients, DBS", "1.91", "doi:10.1093/neuros/nyaa428"),
+    ("patients, SEEG", "2.34", "doi:10.1093/neuros/nyaa428"),
 )
 HEADER = (
     *("Kind", "n", "lines (by robot)", "trainees", "target, RMS (mm)", "by registration (mm)"),
@@ -81,58 +72,48 @@ class _Group:
     lines: tuple[Mapping[str, Any], ...]
 
     @classmethod
-    def of(cls, trials: Sequence[TrialRow]) -> _Group:
-        """Return the group of trials that all have a procedure."""
-        lines = [
-            line for trial in trials if trial.procedure for line in trial.procedure.trajectories
+    def of(cls, trials: Sequence[TrialRow], name: str = "", kind: str = "") -> _Group:
+        """Return the group of the procedures among trials: all, a trainee's, or of one kind."""
+        done = [
+            (trial, trial.procedure)
+            for trial in trials
+            if trial.procedure
+            and name in ("", trial.trainee)
+            and kind in ("", trial.procedure.kind)
         ]
-        return cls(tuple(trials), tuple(lines))
+        lines = tuple(line for _trial, found in done for line in found.trajectories)
+        return cls(tuple(trial for trial, _found in done), lines)
 
     def lengths(self, error: str, part: str = "mm") -> np.ndarray:
         """Return lengths of an error, or of one of its parts, one per trajectory, mm."""
         return np.array([line[error][part] for line in self.lines])
 
-    def rms(self, error: str, part: str = "mm") -> float:
-        """Return the root mean square of an error, or of one of its parts, mm."""
-        return _rms(self.lengths(error, part))
+    def rms_text(self, error: str, part: str = "mm") -> str:
+        return _rms_text(self.lengths(error, part)) if self.lines else "–"
 
     @property
-    def angle_deg(self) -> float:
-        """Root mean square of the angular deviations."""
-        return _rms(np.array([line["angularDeviationDeg"] for line in self.lines]))
-
-    @property
-    def scores(self) -> list[float]:
-        return [trial.procedure.score.score for trial in self.trials if trial.procedure]
+    def scores(self) -> list[ProcedureScore]:
+        return [trial.procedure.score for trial in self.trials if trial.procedure]
 
     @property
     def acceptable(self) -> int:
         """How many are acceptable."""
-        return sum(trial.procedure.score.acceptable for trial in self.trials if trial.procedure)
+        return sum(score.acceptable for score in self.scores)
 
     @property
-    def hits(self) -> int:
-        """How many times an instrument hit a no-go structure."""
-        return sum(distance <= 0 for distance in self._kept_mm)
-
-    @property
-    def least_kept_mm(self) -> float | None:
-        """Least distance from a no-go structure; None if there was no such structure."""
-        return min(self._kept_mm, default=None)
-
-    @property
-    def _kept_mm(self) -> list[float]:
+    def kept_mm(self) -> list[float]:
+        """Least distances of instruments from no-go structures; 0 or less is a hit."""
         return [distance for line in self.lines for distance in line["keptMm"].values()]
 
     @property
-    def plunge_mm(self) -> float:
-        """The deepest that a drill was past an inner table."""
-        return max((line["plungeMm"] or 0.0 for line in self.lines), default=0.0)
+    def hits(self) -> int:
+        return sum(distance <= 0 for distance in self.kept_mm)
 
     @property
-    def trainees(self) -> tuple[str, ...]:
-        """Who carried them out, sorted."""
-        return tuple(sorted({trial.trainee for trial in self.trials}))
+    def trainees(self) -> dict[str, _Group]:
+        """The procedures of each trainee, sorted by the pseudonym."""
+        names = sorted({trial.trainee for trial in self.trials})
+        return {name: _Group.of(self.trials, name=name) for name in names}
 
     def aligned_by(self, *, robot: bool) -> _Group:
         """Return the same with only the lines on which the robot, or a hand, aligned the guide."""
@@ -140,26 +121,13 @@ class _Group:
             self, lines=tuple(line for line in self.lines if line["selfAligned"] is robot)
         )
 
-    @property
-    def by_trainee(self) -> list[_Group]:
-        """The procedures of each trainee, in the order of `trainees`."""
-        return [
-            _Group.of([trial for trial in self.trials if trial.trainee == name])
-            for name in self.trainees
-        ]
-
 
 def procedures(data: StudyData) -> str:
     """Return the section; "" without procedures that were scored."""
-    done = [trial for trial in data.trials if trial.procedure is not None]
-    if not done:
+    everything = _Group.of(data.trials)
+    if not everything.trials:
         return ""
-    everything = _Group.of(done)
-    kinds = {
-        kind: _Group.of([t for t in done if t.procedure is not None and t.procedure.kind == kind])
-        for kind in KINDS
-        if any(t.procedure is not None and t.procedure.kind == kind for t in done)
-    }
+    kinds = {kind: group for kind in KINDS if (group := _Group.of(data.trials, kind=kind)).trials}
     rows = [_row(KINDS[kind][0], group) for kind, group in kinds.items()]
     if len(rows) > 1:
         rows.append(_row("all", everything))
@@ -170,21 +138,18 @@ def procedures(data: StudyData) -> str:
     )
     by_hand = {kind: group.aligned_by(robot=False) for kind, group in kinds.items()}
     charted = {kind: group for kind, group in by_hand.items() if group.lines}
-    return section(
+    return page.section(
         "Procedures: from the registration to the target",
-        bullets(_sentences(everything, len(data.trials))),
-        table([list(HEADER)], rows, "wide"),
-        paragraph(_explanation(), "small"),
-        figure([split_chart(charted)], caption) if charted else "",
-        table([list(TIME_HEADER)], [_time_row(KINDS[kind][0], kinds[kind]) for kind in kinds]),
-        heading("Trainees"),
-        table([list(TRAINEE_HEADER)], _trainee_rows(everything)),
-        heading("Published figures, for orientation"),
-        table(
-            [["what", "target point error (mm)", "source"]],
-            [[what, errors, f"doi:{doi}"] for what, errors, doi in PUBLISHED],
-        ),
-        paragraph(
+        page.bullets(_sentences(everything, len(data.trials))),
+        page.table([list(HEADER)], rows, "wide"),
+        page.paragraph(EXPLANATION, "small"),
+        page.figure([split_chart(charted)], caption) if charted else "",
+        page.table([list(TIME_HEADER)], [_time_row(KINDS[kind][0], kinds[kind]) for kind in kinds]),
+        page.heading("Trainees"),
+        page.table([list(TRAINEE_HEADER)], _trainee_rows(everything)),
+        page.heading("Published figures, for orientation"),
+        page.table([["what", "target point error (mm)", "source"]], PUBLISHED),
+        page.paragraph(
             "They are no pass marks: patients, images and definitions differ between studies, and "
             "a simulator has no brain shift and no resistance of tissue.",
             "small",
@@ -193,18 +158,18 @@ def procedures(data: StudyData) -> str:
 
 
 def _sentences(group: _Group, trials: int) -> list[str]:
-    registration = group.rms("targetPointError", "byRegistrationMm")
+    hits = f"{counted(group.hits, 'time')} an" if group.hits else "no"
     return [
         f"{len(group.trials)} of {counted(trials, 'trial')} continued with a procedure: "
         f"{counted(len(group.lines), 'line')} in all, by "
         f"{counted(len(group.trainees), 'trainee')}. The target point error was "
-        f"{fixed(group.rms('targetPointError'), 2)} mm (RMS over all lines); the part that the "
-        f"registration caused was {fixed(registration, 2)} mm.",
+        f"{group.rms_text('targetPointError')} mm (RMS over all lines); the part that the "
+        f"registration caused was {group.rms_text('targetPointError', 'byRegistrationMm')} mm.",
         *_after_registration(group),
         *_over_trainees(group),
         f"{group.acceptable} of {len(group.trials)} procedures were acceptable "
         f"({percent(group.acceptable / len(group.trials))}); "
-        f"{_hits(group.hits)}.",
+        f"{hits} instrument hit a no-go structure.",
     ]
 
 
@@ -220,21 +185,11 @@ def _after_registration(group: _Group) -> list[str]:
         ),
     )
     return [
-        f"{_lines(group, robot=robot)} aligned {words} {_rms_text(group, robot=robot)} {rest}"
+        f"{counted(len(own.lines), 'line')} {'was' if len(own.lines) == 1 else 'were'} aligned "
+        f"{words} {own.rms_text('targetPointError', 'byHandMm')} {rest}"
         for robot, words, rest in said
-        if group.aligned_by(robot=robot).lines
+        if (own := group.aligned_by(robot=robot)).lines
     ]
-
-
-def _rms_text(group: _Group, *, robot: bool) -> str:
-    """Return what the registration did not cause of the target point error; "–" without lines."""
-    own = group.aligned_by(robot=robot)
-    return fixed(own.rms("targetPointError", "byHandMm"), 2) if own.lines else "–"
-
-
-def _lines(group: _Group, *, robot: bool) -> str:
-    count = len(group.aligned_by(robot=robot).lines)
-    return f"{counted(count, 'line')} {'was' if count == 1 else 'were'}"
 
 
 def _lines_cell(group: _Group) -> str:
@@ -242,25 +197,19 @@ def _lines_cell(group: _Group) -> str:
     return f"{len(group.lines)} ({by_robot})" if by_robot else str(len(group.lines))
 
 
-def _hits(count: int) -> str:
-    if count == 0:
-        return "no instrument hit a no-go structure"
-    return f"{counted(count, 'time')} an instrument hit a no-go structure"
-
-
 def _over_trainees(group: _Group) -> list[str]:
     """Return the errors on lines aligned by hand, over the trainees; nothing for too few.
 
     Lines of a trainee are not independent.
     """
-    trainees = [one for own in group.by_trainee if (one := own.aligned_by(robot=False)).lines]
+    by_hand = [own.aligned_by(robot=False) for own in group.trainees.values()]
+    trainees = [own for own in by_hand if own.lines]
     if len(trainees) < LEAST_TRAINEES:
         return []
-    own = [
-        [one.rms("targetPointError", part) for one in trainees]
+    whole, registration, hand = (
+        np.array([_rms(one.lengths("targetPointError", part)) for one in trainees])
         for part in ("mm", "byRegistrationMm", "byHandMm")
-    ]
-    whole, registration, hand = map(np.array, own)
+    )
     spread, difference = mean(whole), mean(registration - hand)
     verdict = "it cannot be said which of both caused more"
     if difference.interval[0] > 0:
@@ -280,19 +229,29 @@ def _on_average(found: Estimate) -> str:
 
 
 def _row(title: str, group: _Group) -> list[str]:
+    angles = np.array([line["angularDeviationDeg"] for line in group.lines])
+    plunge_mm = max((line["plungeMm"] or 0.0 for line in group.lines), default=0.0)
+    kept = f"{fixed(min(group.kept_mm), 1)} ({group.hits})" if group.kept_mm else "–"
     return [
         title,
         str(len(group.trials)),
         _lines_cell(group),
         str(len(group.trainees)),
-        fixed(group.rms("targetPointError"), 2),
-        fixed(group.rms("targetPointError", "byRegistrationMm"), 2),
-        *(_rms_text(group, robot=robot) for robot in (False, True)),
-        fixed(group.rms("entryPointError"), 2),
-        fixed(group.angle_deg, 2),
-        fixed(group.plunge_mm, 1),
-        "–" if group.least_kept_mm is None else f"{fixed(group.least_kept_mm, 1)} ({group.hits})",
+        *_target_errors(group),
+        group.rms_text("entryPointError"),
+        _rms_text(angles),
+        fixed(plunge_mm, 1),
+        kept,
         f"{group.acceptable} of {len(group.trials)}",
+    ]
+
+
+def _target_errors(group: _Group) -> list[str]:
+    """Return the RMS of target point errors: whole, by registration, by hand, by robot and hand."""
+    own = (group.aligned_by(robot=robot) for robot in (False, True))
+    return [
+        *(group.rms_text("targetPointError", part) for part in ("mm", "byRegistrationMm")),
+        *(each.rms_text("targetPointError", "byHandMm") for each in own),
     ]
 
 
@@ -315,32 +274,25 @@ def _time_row(title: str, group: _Group) -> list[str]:
 def _trainee_rows(everything: _Group) -> list[list[str]]:
     return [
         [
-            name,
-            str(len(group.trials)),
-            _lines_cell(group),
-            fixed(group.rms("targetPointError"), 2),
-            fixed(group.rms("targetPointError", "byRegistrationMm"), 2),
-            *(_rms_text(group, robot=robot) for robot in (False, True)),
-            fixed(float(np.mean(group.scores)), 1),
+            *(name, str(len(group.trials)), _lines_cell(group), *_target_errors(group)),
+            fixed(float(np.mean([score.score for score in group.scores])), 1),
         ]
-        for name, group in zip(everything.trainees, everything.by_trainee, strict=True)
+        for name, group in everything.trainees.items()
     ]
 
 
-def _explanation() -> str:
-    return (
-        "n counts procedures. RMS are over all lines, which are not independent: those of one "
-        "procedure share a registration. The trainee saw the plan where their own registration put "
-        "it; the error of each target is the sum of two vectors, from the plan to where it was "
-        "shown, and from there to the instrument's tip: the second is the hand's, or the robot's "
-        "where it brought the guide onto the line. Their lengths do not add up: the two parts "
-        "may cancel out. A procedure is acceptable where each instrument meets the skull, no entry "
-        f"is off by more than {ENTRY_LIMIT_MM:g} mm, no target by more than {TARGET_LIMIT_MM:g} mm "
-        f"and no line by more than {ANGLE_LIMIT_DEG:g}°, no drill goes more than "
-        f"{PLUNGE_LIMIT_MM:g} mm past the inner table, and nothing is hit. The same angular "
-        "deviation misses a deeper target by more. Geometry is rigid, and depths of drilling are "
-        "for training."
-    )
+EXPLANATION = (
+    "n counts procedures. RMS are over all lines, which are not independent: those of one "
+    "procedure share a registration. The trainee saw the plan where their own registration put it; "
+    "the error of each target is the sum of two vectors, from the plan to where it was shown, and "
+    "from there to the instrument's tip: the second is the hand's, or the robot's where it brought "
+    "the guide onto the line. Their lengths do not add up: the two parts may cancel out. A "
+    "procedure is acceptable where each instrument meets the skull, no entry is off by more than "
+    f"{ENTRY_LIMIT_MM:g} mm, no target by more than {TARGET_LIMIT_MM:g} mm and no line by more "
+    f"than {ANGLE_LIMIT_DEG:g}°, no drill goes more than {PLUNGE_LIMIT_MM:g} mm past the inner "
+    "table, and nothing is hit. The same angular deviation misses a deeper target by more. "
+    "Geometry is rigid, and depths of drilling are for training."
+)
 
 
 def split_chart(kinds: Mapping[str, _Group]) -> str:
@@ -353,7 +305,7 @@ def split_chart(kinds: Mapping[str, _Group]) -> str:
         for kind, group in kinds.items()
     }
     largest = max(float(values.max()) for both in points.values() for values in both)
-    sheet, along, up = scatter_sheet(
+    sheet, along, up = svg.scatter_sheet(
         "What caused the target point error (mm)",
         "by the hand (mm)",
         "by the registration (mm)",
@@ -365,15 +317,19 @@ def split_chart(kinds: Mapping[str, _Group]) -> str:
     for kind, (by_registration, by_hand) in points.items():
         for x, y in zip(by_hand, by_registration, strict=True):
             sheet.dot(along.at(float(x)), up.at(float(y)), radius, KINDS[kind][1], 0.75)
-    x = float(SCATTER_LEFT)
+    x = float(svg.SCATTER_LEFT)
     for kind in points:
         name, color = KINDS[kind]
         sheet.dot(x + 5, 34, 3.6, color, 0.85)
         sheet.text(x + 14, 38, name, 11)
         x += 36 + 6 * len(name)
-    sheet.line(x, 34, x + 22, 34, INK, 1.3, "5 4")
+    sheet.line(x, 34, x + 22, 34, svg.INK, 1.3, "5 4")
     sheet.text(x + 28, 38, "both parts equal", 11)
     return sheet.svg()
+
+
+def _rms_text(values: np.ndarray) -> str:
+    return fixed(_rms(values), 2)
 
 
 def _rms(values: np.ndarray) -> float:

@@ -9,15 +9,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import counted, fixed, p_phrase, significant
-from rastrainer.report.elements import (
-    Cell,
-    Line,
-    bullets,
-    heading,
-    paragraph,
-    section,
-    table,
-)
+from rastrainer.report import page
 from rastrainer.statistics.intervals import Correlation, correlation
 from rastrainer.study.outcomes import mode_title, task_title
 from rastrainer.study.study_data import StudyData, TrialRow
@@ -82,14 +74,16 @@ def published_tables(data: StudyData) -> str:
             continue
         counts = f"{counted(len(scores.subjects), 'trainee')}, "
         counts += counted(len(scores.trials), "trial")
-        parts.append(heading(f"Table {ROMAN[number % 4]}. {mode_title(mode)}: {counts}"))
+        parts.append(page.heading(f"Table {ROMAN[number % 4]}. {mode_title(mode)}: {counts}"))
         few = len(scores.subjects) <= MAX_COLUMNS
         parts.append(_whole(data, mode, scores) if few else _by_task(data, mode, scores))
-        parts.append(paragraph(_overall(mode, scores) + _complexity(data, mode, scores), "small"))
+        parts.append(
+            page.paragraph(_overall(mode, scores) + _complexity(data, mode, scores), "small")
+        )
     if not parts:
         return ""
-    warning = paragraph(f"How to read CTPS: {CTPS_WARNING}", "warning")
-    return section("Performance as the paper tabulates it", *parts, warning)
+    warning = page.paragraph(f"How to read CTPS: {CTPS_WARNING}", "warning")
+    return page.section("Performance as the paper tabulates it", *parts, warning)
 
 
 def performance_color(value: float, values: Iterable[float]) -> str:
@@ -105,18 +99,19 @@ def performance_color(value: float, values: Iterable[float]) -> str:
 
 def _whole(data: StudyData, mode: str, scores: CohortScores) -> str:
     subjects = list(scores.subjects)
-    headers: list[Line] = [
+    titles = [f"Subject {name}" if name.isdigit() else name for name in subjects]
+    headers: list[page.Line] = [
         [
-            Cell("", kind="group"),
-            *(Cell(_subject(name), 2, kind="group") for name in subjects),
-            Cell("", kind="group"),
+            page.Cell("", kind="group"),
+            *(page.Cell(title, 2, kind="group") for title in titles),
+            page.Cell("", kind="group"),
         ],
         ["Task", *("CT (s)", "RMSE (mm)") * len(subjects), "Task Perf."],
     ]
     trials = {(t.task, t.trainee): t.values for t in data.of_mode(mode) if "rmse_mm" in t.values}
-    rows: list[Line] = []
+    rows: list[page.Line] = []
     for task in (task for task in data.tasks if task in scores.tasks):
-        line: Line = [task_title(task)]
+        line: page.Line = [task_title(task)]
         for subject in subjects:
             values = trials.get((task, subject))
             line += (
@@ -125,18 +120,18 @@ def _whole(data: StudyData, mode: str, scores: CohortScores) -> str:
                 else [f"{values['completion_time_s']:.2f}", f"{values['rmse_mm']:.2f}"]
             )
         rows.append([*line, _performance(scores.tasks[task], scores.tasks.values())])
-    last: Line = [Cell("User Perf.", kind="total")]
+    last: page.Line = [page.Cell("User Perf.", kind="total")]
     for subject in subjects:
         color = performance_color(scores.subjects[subject], scores.subjects.values())
-        last.append(Cell(fixed(scores.subjects[subject], 2), 2, color, "total"))
-    return table(
-        headers, [*rows, [*last, Cell(fixed(scores.overall, 2), kind="total")]], "wide tasks"
+        last.append(page.Cell(fixed(scores.subjects[subject], 2), 2, color, "total"))
+    return page.table(
+        headers, [*rows, [*last, page.Cell(fixed(scores.overall, 2), kind="total")]], "wide tasks"
     )
 
 
 def _by_task(data: StudyData, mode: str, scores: CohortScores) -> str:
     """Return the table of a cohort too large for a column per subject."""
-    rows: list[Line] = []
+    rows: list[page.Line] = []
     for task in (task for task in data.tasks if task in scores.tasks):
         own = [t.values for t in data.of_mode(mode) if t.task == task and "rmse_mm" in t.values]
         cells = [str(len(own))]
@@ -150,17 +145,13 @@ def _by_task(data: StudyData, mode: str, scores: CohortScores) -> str:
     low, middle, high = np.quantile(list(scores.subjects.values()), [0, 0.5, 1])
     span = f"{fixed(low, 1)} to {fixed(high, 1)}, median {fixed(middle, 1)}"
     users = f"{len(scores.subjects)} users: {span}"
-    total = [Cell("User Perf.", kind="total"), Cell(users, 3, kind="total")]
-    rows.append([*total, Cell(fixed(scores.overall, 2), kind="total")])
-    return table([["Task", "trials", "CT (s)", "RMSE (mm)", "Task Perf."]], rows)
+    total = [page.Cell("User Perf.", kind="total"), page.Cell(users, 3, kind="total")]
+    rows.append([*total, page.Cell(fixed(scores.overall, 2), kind="total")])
+    return page.table([["Task", "trials", "CT (s)", "RMSE (mm)", "Task Perf."]], rows)
 
 
-def _performance(value: float, among: Iterable[float]) -> Cell:
-    return Cell(fixed(value, 2), color=performance_color(value, among), kind="marginal")
-
-
-def _subject(name: str) -> str:
-    return f"Subject {name}" if name.isdigit() else name
+def _performance(value: float, among: Iterable[float]) -> page.Cell:
+    return page.Cell(fixed(value, 2), color=performance_color(value, among), kind="marginal")
 
 
 def _overall(mode: str, scores: CohortScores) -> str:
@@ -223,15 +214,18 @@ def paper_notes(data: StudyData) -> str:
         [printed.what, _count(data, printed), printed.printed, _ours(data, printed)]
         for printed in notes.printed
     ]
-    claims = [[Cell(claim, kind="text"), Cell(words, kind="text")] for claim, words in notes.claims]
-    return section(
+    claims = [[page.text(claim), page.text(words)] for claim, words in notes.claims]
+    return page.section(
         "The paper's numbers, checked",
-        paragraph(f"Source: {notes.source}."),
-        table([["what", "n", "printed", "from the trials"]], rows),
-        heading("What does not fit"),
-        bullets(notes.inconsistencies),
-        heading("The claims"),
-        table([[Cell("The paper says", kind="text"), Cell("The trials say", kind="text")]], claims),
+        page.paragraph(f"Source: {notes.source}."),
+        page.table([["what", "n", "printed", "from the trials"]], rows),
+        page.heading("What does not fit"),
+        page.bullets(notes.inconsistencies),
+        page.heading("The claims"),
+        page.table(
+            [[page.text("The paper says"), page.text("The trials say")]],
+            claims,
+        ),
     )
 
 

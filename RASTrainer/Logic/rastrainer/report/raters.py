@@ -9,7 +9,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import counted, fixed
-from rastrainer.report.elements import Line, heading, paragraph, section, table
+from rastrainer.report import page
 from rastrainer.statistics.agreement import (
     FEWEST,
     Agreement,
@@ -23,9 +23,9 @@ from rastrainer.study.study_data import StudyData
 
 _WORDS = ((0.5, "poor"), (0.75, "moderate"), (0.9, "good"), (float("inf"), "excellent"))
 """Below which ICC reliability is called so (Koo and Li 2016)."""
-TOTALS: Line = ["Form", "n", "Raters", "ICC(2,1) [95 %]", "ICC(2,k) [95 %]", "Mean totals"]
-DOMAINS: Line = ["Domain", "n", "Raters", "κ [95 %]", "Same mark", "Mean marks"]
-SCORES: Line = ["Rating", "n", "Pearson r [95 %]", "Spearman ρ"]
+TOTALS: page.Line = ["Form", "n", "Raters", "ICC(2,1) [95 %]", "ICC(2,k) [95 %]", "Mean totals"]
+DOMAINS: page.Line = ["Domain", "n", "Raters", "κ [95 %]", "Same mark", "Mean marks"]
+SCORES: page.Line = ["Rating", "n", "Pearson r [95 %]", "Spearman ρ"]
 
 Marks = Mapping[str, Mapping[str, Rating]]
 """Ratings on one form: rater → trial → rating."""
@@ -36,7 +36,9 @@ def raters(data: StudyData) -> str:
     parts = [_of_form(form, marks, data) for form in FORMS.values() if (marks := _of(data, form))]
     if not parts:
         return ""
-    return section("Raters", paragraph(_INTRODUCTION), *parts, paragraph(_NOTE, "small"))
+    return page.section(
+        "Raters", page.paragraph(_INTRODUCTION), *parts, page.paragraph(_NOTE, "small")
+    )
 
 
 _INTRODUCTION = (
@@ -68,7 +70,7 @@ def _of_form(form: RatingForm, marks: Marks, data: StudyData) -> str:
     left_out = "; ".join(f"{title.lower()} ({why})" for title, why in form.left_out.items())
     range_ = f"{form.lowest_total} to {form.highest_total}"
     scope = f"Totals of {counted(len(form.domains), 'domain')}, {range_}. Left out: {left_out}."
-    parts = [heading(form.title), paragraph(scope)]
+    parts = [page.heading(form.title), page.paragraph(scope)]
     if len(names) < 2 or len(shared) < FEWEST:
         replays = counted(len(shared), "replay")
         few = (
@@ -76,7 +78,7 @@ def _of_form(form: RatingForm, marks: Marks, data: StudyData) -> str:
             f"{' in common' if len(names) > 1 else ''}: agreement needs two raters and {FEWEST} "
             "replays that both have rated."
         )
-        parts.append(paragraph(few, "warning"))
+        parts.append(page.paragraph(few, "warning"))
     else:
         parts += _agreement(form, marks, names, shared)
     return "".join([*parts, *_compared_with_score(form, marks, data)])
@@ -91,23 +93,23 @@ def _agreement(
     try:
         found = intraclass_correlations(totals)
     except InputError as error:
-        line: Line = [form.title, str(len(shared)), who, "–", "–", means]
-        said = [paragraph(str(error), "warning")]
+        line: page.Line = [form.title, str(len(shared)), who, "–", "–", means]
+        said = [page.paragraph(str(error), "warning")]
     else:
         values = (agreement_text(found.single), agreement_text(found.average))
         line = [form.title, str(len(shared)), who, *values, means]
-        said = [paragraph(_meaning(found))]
+        said = [page.paragraph(_meaning(found))]
     rows = [
         _domain(domain.title, domain.name, marks, pair, shared)
         for domain in form.domains
         for pair in itertools.combinations(names, 2)
     ]
-    return [*said, table([TOTALS], [line]), table([DOMAINS], rows)]
+    return [*said, page.table([TOTALS], [line]), page.table([DOMAINS], rows)]
 
 
 def _domain(
     title: str, domain: str, marks: Marks, pair: tuple[str, str], shared: Sequence[str]
-) -> Line:
+) -> page.Line:
     first, second = (
         np.array([marks[name][trial].marks[domain] for trial in shared]) for name in pair
     )
@@ -168,7 +170,7 @@ def _compared_with_score(form: RatingForm, marks: Marks, data: StudyData) -> lis
             f"Whether the score goes with the {form.title} marks cannot be seen from "
             f"{counted(len(rated), 'scored replay')}: three are needed, and both must vary."
         )
-        return [paragraph(text)]
+        return [page.paragraph(text)]
     rank = float(scipy_module("stats").spearmanr(totals, computed).statistic)
     value = agreement_text(Agreement(found.r, found.interval))
     limits = found.interval
@@ -181,5 +183,5 @@ def _compared_with_score(form: RatingForm, marks: Marks, data: StudyData) -> lis
         else f"A connection of marks and computed score is not shown (r = {fixed(found.r, 2)}, "
         f"n = {found.n}); few replays show only a strong one."
     )
-    line: Line = [f"{form.title}, mean of raters, with the score", str(found.n), value]
-    return [paragraph(text), table([SCORES], [[*line, fixed(rank, 2)]])]
+    line: page.Line = [f"{form.title}, mean of raters, with the score", str(found.n), value]
+    return [page.paragraph(text), page.table([SCORES], [[*line, fixed(rank, 2)]])]

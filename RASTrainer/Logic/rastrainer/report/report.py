@@ -13,9 +13,9 @@ from pathlib import Path
 import rastrainer
 from rastrainer.files.writing import make_folder, write_text
 from rastrainer.number_text import counted
+from rastrainer.report import page
 from rastrainer.report.calibration import calibration
 from rastrainer.report.comparisons import ModeComparison, compare_modes, compared_method
-from rastrainer.report.elements import bullets, paragraph, section
 from rastrainer.report.learning import learning
 from rastrainer.report.method_comparison import method_comparison, shifted_skin
 from rastrainer.report.mode_comparison import distributions, mode_comparison, motion
@@ -47,9 +47,7 @@ def write_report(data: StudyData, folder: Path, made_utc: str | None = None) -> 
     """Write the report of a study into a folder.
 
     Args:
-        data: From `read_study_data`.
         folder: Created if missing; files of an earlier report are replaced.
-        made_utc: Time stated in the report; now by default.
     """
     page_text = report_html(data, made_utc)
     make_folder(folder)
@@ -110,21 +108,25 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
 def _summary(comparisons: list[ModeComparison], gap: str, *left_out: str) -> str:
     sentences = findings(comparisons)
     n = max((len(comparison.trainees) for comparison in comparisons), default=0)
-    parts = [bullets(sentences)] if sentences else []
+    parts = [page.bullets(sentences)] if sentences else []
     if 0 < n < FEW_SUBJECTS:
         few = (
             f"Only {counted(n, 'trainee')} did both modes. What is not shown here may still be "
             "there; see “What cannot be concluded”."
         )
-        parts.append(paragraph(few, "warning"))
+        parts.append(page.paragraph(few, "warning"))
     if sentences and (caveat := order_caveat(comparisons)):
-        parts.append(paragraph(caveat, "warning"))
+        parts.append(page.paragraph(caveat, "warning"))
     if not parts:
-        parts = [paragraph("No trainee did two modes; the study is described, nothing is tested.")]
-    parts += [paragraph(note, "warning") for note in left_out if note]
+        parts = [
+            page.paragraph("No trainee did two modes; the study is described, nothing is tested.")
+        ]
+    parts += [page.paragraph(note, "warning") for note in left_out if note]
     if gap:
-        parts.insert(0, paragraph(f"{gap} What follows is about these trials alone.", "warning"))
-    return section("In short", *parts)
+        parts.insert(
+            0, page.paragraph(f"{gap} What follows is about these trials alone.", "warning")
+        )
+    return page.section("In short", *parts)
 
 
 def with_one_method(data: StudyData) -> StudyData:

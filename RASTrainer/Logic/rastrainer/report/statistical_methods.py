@@ -10,8 +10,8 @@ import numpy as np
 import rastrainer
 from rastrainer.number_text import counted, p_text, percent
 from rastrainer.protocol import RegistrationMethod
+from rastrainer.report import page
 from rastrainer.report.comparisons import ModeComparison, compared_method
-from rastrainer.report.elements import bullets, heading, paragraph, section, table
 from rastrainer.statistics.intervals import (
     ALPHA,
     TARGET_POWER,
@@ -70,18 +70,18 @@ def limits(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
         "CTPS depends on the cohort and rises with slower completion; differences in CTPS are not "
         "differences in skill."
     )
-    parts = [bullets(sentences)]
+    parts = [page.bullets(sentences)]
     if data.skipped:
         parts += [
-            heading("Steps of the protocol that were left out"),
-            bullets([f"{who}, {step}: {reason}" for who, step, reason in data.skipped]),
+            page.heading("Steps of the protocol that were left out"),
+            page.bullets([f"{who}, {step}: {reason}" for who, step, reason in data.skipped]),
         ]
     if data.objections:
         parts += [
-            heading("Trials that did not count, and why"),
-            bullets([f"{who}, {what}: {reasons}" for who, what, reasons in data.objections]),
+            page.heading("Trials that did not count, and why"),
+            page.bullets([f"{who}, {what}: {reasons}" for who, what, reasons in data.objections]),
         ]
-    return section("What cannot be concluded", *parts)
+    return page.section("What cannot be concluded", *parts)
 
 
 def what_cannot_be_concluded(
@@ -90,7 +90,6 @@ def what_cannot_be_concluded(
     """Return what a paired comparison of n subjects cannot show, in sentences.
 
     Args:
-        n: Subjects who did both conditions.
         comparison: Of theirs; None where none could be computed.
         order_known: Whether it is known which condition each subject did first.
     """
@@ -220,15 +219,15 @@ def methods(data: StudyData) -> str:
             f"{platform.python_version()}, {np.__version__}, {scipy_module('version').version}",
         ],
     ]
-    return section(
+    return page.section(
         "Methods and versions",
-        paragraph(_design(data)),
-        paragraph(_measures(data)),
-        paragraph(_analysis()),
-        heading("References"),
-        bullets(REFERENCES),
-        heading("Versions"),
-        table([["what", "version"]], [*own, *versions]),
+        page.paragraph(_design(data)),
+        page.paragraph(_measures(data)),
+        page.paragraph(ANALYSIS),
+        page.heading("References"),
+        page.bullets(REFERENCES),
+        page.heading("Versions"),
+        page.table([["what", "version"]], [*own, *versions]),
     )
 
 
@@ -311,28 +310,27 @@ def _score(method: str) -> str:
     )
 
 
-def _analysis() -> str:
-    return (
-        "Modes were compared on trainee means over common tasks. Where trainees had different "
-        "orders of the modes, the differences were regressed on the order, so that the effect of "
-        "the period is separated (with two sequences the analysis of a crossover by Hills and "
-        "Armitage), and ranks of later minus earlier were compared between the sequences "
-        "(Wilcoxon's rank sums, exact; Koch 1972); else the paired t-test and the exact "
-        "signed-rank test were used. Carry-over was assumed equal in both sequences. Mean "
-        "differences have 95 % t intervals; Hedges' g_z is corrected for few subjects, and its "
-        "95 % interval, by the noncentral t distribution, is one for the population's effect "
-        "size. The p-values of the t-tests of completion time, RMSE and score were adjusted by "
-        "Holm's method, as were those of Page's tests; all else is descriptive. CTPS was not "
-        "tested: each mode has its own reference. The margin of equivalence is the least at which "
-        "two one-sided tests reject at 5 %. Whether trainees get better was tested one-sided, "
-        "since practice is expected to improve: for all together by Page's test, for each alone by "
-        "a permutation test of the slope over ln(trial), over all orders or, of more than seven "
-        "trials, 9999 random ones. What trials vary by was estimated by a "
-        "regression of logarithms with a level for each trainee in each mode, and from an analysis "
-        "of variance of these levels (Searle, Casella and McCulloch 1992), with intervals for "
-        "differences of mean squares (Ting et al. 1990). Groups were looked for "
-        "by the dip test on the first principal component of the z-scored trainee means. Outliers "
-        "were not removed and missing values not filled in. How often each of these tests errs, "
-        "and what it finds, "
-        "is simulated in the program's docs/error-rates.md."
-    )
+ANALYSIS = (
+    "Modes were compared on trainee means over common tasks. Where trainees had different "
+    "orders of the modes, the differences were regressed on the order, so that the effect of "
+    "the period is separated (with two sequences the analysis of a crossover by Hills and "
+    "Armitage), and ranks of later minus earlier were compared between the sequences "
+    "(Wilcoxon's rank sums, exact; Koch 1972); else the paired t-test and the exact "
+    "signed-rank test were used. Carry-over was assumed equal in both sequences. Mean "
+    "differences have 95 % t intervals; Hedges' g_z is corrected for few subjects, and its "
+    "95 % interval, by the noncentral t distribution, is one for the population's effect "
+    "size. The p-values of the t-tests of completion time, RMSE and score were adjusted by "
+    "Holm's method, as were those of Page's tests; all else is descriptive. CTPS was not "
+    "tested: each mode has its own reference. The margin of equivalence is the least at which "
+    "two one-sided tests reject at 5 %. Whether trainees get better was tested one-sided, "
+    "since practice is expected to improve: for all together by Page's test, for each alone by "
+    "a permutation test of the slope over ln(trial), over all orders or, of more than seven "
+    "trials, 9999 random ones. What trials vary by was estimated by a "
+    "regression of logarithms with a level for each trainee in each mode, and from an analysis "
+    "of variance of these levels (Searle, Casella and McCulloch 1992), with intervals for "
+    "differences of mean squares (Ting et al. 1990). Groups were looked for "
+    "by the dip test on the first principal component of the z-scored trainee means. Outliers "
+    "were not removed and missing values not filled in. How often each of these tests errs, "
+    "and what it finds, "
+    "is simulated in the program's docs/error-rates.md."
+)

@@ -8,15 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from rastrainer.number_text import fixed, p_phrase
-from rastrainer.report.elements import (
-    Cell,
-    Line,
-    bullets,
-    heading,
-    paragraph,
-    section,
-    table,
-)
+from rastrainer.report import page
 from rastrainer.statistics.trainee_clusters import (
     NoClustersError,
     TraineeClusters,
@@ -54,7 +46,7 @@ def questionnaires(data: StudyData) -> str:
         occasion = _occasion(answered.step.name, answered.step.mode)
         for scale, score in answered.scores.items():
             values[answered.step.questionnaire, scale, occasion].append(score)
-    rows: list[Line] = []
+    rows: list[page.Line] = []
     sources = []
     for name, questionnaire in QUESTIONNAIRES.items():
         for scale_of in questionnaire.scales:
@@ -63,10 +55,12 @@ def questionnaires(data: StudyData) -> str:
                     rows.append(_row(scale_of, key[2], scores))
         if any(key[0] == name for key in values):
             sources.append(f"{questionnaire.title}: {questionnaire.source}.")
-    header: list[Line] = [
-        ["Scale", Cell("when", kind="text"), "n", "mean ± SD", "median", "range", "better"]
+    header: list[page.Line] = [
+        ["Scale", page.text("when"), "n", "mean ± SD", "median", "range", "better"]
     ]
-    return section("Questionnaires", table(header, rows), paragraph(" ".join(sources)))
+    return page.section(
+        "Questionnaires", page.table(header, rows), page.paragraph(" ".join(sources))
+    )
 
 
 def _occasion(step: str, mode: str) -> str:
@@ -76,11 +70,11 @@ def _occasion(step: str, mode: str) -> str:
     return f"{when} {mode_title(mode)}"
 
 
-def _row(scale: Scale, when: str, scores: list[float]) -> Line:
+def _row(scale: Scale, when: str, scores: list[float]) -> page.Line:
     spread = f" ± {np.std(scores, ddof=1):.1f}" if len(scores) > 1 else ""
     return [
         scale.title,
-        Cell(when, kind="text"),
+        page.text(when),
         str(len(scores)),
         f"{np.mean(scores):.1f}{spread}",
         f"{np.median(scores):.1f}",
@@ -96,8 +90,8 @@ def groups(data: StudyData) -> str:
     try:
         found = cluster_trainees(means, metrics)
     except NoClustersError as error:
-        return section("Groups of trainees", paragraph(f"None are reported. {error}"))
-    return section("Groups of trainees", _table(found), paragraph(_words(found), "small"))
+        return page.section("Groups of trainees", page.paragraph(f"None are reported. {error}"))
+    return page.section("Groups of trainees", _table(found), page.paragraph(_words(found), "small"))
 
 
 def trainee_means(data: StudyData) -> dict[str, dict[str, float]]:
@@ -122,7 +116,7 @@ def _table(found: TraineeClusters) -> str:
         stability = f"{found.stability[index]:.2f}"
         rows.append([NAMES[index], str(len(members)), *center, stability, names])
     header = ["Group", "n", *(o.heading for o in shown), "stability", "trainees"]
-    return table([header], rows)
+    return page.table([header], rows)
 
 
 def _words(found: TraineeClusters) -> str:
@@ -141,7 +135,7 @@ def curricula(data: StudyData) -> str:
         return ""
     groups = by_curriculum(data.standings)
     parts = [_of_curriculum(each, found) for each, found in groups.items()]
-    return section("Curriculum", *parts, paragraph(_CURRICULA_NOTE, "small"))
+    return page.section("Curriculum", *parts, page.paragraph(_CURRICULA_NOTE, "small"))
 
 
 def _of_curriculum(curriculum: Curriculum, found: Mapping[str, CurriculumStanding]) -> str:
@@ -157,7 +151,7 @@ def _of_curriculum(curriculum: Curriculum, found: Mapping[str, CurriculumStandin
         for name, standing in found.items()
     ]
     goals = [f"{each.assignment.name}: {_goal(each)}" for each in first.standings]
-    return heading(curriculum.title) + table([header], rows) + bullets(goals)
+    return page.heading(curriculum.title) + page.table([header], rows) + page.bullets(goals)
 
 
 def _goal(standing: AssignmentStanding) -> str:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.number_text import counted, fixed
-from rastrainer.report.elements import Cell, Line, heading, paragraph, section, table
+from rastrainer.report import page
 from rastrainer.report.paired_statistics import interval_text
 from rastrainer.statistics.intervals import Estimate, Proportion, mean, proportion
 from rastrainer.statistics.variation import (
@@ -31,12 +31,7 @@ class StudyVariation:
     """Sources of variation of time and RMSE.
 
     Attributes:
-        trainees: Number who did every mode.
-        trials: Number of their trials.
-        time: Of the completion time.
-        error: Of the RMSE.
         trade_off: k.
-        lapses: Share of the trials with an undone touch.
     """
 
     trainees: int
@@ -78,8 +73,6 @@ class ViewBias:
     """By how much a view displaces the target, beyond what the residuals say.
 
     Attributes:
-        trainees: Number of trainees.
-        trials: Number of their trials with a true and an expected target error.
         squared: Of the displacement, mm²; below 0 by chance where it is about 0.
     """
 
@@ -123,14 +116,9 @@ def _rows(data: StudyData) -> list[tuple[TrialRow, int]]:
     ]
 
 
-HEADER: Line = [
-    Cell("Source of variation [95 %]", kind="text"),
-    "n",
-    "completion time",
-    "RMSE",
-]
-BIAS_HEADER: Line = [
-    Cell("View", kind="text"),
+HEADER: page.Line = [page.text("Source of variation [95 %]"), "n", "completion time", "RMSE"]
+BIAS_HEADER: page.Line = [
+    page.text("View"),
     "n, trials",
     "n, trainees",
     "displacement of the target, mm [95 %]",
@@ -143,25 +131,21 @@ def variation(data: StudyData) -> str:
     biases = {mode: view_bias(data, mode) for mode in sorted(data.modes)}
     parts = [] if found is None else _sources(found, sorted(data.modes))
     parts += _view_biases({mode: bias for mode, bias in biases.items() if bias is not None})
-    return section("What completion time and error vary with", *parts) if parts else ""
+    return page.section("What completion time and error vary with", *parts) if parts else ""
 
 
 def _sources(found: StudyVariation, modes: list[str]) -> list[str]:
     both = (found.time, found.error)
     trials, trainees = counted(found.trials, "trial"), counted(found.trainees, "trainee")
-    rows: list[Line] = [
-        [
-            "Practice: exponent b, the m-th trial of all in proportion to m⁻ᵇ",
-            trials,
-            *(_exponent(one.learning) for one in both),
-        ],
-        [
-            "Speed and accuracy: exponent k, RMSE in proportion to time⁻ᵏ",
-            trials,
-            "–",
-            _exponent(found.trade_off),
-        ],
-        *_against_first(found, modes, trainees),
+    practice = "Practice: exponent b, the m-th trial of all in proportion to m⁻ᵇ"
+    speed = "Speed and accuracy: exponent k, RMSE in proportion to time⁻ᵏ"
+    rows: list[page.Line] = [
+        [practice, trials, *(_exponent(one.learning) for one in both)],
+        [speed, trials, "–", _exponent(found.trade_off)],
+        *(
+            [f"{mode_title(mode)} against {mode_title(modes[0])}", trainees, *map(_factor, both)]
+            for mode, *both in zip(modes[1:], found.time.modes, found.error.modes, strict=True)
+        ),
         ["Between trainees (SD)", trainees, *(_sd(one.trainee_variance) for one in both)],
         ["Trainee × mode (SD)", trainees, *(_sd(one.interaction_variance) for one in both)],
         ["From trial to trial (SD)", trials, *(_sd(one.trial_variance) for one in both)],
@@ -170,30 +154,27 @@ def _sources(found: StudyVariation, modes: list[str]) -> list[str]:
             f"{found.lapses.count} of {found.trials}",
             *("–" if one.lapse is None else _factor(one.lapse) for one in both),
         ],
-        ["Trials with an undone touch (share)", trials, Cell(share_text(found.lapses), span=2)],
+        [
+            "Trials with an undone touch (share)",
+            trials,
+            page.Cell(share_text(found.lapses), span=2),
+        ],
     ]
-    return [table([HEADER], rows, "wide"), paragraph(_words(found), "small")]
-
-
-def _against_first(found: StudyVariation, modes: list[str], trainees: str) -> list[Line]:
-    first, *others = map(mode_title, modes)
-    return [
-        [f"{mode} against {first}", trainees, _factor(time), _factor(error)]
-        for mode, time, error in zip(others, found.time.modes, found.error.modes, strict=True)
-    ]
+    return [page.table([HEADER], rows, "wide"), page.paragraph(_words(found), "small")]
 
 
 def _view_biases(biases: dict[str, ViewBias]) -> list[str]:
     if not biases:
         return []
-    rows: list[Line] = [
-        [mode_title(mode), str(bias.trials), str(bias.trainees), _length(bias)]
-        for mode, bias in biases.items()
-    ]
+    rows: list[page.Line] = []
+    for mode, bias in biases.items():
+        low, high = map(_root, bias.squared.interval)
+        length = interval_text(_root(bias.squared.value), (low, high), 2)
+        rows.append([mode_title(mode), str(bias.trials), str(bias.trainees), length])
     return [
-        heading("Bias of the views"),
-        table([BIAS_HEADER], rows),
-        paragraph(BIAS_WORDS, "small"),
+        page.heading("Bias of the views"),
+        page.table([BIAS_HEADER], rows),
+        page.paragraph(BIAS_WORDS, "small"),
     ]
 
 
@@ -219,11 +200,6 @@ def _sd(found: Estimate) -> str:
 def _factor(found: Estimate) -> str:
     low, high = (math.exp(limit) for limit in found.interval)
     return f"× {interval_text(math.exp(found.value), (low, high), 2)}"
-
-
-def _length(bias: ViewBias) -> str:
-    low, high = map(_root, bias.squared.interval)
-    return interval_text(_root(bias.squared.value), (low, high), 2)
 
 
 def _root(square: float) -> float:

@@ -10,14 +10,13 @@ study, and to what is compared with it.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
 
-from rastrainer.commands import skin_amounts
 from rastrainer.errors import InputError
 from rastrainer.files.reading import format_version, path_beside, read_record, relative_path
 from rastrainer.head.trial_head import UNMOVED, Perturbation, SkinShift, perturbed_pose
@@ -30,7 +29,7 @@ from rastrainer.procedure.plan import (
     located,
     named_once,
 )
-from rastrainer.protocol import COARSE_LANDMARKS, PLAYED_METHODS, WORLD_LIMIT_MM, RegistrationMethod
+from rastrainer.protocol import (COARSE_LANDMARKS, PLAYED_METHODS, SKIN_KEYS, WORLD_LIMIT_MM, RegistrationMethod)
 from rastrainer.scenario.points import (
     MAX_LANDMARKS,
     MAX_TARGETS,
@@ -78,6 +77,13 @@ def _all_cameras(value: Any) -> Any:
     if not isinstance(value, Mapping) or not value.keys() >= set(CAMERAS):
         raise ValueError(f"an object of {' and '.join(CAMERAS)}")
     return {name: value[name] for name in CAMERAS}
+
+
+def _amounts_of_skin(value: Any) -> Any:
+    """Accept a skin without a seed: each trial has its own."""
+    if not isinstance(value, Mapping) or not set(value) <= set(SKIN_KEYS):
+        raise ValueError(f"an object of {' and '.join(SKIN_KEYS)}")
+    return value
 
 
 @dataclass(frozen=True)
@@ -174,7 +180,7 @@ class ScenarioFile:
     targets: Annotated[tuple[PlannedTarget, ...], list_of(0, MAX_TARGETS, "objects")] = ()
     trajectory: PlannedTrajectory | None = None
     landmarks: Annotated[tuple[Landmark, ...], named_once(0, MAX_LANDMARKS)] = ()
-    skin: Annotated[Mapping[str, float], skin_amounts] = field(default_factory=dict)
+    skin: Annotated[SkinShift, _amounts_of_skin] = UNMOVED
     procedures: Annotated[tuple[Procedure, ...], named_once(0, MAX_PROCEDURES)] = ()
 
 
@@ -300,7 +306,7 @@ def _load(folder: Path) -> Scenario:
             for index, procedure in enumerate(file.procedures)
         ),
         landmarks=file.landmarks,
-        skin=SkinShift(file.skin.get("shiftMm", 0.0), 0, file.skin.get("indentationMm", 0.0)),
+        skin=file.skin,
     )
 
 

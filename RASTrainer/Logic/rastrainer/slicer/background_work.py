@@ -145,6 +145,7 @@ class BackgroundWork:
         self._slices: deque[Callable[[], object]] = deque()
         self._underWay: tuple[Job[Any], _Waiting] | None = None
         self._isClosed = False
+        self._clearedCount = 0
         self._isLeft = threading.Event()
 
     @property
@@ -182,6 +183,15 @@ class BackgroundWork:
         self._slices.append(slice_)
         if not wasBusy:
             self.began.emit()
+
+    def changeScene(self, change: Callable[[], object]) -> None:
+        """Have a change made as by `later`, unless the scene is cleared before."""
+        count = self._clearedCount
+        self.later(lambda: change() if count == self._clearedCount else None)
+
+    def forgetScene(self) -> None:
+        """Drop the postponed changes: the scene was cleared."""
+        self._clearedCount += 1
 
     def yieldTime(self) -> None:
         """Let running work continue for a moment, unless functions are postponed."""

@@ -41,8 +41,6 @@ class IntraclassCorrelations:
     """Absolute agreement of raters who stand for others like them (two-way random effects).
 
     Attributes:
-        objects: How many were rated by every rater.
-        raters: How many there were.
         single: ICC(2,1), how far a single rater can be relied on.
         average: ICC(2,k), the same of the mean of these raters.
     """
@@ -121,12 +119,6 @@ def quadratic_kappa(first: np.ndarray, second: np.ndarray, lowest: int, highest:
     Its 95 % limits are the jackknife's on the scale of Fisher's z, by Student's t with n − 1
     degrees of freedom. The large-sample limits (Fleiss, Cohen and Everitt 1969) hold the truth of
     ten objects in 81 to 86 % of simulated studies only; see docs/error-rates.md.
-
-    Args:
-        first: Marks of one rater.
-        second: Marks of the other, of the same objects in the same order.
-        lowest: Lowest mark of the scale.
-        highest: Highest mark.
     """
     first, second = np.asarray(first, dtype=int), np.asarray(second, dtype=int)
     n, marks = len(first), highest - lowest + 1

@@ -41,14 +41,7 @@ class LcCusum:
 
 
 def lc_cusum(failures: Sequence[bool], adequate: float, inadequate: float, limit: float) -> LcCusum:
-    """Return the chart of a trainee's failures.
-
-    Args:
-        failures: Whether each trial failed, in their order.
-        adequate: Failure rate of a competent trainee.
-        inadequate: Failure rate of one who is not.
-        limit: h, see `lc_cusum_limit`.
-    """
+    """Return the chart of a trainee's failures."""
     success, failure = _steps(adequate, inadequate)
     if not limit > 0:
         raise InputError("The limit of an LC-CUSUM must be above 0.")
@@ -64,13 +57,7 @@ def lc_cusum(failures: Sequence[bool], adequate: float, inadequate: float, limit
 
 @functools.lru_cache(maxsize=32)
 def lc_cusum_limit(adequate: float, inadequate: float, trials: int) -> float:
-    """Return the least limit that an incompetent trainee reaches too rarely.
-
-    Args:
-        adequate: Failure rate of a competent trainee.
-        inadequate: Failure rate of one who is not.
-        trials: How many trials the training has.
-    """
+    """Return the least limit that an incompetent trainee reaches too rarely."""
     success, _ = _steps(adequate, inadequate)
     least = signal_probability(inadequate, trials, adequate, inadequate, trials * success)
     if least > FALSE_DISCOVERY:
@@ -93,14 +80,7 @@ def fewest_trials(adequate: float, inadequate: float, limit: float) -> int:
 
 
 def chance_of_successes(count: int, trials: int, adequate: float, inadequate: float) -> float:
-    """Return the probability that an inadequate trainee reaches the score of `count` successes.
-
-    Args:
-        count: Consecutive successes.
-        trials: Number of trials in which to reach it.
-        adequate: Failure rate of a competent trainee.
-        inadequate: Failure rate of one who is not.
-    """
+    """Return the probability that an inadequate trainee reaches the score of `count` successes."""
     success, _ = _steps(adequate, inadequate)
     return signal_probability(inadequate, trials, adequate, inadequate, count * success)
 
@@ -147,10 +127,6 @@ class PassMark:
 
     Attributes:
         score: Those at or above it pass.
-        passing_novices: Expected share of novices who pass.
-        failing_experts: Expected share of experts who fail.
-        observed_passing_novices: Observed share.
-        observed_failing_experts: Observed share.
     """
 
     score: float

@@ -157,13 +157,7 @@ def correlation(x: np.ndarray, y: np.ndarray) -> Correlation:
 
 @dataclass(frozen=True)
 class Proportion:
-    """How many of how many.
-
-    Attributes:
-        count: For which it is so.
-        total: Of how many, at least 1.
-        interval: The 95 % interval of the share, from 0 to 1.
-    """
+    """How many of how many."""
 
     count: int
     total: int
@@ -252,8 +246,6 @@ def _factors(tail: float, dof: float, other_dof: float) -> np.ndarray:
 
     Args:
         tail: Probability above the quantile of the first mean square: small for the lower limit.
-        dof: Of the first mean square.
-        other_dof: Of the second.
     """
     own = 1 - 1 / chi2_ratio(1 - tail, dof)
     others = 1 - 1 / chi2_ratio(tail, other_dof)

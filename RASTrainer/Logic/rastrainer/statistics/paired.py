@@ -37,11 +37,6 @@ class DifferenceFit:
 
     Attributes:
         mean: Difference for subjects unaffected by the order.
-        standard_error: Of the mean.
-        sd: Standard deviation of the differences about the fit.
-        dof: Degrees of freedom.
-        later: Effect of doing a condition one period later, or None.
-        later_error: Its standard error, or None.
     """
 
     mean: np.ndarray
@@ -101,14 +96,9 @@ class Sequences:
     """Subjects by the condition that they did first.
 
     Attributes:
-        first_first: Number who did the first condition first.
-        second_first: Number who did the second one first.
-        later: Effect of one period later.
-        later_interval: Its 95 % interval.
         between: Mean over both conditions of those who did the second one first, minus that of the
             others; None with fewer than two subjects in a sequence. Without carry-over it is 0 but
             for chance.
-        between_interval: Its 95 % interval.
     """
 
     first_first: int
@@ -125,9 +115,6 @@ def compare_sequences(
     """Return the effects of the order on (n,) float values of both conditions.
 
     `order` is that of `is_separable`, and `fit` that of the differences, with the period.
-
-    Raises:
-        ValueError: the fit does not separate the period.
     """
     if fit.later is None or fit.later_error is None:
         raise ValueError("The effect of the period is not separated.")
@@ -154,14 +141,8 @@ class PairedComparison:
     """Two conditions, compared on the subjects who did both.
 
     Attributes:
-        n: Subjects.
         mean_difference: Mean of second minus first; free of the effect of the period where
             `sequences` is not None.
-        standard_error: Of it.
-        dof: Degrees of freedom of it.
-        interval: 95 % interval of the mean difference (Student's t).
-        t: Of the t-test.
-        p: Two-sided, of the t-test.
         hedges_gz: Mean difference over its standard deviation, corrected for few subjects; None
             with one degree of freedom.
         gz_interval: 95 % interval of the population's own (noncentral t); None likewise.
@@ -234,11 +215,7 @@ def equivalence_margin(comparison: PairedComparison) -> float:
 
 
 def holm(p_values: np.ndarray) -> np.ndarray:
-    """Return p-values adjusted for multiple testing (Holm 1979), in order along the last axis.
-
-    Args:
-        p_values: (…, k) float.
-    """
+    """Return p-values adjusted for multiple testing (Holm 1979), in order along the last axis."""
     p_values = np.asarray(p_values, dtype=float)
     order = np.argsort(p_values, axis=-1)
     weights = np.arange(p_values.shape[-1], 0, -1)
@@ -250,12 +227,7 @@ def holm(p_values: np.ndarray) -> np.ndarray:
 
 
 def rank_test(differences: np.ndarray, order: np.ndarray | None) -> RankTest | None:
-    """Return the rank test that goes with (n,) differences: with the period, where it is separated.
-
-    Args:
-        differences: Second condition minus first.
-        order: As for `compare_paired`, where it is separable; else None.
-    """
+    """Return the rank test of (n,) differences: with the period, where it is separated."""
     if order is None:
         return signed_rank_test(differences) if np.any(differences) else None
     size = np.abs(order).max()

@@ -31,10 +31,8 @@ class TraineeClusters:
     """Groups of trainees.
 
     Attributes:
-        metrics: Names of what they were grouped by.
         members: Pseudonyms of each cluster, the largest cluster first.
         centers: Mean of each cluster in the metrics' own units.
-        silhouette: Mean silhouette, -1 to 1.
         dip_p: How often a population with a single peak looks at least as parted as this.
         stability: Mean Jaccard similarity of each cluster under resampling, 0 to 1.
     """
@@ -60,8 +58,6 @@ def cluster_trainees(
 
     Args:
         trainees: Pseudonym → metric → mean of the trainee.
-        metrics: Which to use; each trainee needs all of them.
-        seed: Of the starts and the resampling.
 
     Raises:
         NoClustersError: too few trainees, metrics that do not vary, or no groups are shown.

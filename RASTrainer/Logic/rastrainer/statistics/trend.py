@@ -44,10 +44,8 @@ class Trend:
     """How a trainee's values change.
 
     Attributes:
-        trials: How many.
         change: From the first to the last trial on the fitted line over ln(trial); in the unit.
         interval: 90 % interval of it (Student's t): both ends are one-sided limits at 5 %.
-        p: One-sided, of falling.
         verdict: Falls where p is at most .05 (6 of the 120 orders of five trials); steady where
             not, and the interval holds neither a fall nor a rise by a tenth of the mean; undecided
             where it may be either.
@@ -135,10 +133,6 @@ class CohortTrend:
         means: Of them at each trial, as far as all have come.
         change: Mean over the trainees of the change from the first of these trials to the last;
             None of a single one.
-        interval: 95 % interval of it; None of a single one.
-        p: One-sided, of all getting better (Page's test); None of a single one.
-        adjusted_p: The same, adjusted for all tests of a study; None of a single one.
-        verdicts: How many trainees alone show what.
     """
 
     trainees: int

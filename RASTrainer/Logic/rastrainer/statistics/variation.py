@@ -32,9 +32,6 @@ class Trials:
     """The trials of a study in which every trainee did every mode; all arrays are (n,).
 
     Attributes:
-        trainees: Index of the trainee, from 0.
-        modes: Index of the mode, from 0.
-        tasks: Index of the task, from 0.
         numbers: Which trial of the trainee's it was, over all modes, from 1.
         lapses: 1.0 where a touch was undone, else 0.0.
     """
@@ -54,11 +51,6 @@ class Variation:
         learning: b; the n-th trial has n^−b of the first one's value.
         lapse: What an undone touch adds to the logarithm; None where there was none.
         modes: What each mode adds to the logarithm against the first mode, from the second on.
-        trainee_variance: Between trainees, over the modes.
-        interaction_variance: Between trainees × modes.
-        trial_variance: Between trials of a trainee in a mode.
-        dof: Of `trial_variance`.
-        residuals: (n,) float, of the trials.
     """
 
     learning: Estimate
@@ -135,7 +127,6 @@ class _Levels:
         levels: (trainees, modes) float.
         inverse: What the variance between trials has to be multiplied by to get their covariance,
             row by row.
-        chance: The variance between trials.
     """
 
     def __init__(self, levels: np.ndarray, inverse: np.ndarray, chance: MeanSquare) -> None:

@@ -15,6 +15,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import ReplayTrack, find_track, read_trajectory
+from rastrainer.json_records import record_from_json
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.scenario.scenario import Scenario
@@ -66,7 +67,7 @@ def store_delivered(
         InputError: the record is invalid, or cannot be stored.
         DeletedTrialError: it was deleted with its trainee.
     """
-    record = TrialRecord.from_json(value)
+    record = record_from_json(TrialRecord, value)
     is_new = study.check_trial(record)
     if not is_new and (is_being_scored or study.is_revealed(record.trial_id)):
         return DeliveredTrial(record)

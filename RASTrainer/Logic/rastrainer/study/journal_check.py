@@ -16,9 +16,10 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.journal.folder import header_number
+from rastrainer.journal.folder import JournalNumber
 from rastrainer.journal.journal_file import NO_LINE, DamagedLineError, decode_line
 from rastrainer.journal.recording import Recording, WholeRecording
+from rastrainer.json_records import record_from_json
 from rastrainer.motion.trajectory import Touch, Trajectory
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.scenario.scenario import Scenario, method_of
@@ -69,9 +70,9 @@ def _entries(journal: bytes, sealed: str) -> list[Entry]:
 
 
 def _check_record(record: TrialRecord, header: Entry, registered: Entry) -> None:
-    written = TrialRecord.from_json(registered["record"])
+    written = record_from_json(TrialRecord, registered["record"])
     _require(written == replace(record, journal_sha256=""), "the record")
-    number = header_number(header)
+    number = record_from_json(JournalNumber, header)
     method = method_of(header["method"]["name"] if "method" in header else None)
     told = (header["trialId"], header["trainee"], header["task"], header["mode"], header["utc"])
     _require(
@@ -89,7 +90,7 @@ def _check_touches(record: TrialRecord, entries: Sequence[Entry]) -> None:
     kept = _Measured.of(entries).trajectory()
     last = {entry["label"]: entry for entry in entries if entry["kind"] == "touch"}
     found = [
-        (touch.label, touch.position_mm, last[touch.label]["simTime"] - tick_s, last[touch.label])
+        (touch.label, touch.position_mm, last[touch.label]["simTimeS"] - tick_s, last[touch.label])
         for touch in kept.touches
     ]
     _require(len(found) == len(record.points), "the touches")

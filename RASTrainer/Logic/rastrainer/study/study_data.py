@@ -285,7 +285,7 @@ def _trial_row(stored: StoredTrial, number: int) -> TrialRow:
     if stored.true_tre_mm is not None:
         values["true_tre_mm"] = stored.true_tre_mm
     if not record.skin.is_none:
-        values["skin_shift_mm"] = record.skin.rms_mm
+        values["skin_shift_mm"] = record.skin.shift_mm
         values["skin_indentation_mm"] = record.skin.indentation_mm
     if stored.procedure is not None:
         values |= _procedure_values(stored.procedure)

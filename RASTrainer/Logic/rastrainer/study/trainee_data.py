@@ -8,12 +8,11 @@ from typing import Any
 
 from rastrainer.files.writing import write_json
 from rastrainer.journal.folder import SUFFIX, erase_journals
+from rastrainer.json_records import record_to_json
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.database.aborted_trials import AbortedTrials
-from rastrainer.study.database.database import path_beside_study
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
-from rastrainer.study.platform_links import PlatformLinks
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.ratings import RatingStore
 
@@ -23,7 +22,6 @@ FORMAT = "RASTrainer trainee 4"
 def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
     """Write all data of a trainee as one JSON file and return the number of finished trials."""
     trainee, trials = study.trainee(pseudonym), study.history(pseudonym)
-    links = PlatformLinks(path_beside_study(study.database.place))
     document = {
         "format": FORMAT,
         "trainee": asdict(trainee),
@@ -31,7 +29,7 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
         "trials": [_trial_json(trial) for trial in trials],
         "aborted_trials": [
             {
-                "record": stored.record.to_json(),
+                "record": record_to_json(stored.record),
                 "step": stored.step,
                 "repeat_reason": stored.repeat_reason,
             }
@@ -50,7 +48,6 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
             for rating in RatingStore(study).ratings()
             if rating.trial_id in {trial.record.trial_id for trial in trials}
         ],
-        "learning_platforms": links.users(pseudonym),
     }
     write_json(path, document)
     return len(trials)
@@ -65,9 +62,9 @@ def _protocol_json(progress: StudyProgress, pseudonym: str) -> dict[str, Any] | 
 
 def _trial_json(trial: StoredTrial) -> dict[str, Any]:
     return {
-        "record": trial.record.to_json(),
+        "record": record_to_json(trial.record),
         "registrations": {kind: fit.to_json() for kind, fit in trial.registrations.items()},
-        "score": None if trial.score is None else trial.score.to_json(),
+        "score": None if trial.score is None else record_to_json(trial.score, with_defaults=True),
         "true_tre_mm": trial.true_tre_mm,
         "head_to_world": trial.head_to_world,
         "motion": trial.motion,
@@ -124,5 +121,4 @@ def erase_trainee(study: Study, pseudonym: str, records: Path | None) -> Erasure
     names = [path.name for path in erased if path.suffix == SUFFIX]
     missing = [one for one in ids if not any(name.endswith(f"_{one}{SUFFIX}") for name in names)]
     trials = study.delete_trainee(pseudonym)
-    PlatformLinks(path_beside_study(study.database.place)).forget(pseudonym)
     return Erasure(trials, len(names), tuple(missing), tuple(unreadable))

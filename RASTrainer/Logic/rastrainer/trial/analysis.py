@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
-from rastrainer import json_checks
 from rastrainer.errors import InputError
 from rastrainer.head.trial_head import UNMOVED, SkinShift
+from rastrainer.json_checks import number, numbers
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.fits import RIGID
@@ -54,29 +54,14 @@ class RevealedTruth:
         skin: how the skin lay on the head; a study keeps no more of it than the record does.
     """
 
-    head_to_world: tuple[float, ...]
-    true_tre_mm: float
+    head_to_world: Annotated[tuple[float, ...], numbers(16, 1e6)]
+    true_tre_mm: Annotated[float, number(0, 1e6, "mm")]
     skin: SkinShift = UNMOVED
 
     @property
     def matrix(self) -> np.ndarray:
         """(4, 4) float, mm, from MRI RAS to World."""
         return np.reshape(self.head_to_world, (4, 4))
-
-    @classmethod
-    def from_json(cls, answer: Mapping[str, Any]) -> RevealedTruth:
-        """Return the truth in an answer to SubmitRegistration or GetTrial."""
-        try:
-            return cls(
-                json_checks.numbers(16, 1e6)(answer.get("headToWorld")),
-                json_checks.number(0, 1e6)(answer.get("trueTreMm")),
-                SkinShift.from_json(answer.get("skin", {})),
-            )
-        except ValueError:
-            raise InputError(
-                "The simulator's answer must hold headToWorld, 16 numbers, trueTreMm, and skin, if "
-                "it has shifted."
-            ) from None
 
 
 @dataclass(frozen=True)
@@ -89,8 +74,8 @@ class PublishedScore:
         reference: of the cohort.
     """
 
-    published: float
-    equation_3: float
+    published: Annotated[float, number(-1e9, 1e9)]
+    equation_3: Annotated[float, number(-1e9, 1e9)]
     reference: ctps.CohortReference
 
 

@@ -10,12 +10,10 @@ from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any
+from typing import Annotated, Any
 
-from rastrainer import json_checks
 from rastrainer.commands import CommandName
-from rastrainer.files.json_fields import from_json_object
-from rastrainer.json_checks import Argument
+from rastrainer.json_checks import number, object_of, text, whole_number
 from rastrainer.protocol import Mode, Phase
 
 MAX_WAY_MM = 1e9
@@ -61,7 +59,6 @@ class HowPlayed:
 
     Attributes:
         started_by: Client or input device that started it, as it names itself.
-        seed_source: A `SeedSource`.
         is_seed_repeated: Whether an earlier trial of the simulator had the same chosen seed.
         speed: Simulated seconds in a second, as set; 0 for as fast as possible. If the trial was
             resumed at another speed, the value farthest from 1.
@@ -73,20 +70,19 @@ class HowPlayed:
         view_s: Time that each kind of view was looked at: `desktop`, `page`, `headset`.
     """
 
-    started_by: str = ""
-    seed_source: str = SeedSource.DRAWN.value
+    started_by: Annotated[str, text(64, 0)] = ""
+    seed_source: SeedSource = SeedSource.DRAWN
     is_seed_repeated: bool = False
-    speed: float = 1.0
-    pace: float = 1.0
-    pauses: int = 0
-    way_mm: Mapping[str, float] = field(default_factory=dict)
-    feed_commands: int = 0
-    view_s: Mapping[str, float] = field(default_factory=dict)
-
-    @classmethod
-    def from_json(cls, value: object) -> HowPlayed:
-        """Return what a JSON object holds, as of `json_object`; raise `InputError` if invalid."""
-        return from_json_object(cls, value, _CHECKS, "How a trial was played")
+    speed: Annotated[float, number(0, 1e6)] = 1.0
+    pace: Annotated[float, number(0, 1e6)] = 1.0
+    pauses: Annotated[int, whole_number(0, MAX_COUNT)] = 0
+    way_mm: Annotated[
+        Mapping[str, Annotated[float, number(0, MAX_WAY_MM, "mm")]], object_of(len(MovedBy))
+    ] = field(default_factory=dict)
+    feed_commands: Annotated[int, whole_number(0, MAX_COUNT)] = 0
+    view_s: Annotated[Mapping[str, Annotated[float, number(0, MAX_COUNT, "s")]], object_of(8)] = (
+        field(default_factory=dict)
+    )
 
     @property
     def commanded_share(self) -> float:
@@ -109,8 +105,8 @@ class HowPlayed:
                 f"a client's commands moved the arm ({100.0 * self.commanded_share:.0f} % of the "
                 f"way, {self.feed_commands} feeds)",
             )
-        if self.seed_source != SeedSource.DRAWN.value:
-            by = "a client" if self.seed_source == SeedSource.CLIENT.value else "--seed"
+        if self.seed_source is not SeedSource.DRAWN:
+            by = "a client" if self.seed_source is SeedSource.CLIENT else "--seed"
             yield Allowance.CHOSEN_SEED, f"the pose of the head was chosen by {by}"
         if self.is_seed_repeated:
             yield Allowance.REPEATED_SEED, "the same pose of the head was played before"
@@ -125,26 +121,6 @@ class HowPlayed:
             yield Allowance.OTHER_VIEW, worn
         if mode == Mode.DESKTOP.value and in_headset > 1.0 - LEAST_IN_HEADSET:
             yield Allowance.OTHER_VIEW, "it was played in a headset"
-
-
-_WAYS = tuple(each.value for each in MovedBy)
-_CHECKS = {
-    "startedBy": Argument(json_checks.text(64, 0)),
-    "seedSource": Argument(json_checks.one_of(*(each.value for each in SeedSource))),
-    "isSeedRepeated": Argument(json_checks.yes_or_no),
-    "speed": Argument(json_checks.number(0, 1e6)),
-    "pace": Argument(json_checks.number(0, 1e6)),
-    "pauses": Argument(json_checks.whole_number(0, MAX_COUNT)),
-    "wayMm": Argument(
-        json_checks.mapping(
-            len(_WAYS), "what moved the tip, with its way", json_checks.number(0, MAX_WAY_MM, "mm")
-        )
-    ),
-    "feedCommands": Argument(json_checks.whole_number(0, MAX_COUNT)),
-    "viewS": Argument(
-        json_checks.mapping(8, "views with their times", json_checks.number(0, MAX_COUNT, "s"))
-    ),
-}
 
 
 class PlayRecording:
@@ -191,7 +167,7 @@ class PlayRecording:
         """Return how the trial was played so far."""
         return HowPlayed(
             started_by=self._started_by,
-            seed_source=self._seed_source.value,
+            seed_source=self._seed_source,
             speed=self._speed,
             pace=self._simulated_s / self._clock_s if self._clock_s else self._speed,
             pauses=self._pauses,
@@ -202,7 +178,7 @@ class PlayRecording:
 
     def _add_time(self, entry: Mapping[str, Any]) -> None:
         """Add what has passed since the last entry, except in a pause and after the last point."""
-        kind, times = entry["kind"], (entry["simTime"], entry["monotonic"])
+        kind, times = entry["kind"], (entry["simTimeS"], entry["monotonicS"])
         is_paused = self._phase == Phase.PAUSED.value
         if self._times is not None and kind != "continued" and not is_paused:
             passed = times[0] - self._times[0], times[1] - self._times[1]

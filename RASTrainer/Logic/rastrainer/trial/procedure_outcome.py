@@ -16,17 +16,25 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.json_checks import number, whole_number
 from rastrainer.procedure.errors import ProcedureAnalysis, TrajectoryErrors, analyze_procedure
 from rastrainer.procedure.plan import MAX_SAFETY_MM, Procedure, read_procedure_meshes
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.score_reference import score_reference
-from rastrainer.trial.scoring import TIME_FLOOR, ScoreReference, falling, of_time
+from rastrainer.trial.scoring import (
+    MAX_MEASURE,
+    TIME_FLOOR,
+    Desirability,
+    ScoreReference,
+    falling,
+    of_time,
+)
 
 PROCEDURE_SCORE_VERSION = "procedure-1"
 """Changes with any change of a formula or a reference, so that scores stay comparable."""
@@ -35,8 +43,8 @@ HALF_ENTRY_MM, ENTRY_LIMIT_MM = 1.5, 3.0
 HALF_ANGLE_DEG, ANGLE_LIMIT_DEG = 2.0, 5.0
 HALF_PLUNGE_MM, PLUNGE_LIMIT_MM = 2.0, 5.0
 HALF_INTRUSION_MM = 1.5
-MAX_MEASURE = 1e6
-"""Of any measure: what is above is a mistake."""
+_Measure = Annotated[float, number(0, MAX_MEASURE)]
+_Count = Annotated[int, whole_number(0, 10_000)]
 
 VERIFYING_S, ALIGNING_S, DRILLING_S, HANDLING_S = 15.0, 45.0, 15.0, 10.0
 """Times of the reference: once, and three for each trajectory. Our own convention."""
@@ -64,17 +72,17 @@ class ProcedureMeasures:
         missed_bone: how many instruments do not go through the skull.
     """
 
-    duration_s: float
-    target_mm: float
-    worst_target_mm: float
-    entry_mm: float
-    worst_entry_mm: float
-    angle_deg: float
-    worst_angle_deg: float
-    plunge_mm: float
-    intrusion_mm: float
-    hits: int
-    missed_bone: int
+    duration_s: _Measure
+    target_mm: _Measure
+    worst_target_mm: _Measure
+    entry_mm: _Measure
+    worst_entry_mm: _Measure
+    angle_deg: _Measure
+    worst_angle_deg: _Measure
+    plunge_mm: _Measure
+    intrusion_mm: _Measure
+    hits: _Count
+    missed_bone: _Count
 
     @classmethod
     def of(cls, analysis: ProcedureAnalysis) -> ProcedureMeasures:
@@ -134,44 +142,18 @@ class ProcedureScore:
         version: of the formula and the references.
     """
 
-    score: float
-    desirabilities: Mapping[str, float]
+    score: Annotated[float, number(0, 100)]
+    desirabilities: Mapping[str, Desirability]
     is_accurate: bool
     is_safe: bool
     measures: ProcedureMeasures
-    reference_s: float
+    reference_s: _Measure
     version: str = PROCEDURE_SCORE_VERSION
 
     @property
     def acceptable(self) -> bool:
         """Whether the procedure is within all limits."""
         return self.is_accurate and self.is_safe
-
-    def to_json(self) -> dict[str, Any]:
-        """Return the score as a JSON object."""
-        return {
-            "score": self.score,
-            "desirabilities": dict(self.desirabilities),
-            "acceptable": self.acceptable,
-            "isAccurate": self.is_accurate,
-            "isSafe": self.is_safe,
-            "measures": dict(vars(self.measures)),
-            "referenceS": self.reference_s,
-            "version": self.version,
-        }
-
-    @classmethod
-    def from_json(cls, value: Mapping[str, Any]) -> ProcedureScore:
-        """Return the score that `to_json` described."""
-        return cls(
-            score=value["score"],
-            desirabilities=dict(value["desirabilities"]),
-            is_accurate=value["isAccurate"],
-            is_safe=value["isSafe"],
-            measures=ProcedureMeasures(**value["measures"]),
-            reference_s=value["referenceS"],
-            version=value["version"],
-        )
 
 
 def reference_duration_s(touching_s: float, procedure: Procedure, self_aligned: int = 0) -> float:

@@ -21,9 +21,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 from rastrainer.errors import InputError
+from rastrainer.json_checks import number
 from rastrainer.protocol import RegistrationMethod
 
 TIME_FLOOR = 0.04
@@ -48,6 +49,8 @@ HALF_CONTACT_PATH_MM, CONTACT_PATH_LIMIT_MM = 80.0, 160.0
 HALF_DEPTH_MM = DEPTH_LIMIT_MM = 1.5
 MAX_MEASURE = 1e6
 """Larger measures are rejected as invalid."""
+_Measure = Annotated[float, number(0, MAX_MEASURE)]
+Desirability = Annotated[float, number(0, 1)]
 
 
 @dataclass(frozen=True)
@@ -60,9 +63,9 @@ class ScoreReference:
         limit_mm: largest acceptable true TRE.
     """
 
-    time_s: float
-    tre_mm: float
-    limit_mm: float = LIMIT_MM
+    time_s: _Measure
+    tre_mm: _Measure
+    limit_mm: _Measure = LIMIT_MM
 
 
 class SafetyMeasures(NamedTuple):
@@ -87,12 +90,12 @@ class ScoreMeasures:
             fiducials.
     """
 
-    completion_time_s: float
-    tre_mm: float
-    contact_time_s: float
-    contact_path_mm: float
-    pressing_depth_mm: float
-    common_bias_mm: float | None
+    completion_time_s: _Measure
+    tre_mm: _Measure
+    contact_time_s: _Measure
+    contact_path_mm: _Measure
+    pressing_depth_mm: _Measure
+    common_bias_mm: _Measure | None = None
 
     @classmethod
     def of(
@@ -155,17 +158,17 @@ class TrialScore:
             It does not count.
     """
 
-    score: float
-    time_desirability: float
-    accuracy_desirability: float
-    safety_desirability: float
+    score: Annotated[float, number(0, 100)]
+    time_desirability: Desirability
+    accuracy_desirability: Desirability
+    safety_desirability: Desirability
     is_accurate: bool
     is_unbiased: bool | None
     is_safe: bool
     measures: ScoreMeasures
     reference: ScoreReference
     version: str = SCORE_VERSION
-    unshifted_tre_mm: float | None = None
+    unshifted_tre_mm: _Measure | None = None
 
     @property
     def acceptable(self) -> bool:
@@ -180,45 +183,6 @@ class TrialScore:
             trueness = _trueness(self.measures.common_bias_mm)
             parts |= {"accuracy": self.accuracy_desirability / trueness, "common bias": trueness}
         return {**parts, "safety": self.safety_desirability}
-
-    def to_json(self) -> dict[str, Any]:
-        """Return the score as a JSON object."""
-        unshifted = self.unshifted_tre_mm
-        return {
-            "score": self.score,
-            "time_desirability": self.time_desirability,
-            "accuracy_desirability": self.accuracy_desirability,
-            "safety_desirability": self.safety_desirability,
-            "acceptable": self.acceptable,
-            "is_accurate": self.is_accurate,
-            "is_unbiased": self.is_unbiased,
-            "is_safe": self.is_safe,
-            "measures": dict(vars(self.measures)),
-            "reference_time_s": self.reference.time_s,
-            "reference_tre_mm": self.reference.tre_mm,
-            "limit_mm": self.reference.limit_mm,
-            "version": self.version,
-            **({} if unshifted is None else {"unshifted_tre_mm": unshifted}),
-        }
-
-    @classmethod
-    def from_json(cls, value: Mapping[str, Any]) -> TrialScore:
-        """Return the score that `to_json` described."""
-        return cls(
-            score=value["score"],
-            time_desirability=value["time_desirability"],
-            accuracy_desirability=value["accuracy_desirability"],
-            safety_desirability=value["safety_desirability"],
-            is_accurate=value["is_accurate"],
-            is_unbiased=value["is_unbiased"],
-            is_safe=value["is_safe"],
-            measures=ScoreMeasures(**value["measures"]),
-            reference=ScoreReference(
-                value["reference_time_s"], value["reference_tre_mm"], value["limit_mm"]
-            ),
-            version=value["version"],
-            unshifted_tre_mm=value.get("unshifted_tre_mm"),
-        )
 
 
 def passes(score: float, acceptable: bool, pass_mark: float) -> bool:

@@ -323,7 +323,7 @@ def skin_sentence(
     """Return what the trainee reads after a trial; None where the skin lay as in the images."""
     if skin.is_none:
         return None
-    amounts = {"shift": skin.rms_mm, "indentation": skin.indentation_mm, "tre": true_tre_mm}
+    amounts = {"shift": skin.shift_mm, "indentation": skin.indentation_mm, "tre": true_tre_mm}
     if unshifted_mm is None:
         return say("skin", **amounts)
     return say("skin and error", **amounts, without=unshifted_mm)

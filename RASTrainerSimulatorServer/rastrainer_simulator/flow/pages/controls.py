@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Sequence
-from typing import TypeVar
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
-from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.pages.session_page import SessionPage, stepped
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.inputs import (
@@ -23,7 +22,7 @@ from rastrainer_simulator.input.inputs import (
 )
 from rastrainer_simulator.input.presets import preset_name, presets_of
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
-from rastrainer_simulator.presentation.screen import Fact, ItemKind, Menu, MenuItem
+from rastrainer_simulator.presentation.screen import Fact, ItemKind
 
 _LISTED = (
     ("move_along", (ControlName.MOVE_FORWARD, ControlName.MOVE_BACK)),
@@ -53,38 +52,26 @@ class ControlsPage(SessionPage):
         super().__init__(session)
         self._leads_on = leads_on
 
-    def menu(self) -> Menu:
-        """Return the list of the controls."""
-        session = self.session
+    def content(self) -> PageContent:
+        operator = self.session.operator
         # Two directions of a stick identify it; a key has only one.
-        most = len(ControlName) if session.operator.kind is InputDevice.KEYBOARD else 2
-        facts = tuple(
-            Fact(
-                self.say(f"controls.{key}"),
-                " / ".join(map(session.operator.label, controls[:most])),
-            )
+        most = len(ControlName) if operator.kind is InputDevice.KEYBOARD else 2
+        facts = [
+            Fact(self.say(f"controls.{key}"), " / ".join(map(operator.label, controls[:most])))
             for key, controls in _LISTED
+        ]
+        rows = (
+            *((self.button("next", self._lead_on),) if self._leads_on else ()),
+            self.button("test", self.open_page(PadTestPage)),
+            self.button("rebind", self.open_page(BindingsPage)),
+            self.button("back"),
         )
-        items = (*(["next"] if self._leads_on else []), "test", "rebind", "back")
-        return Menu(
-            self.name,
-            self.say("controls.title"),
-            (self.say("controls.text"),),
-            facts,
-            tuple(self.button(item) for item in items),
-            picture=session.operator.picture,
-        )
+        title, text = self.say("controls.title"), self.say("controls.text")
+        return PageContent(title, (text,), facts, rows, operator.picture)
 
-    def accept(self, item: str) -> None:
-        """Continue, try the controls or change them."""
-        pages = self.session.pages
-        if item == "next":
-            self.session.has_read_introduction = True
-            pages.replace(ExperimentPage(self.session))
-        elif item == "back":
-            self.back()
-        else:
-            pages.open((PadTestPage if item == "test" else BindingsPage)(self.session))
+    def _lead_on(self) -> None:
+        self.session.has_read_introduction = True
+        self.session.pages.replace(ExperimentPage(self.session))
 
 
 class PadTestPage(SessionPage):
@@ -96,30 +83,14 @@ class PadTestPage(SessionPage):
         super().__init__(session)
         self._pressed: list[tuple[InputDevice, str]] = []
 
-    def menu(self) -> Menu:
-        """Return the sticks' positions and the last inputs."""
+    def content(self) -> PageContent:
         held = self.session.held
-        positions = (*held.translation, *held.rotation)
-        axes = tuple(
-            MenuItem(f"axis{number}", self._axis(pair), ItemKind.AXIS, f"{position:.2f}", False)
-            for number, (pair, position) in enumerate(
-                zip((*TRANSLATION, *ROTATION), positions, strict=True)
-            )
-        )
+        pairs = zip((*TRANSLATION, *ROTATION), (*held.translation, *held.rotation), strict=True)
+        axes = (self._axis(number, *pair) for number, pair in enumerate(pairs))
         fine = Fact(self.say("control.fine"), self.say("test.yes" if held.fine else "test.no"))
-        facts = tuple(Fact(*self._input(*pressed)) for pressed in self._pressed)
-        leave = self.session.operator.label(ControlName.MENU)
-        return Menu(
-            self.name,
-            self.say("test.title"),
-            (self.say("test.text", menu=leave),),
-            (fine, *facts),
-            (*axes, self.button("back")),
-        )
-
-    def accept(self, item: str) -> None:
-        if item == "back":
-            self.back()
+        facts = (fine, *(Fact(*self._input(*pressed)) for pressed in self._pressed))
+        text = self.say("test.text", menu=self.session.operator.label(ControlName.MENU))
+        return PageContent(self.say("test.title"), (text,), facts, (*axes, self.button("back")))
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
         """Show an input, and let it be felt."""
@@ -129,8 +100,15 @@ class PadTestPage(SessionPage):
         self.session.happened(FeedbackEvent.TEST)
         return True
 
-    def _axis(self, pair: tuple[ControlName, ControlName]) -> str:
-        return " / ".join(self.say(f"control.{control.value}") for control in pair)
+    def _axis(self, number: int, pair: tuple[ControlName, ControlName], position: float) -> PageRow:
+        label = " / ".join(self.say(f"control.{control.value}") for control in pair)
+        return self.button(
+            f"axis{number}",
+            label=label,
+            kind=ItemKind.AXIS,
+            value=f"{position:.2f}",
+            is_enabled=False,
+        )
 
     def _input(self, device: InputDevice, name: str) -> tuple[str, str]:
         table = self.session.bindings.table(device)
@@ -147,8 +125,6 @@ GROUPS = {
 }
 LISTEN_S = 10.0
 
-T = TypeVar("T")
-
 
 class BindingsPage(SessionPage):
     """The controls of a device, a group at a time."""
@@ -160,49 +136,48 @@ class BindingsPage(SessionPage):
         self._device = session.operator.kind
         self._group = "work"
 
-    def menu(self) -> Menu:
-        """Return the controls of the group with their inputs."""
-        device = self.choice("device", self.say(f"device.{self._device.value}"))
-        preset = self.choice("preset", self.say(f"bindings.preset.{self._preset or 'own'}"))
-        group = self.choice("group", self.say(f"bindings.group.{self._group}"))
-        controls = tuple(self._control(control) for control in GROUPS[self._group])
-        items = (device, preset, group, *controls, self.button("defaults"), self.button("back"))
-        return Menu(self.name, self.say("bindings.title"), items=items)
+    def content(self) -> PageContent:
+        device = self.say(f"device.{self._device.value}")
+        preset = self.say(f"bindings.preset.{self._preset or 'own'}")
+        group = self.say(f"bindings.group.{self._group}")
+        rows = (
+            self.choice("device", device, self._step_device),
+            self.choice("preset", preset, self._step_preset),
+            self.choice("group", group, self._step_group),
+            *map(self._control, GROUPS[self._group]),
+            self.button("defaults", self._restore_defaults),
+            self.button("back"),
+        )
+        return PageContent(self.say("bindings.title"), rows=rows)
 
-    def accept(self, item: str) -> None:
-        """Listen for a control's new input, or go back to the defaults."""
-        session = self.session
-        if item == "back":
-            self.back()
-        elif item == "defaults":
-            session.rebind(DEFAULT_BINDINGS)
-            session.notices.add(self.say("bindings.are default"))
-        else:
-            session.pages.open(ListenPage(session, self._device, ControlName(item)))
+    def _restore_defaults(self) -> None:
+        self.session.rebind(DEFAULT_BINDINGS)
+        self.session.notices.add(self.say("bindings.are default"))
 
-    def step(self, item: str, direction: int) -> None:
-        """Show another device or group, or take another preset for the device."""
-        if item == "device":
-            self._device = _stepped(tuple(InputDevice), self._device, direction)
-        elif item == "preset":
-            self._take_preset(direction)
-        elif item == "group":
-            self._group = _stepped(tuple(GROUPS), self._group, direction)
+    def _step_device(self, direction: int) -> None:
+        self._device = stepped(tuple(InputDevice), self._device, direction)
+
+    def _step_group(self, direction: int) -> None:
+        self._group = stepped(tuple(GROUPS), self._group, direction)
 
     @property
     def _preset(self) -> str | None:
         return preset_name(self._device, self.session.bindings.table(self._device))
 
-    def _take_preset(self, direction: int) -> None:
+    def _step_preset(self, direction: int) -> None:
         presets = presets_of(self._device)
         names = tuple(presets)
-        name = names[0] if self._preset is None else _stepped(names, self._preset, direction)
+        name = names[0] if self._preset is None else stepped(names, self._preset, direction)
         changed = {self._device.value: presets[name]}
         self.session.rebind(dataclasses.replace(self.session.bindings, **changed))
 
-    def _control(self, control: ControlName) -> MenuItem:
+    def _control(self, control: ControlName) -> PageRow:
+        """Return a control with its inputs; accepting it waits for a new one."""
         inputs = self.session.operator.input_labels(self._device, control)
-        return self.button(control.value, self.say(f"control.{control.value}"), value=inputs)
+        listen = self.open_page(ListenPage, self._device, control)
+        return self.button(
+            control.value, listen, self.say(f"control.{control.value}"), value=inputs
+        )
 
 
 class ListenPage(SessionPage):
@@ -216,17 +191,12 @@ class ListenPage(SessionPage):
         self._control = control
         self._left = LISTEN_S
 
-    def menu(self) -> Menu:
-        """Return the request for an input."""
+    def content(self) -> PageContent:
         control = self.say(f"control.{self._control.value}")
         key = f"listen.{self._device.value}"
         text = self.say(key, control=control, seconds=math.ceil(self._left))
         title = self.say("listen.title", control=control)
-        return Menu(self.name, title, (text,), items=(self.button("cancel"),))
-
-    def accept(self, item: str) -> None:  # noqa: ARG002
-        """Cancel."""
-        self.back()
+        return PageContent(title, (text,), rows=(self.button("cancel"),))
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
         """Assign the input, or ask what to do about the control that has it now."""
@@ -260,8 +230,7 @@ class ConflictPage(SessionPage):
         super().__init__(session)
         self._device, self._control, self._wanted = device, control, wanted
 
-    def menu(self) -> Menu:
-        """Return the question."""
+    def content(self) -> PageContent:
         others = self.session.bindings.others(self._device, self._control, self._wanted)
         text = self.say(
             "conflict.text",
@@ -269,18 +238,19 @@ class ConflictPage(SessionPage):
             other=self.session.texts.listed(self.say(f"control.{other.value}") for other in others),
             control=self.say(f"control.{self._control.value}"),
         )
-        items = tuple(self.button(item) for item in ("exchange", "another", "cancel"))
-        return Menu(self.name, self.say("conflict.title"), (text,), items=items)
+        rows = (
+            self.button("exchange", self._exchange),
+            self.button("another", self._listen_again),
+            self.button("cancel"),
+        )
+        return PageContent(self.say("conflict.title"), (text,), rows=rows)
 
-    def accept(self, item: str) -> None:
-        """Exchange, listen again, or cancel."""
-        pages = self.session.pages
-        if item == "another":
-            pages.replace(ListenPage(self.session, self._device, self._control))
-            return
-        pages.close()
-        if item == "exchange":
-            rebind(self.session, self._device, self._control, self._wanted)
+    def _exchange(self) -> None:
+        self.back()
+        rebind(self.session, self._device, self._control, self._wanted)
+
+    def _listen_again(self) -> None:
+        self.session.pages.replace(ListenPage(self.session, self._device, self._control))
 
 
 def rebind(session: TrainingSession, device: InputDevice, control: ControlName, name: str) -> None:
@@ -298,7 +268,3 @@ def rebind(session: TrainingSession, device: InputDevice, control: ControlName, 
             input=session.operator.input_label(device, name),
         )
     )
-
-
-def _stepped(options: Sequence[T], value: T, direction: int) -> T:
-    return options[(options.index(value) + direction) % len(options)]

@@ -5,6 +5,9 @@ With it the lists that it opens: of heads, and of the assignments of a trainee's
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from functools import partial
+
 from rastrainer.errors import InputError
 from rastrainer.protocol import TRIAL_RUN, Mode, StepKind, TutorialRule
 from rastrainer.scenario.library import ListedScenario
@@ -13,7 +16,7 @@ from rastrainer.study.curriculum.curriculum_message import AssignmentMessage
 from rastrainer.study.protocol.steps import StudyStep
 from rastrainer.trial.scoring import PASS_MARK
 from rastrainer_simulator.flow.pages.own_trials import OwnTrialsPage
-from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.pages.session_page import SessionPage, stepped
 from rastrainer_simulator.flow.pages.trainee_id import (
     ClickedIdPage,
     KeyboardPage,
@@ -31,9 +34,10 @@ from rastrainer_simulator.flow.session.chosen_trial import (
     tutorial_rule,
     usual_id,
 )
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import SourceKind
-from rastrainer_simulator.presentation.screen import ItemKind, Menu, MenuItem, ScoreTrend
+from rastrainer_simulator.presentation.screen import ItemKind, MenuItem, ScoreTrend
 
 LONGEST_ID = 32
 
@@ -56,92 +60,58 @@ class ExperimentPage(SessionPage):
         session.trainee = self._usual_id or session.trainee
         self.first = first or self._next_task()
 
-    def menu(self) -> Menu:
-        """Return the menu: trainee, mode and tasks."""
+    def content(self) -> PageContent:
         session = self.session
-        trainee = MenuItem(
+        step = self._step()
+        said = () if step is None else (session.step_sentence(step),)
+        trend = self._trend()
+        if trend is not None:
+            key = "experiment.trend" if trend.mark else "experiment.trend in study"
+            said = (*said, self.say(key, mark=trend.mark))
+        rows = (
+            *self._answer(),
+            *self._trainee(),
+            self.choice("mode", self.say(f"mode.{session.mode}"), self._step_mode),
+            self.button("scenario", self.open_page(ScenarioPage), value=session.scenario.title),
+            *self._method(),
+            *self._procedure(),
+            *self._assignments(),
+            *self._tutorial(),
+            *self._skip(),
+            *(self._task(task.name) for task in session.scenario.tasks),
+            *self._own_trials(),
+            self.button("back"),
+        )
+        return PageContent(self.say("experiment.title"), said, rows=rows, trend=trend)
+
+    def _trainee(self) -> Iterator[PageRow]:
+        """Yield the trainee's ID, and for who only clicks what enters one."""
+        session = self.session
+        item = MenuItem(
             "trainee",
             self.say("experiment.trainee"),
             ItemKind.TEXT,
             session.trainee,
             help=self.say("experiment.trainee help"),
         )
-        mode = self.choice("mode", self.say(f"mode.{session.mode}"))
-        scenario = self.button("scenario", value=session.scenario.title)
-        by_mouse = (self.button("clicked"),) if session.operator.is_one_of(_CLICKS) else ()
-        choices = (trainee, *by_mouse, mode, scenario, *self._method(), *self._procedure())
-        tasks = tuple(self._task(task.name) for task in session.scenario.tasks)
-        step = self._step()
-        is_asked = step is not None and step.kind == StepKind.QUESTIONNAIRE
-        answer = (self.button("answer"),) if is_asked else ()
-        said = () if step is None else (session.step_sentence(step),)
-        trend = self._trend()
-        if trend is not None:
-            key = "experiment.trend" if trend.mark else "experiment.trend in study"
-            said = (*said, self.say(key, mark=trend.mark))
-        return Menu(
-            self.name,
-            self.say("experiment.title"),
-            said,
-            items=(
-                *answer,
-                *choices,
-                *self._assignments(),
-                *self._tutorial(),
-                *self._skip(),
-                *tasks,
-                *self._own_trials(),
-                self.button("back"),
-            ),
-            trend=trend,
-        )
+        enter = self.open_page(KeyboardPage, self._write_id)
+        if session.operator.is_one_of(_TYPES):
+            enter = partial(session.pages.move, 1)
+        yield PageRow(item, enter, write=self._write_id)
+        if session.operator.is_one_of(_CLICKS):
+            yield self.button("clicked", self.open_page(ClickedIdPage, self._write_id))
 
-    def accept(self, item: str) -> None:
-        """Begin a task, open a list, or type."""
-        session = self.session
-        lists = {"scenario": ScenarioPage, "assignments": AssignmentsPage, "trials": OwnTrialsPage}
-        if item == "back":
-            self.back()
-        elif item in lists:
-            session.pages.open(lists[item](session))
-        elif item == "clicked":
-            session.pages.open(ClickedIdPage(session, self.write))
-        elif item == "answer":
-            self._answer()
-        elif item == "tutorial":
-            session.begin_tutorial()
-        elif item == "skip":
-            skip(session)
-            session.pages.focus(self._next_task())
-        elif item != "trainee":
-            start_task(session, item)
-        elif session.operator.is_one_of(_TYPES):
-            session.pages.move(1)
-        else:
-            session.pages.open(KeyboardPage(session, self.write))
-
-    def step(self, item: str, direction: int) -> None:
-        """Change the mode, by what is registered, or what follows that."""
-        if item == "mode":
-            modes = [mode.value for mode in Mode]
-            place = (modes.index(self.session.mode) + direction) % len(modes)
-            self.session.mode = modes[place]
-        elif item == "method":
-            methods = playable_methods(self.session.scenario)
-            place = methods.index(offered_method(self.session)) + direction
-            self.session.method = methods[place % len(methods)]
-        elif item == "procedure":
-            names = ["", *(each.name for each in self.session.scenario.procedures)]
-            present = self.session.procedure if self.session.procedure in names else ""
-            self.session.procedure = names[(names.index(present) + direction) % len(names)]
-
-    def write(self, item: str, value: str) -> None:
+    def _write_id(self, value: str) -> None:
         """Set the trainee's ID; what is typed at first replaces the usual one."""
-        if item == "trainee" and value != self._usual_id:
+        if value != self._usual_id:
             typed = value.removeprefix(self._usual_id)
             is_deleted = bool(self._usual_id) and value == self._usual_id[:-1]
             self.session.trainee = "" if is_deleted else typed.lstrip()[:LONGEST_ID]
             self._usual_id = ""
+
+    def _step_mode(self, direction: int) -> None:
+        modes = [mode.value for mode in Mode]
+        self.session.mode = stepped(modes, self.session.mode, direction)
 
     def _trend(self) -> ScoreTrend | None:
         """Return the trainee's scores in the chosen mode; a study may have its own pass mark."""
@@ -153,69 +123,86 @@ class ExperimentPage(SessionPage):
         mark = PASS_MARK if self._step() is None else 0.0
         return ScoreTrend(self.say("experiment.scores", scores=shown), scores, mark)
 
-    def _method(self) -> tuple[MenuItem, ...]:
-        """Return the choice of what is registered; none where the head has no landmarks."""
-        if len(playable_methods(self.session.scenario)) < 2:
-            return ()
-        step = self._step()
-        method = offered_method(self.session) if step is None else method_of(step.method)
-        value = self.say(f"method.{method.value}")
-        help_ = self.say("experiment.method help")
-        return (self.choice("method", value, is_enabled=step is None, help=help_),)
+    def _method(self) -> Iterator[PageRow]:
+        """Yield the choice of what is registered; none where the head has no landmarks."""
+        session, step = self.session, self._step()
+        methods, offered = playable_methods(session.scenario), offered_method(session)
 
-    def _procedure(self) -> tuple[MenuItem, ...]:
-        """Return the choice of what follows the touches; none where the head has no procedures."""
-        session = self.session
-        if not session.scenario.procedures:
-            return ()
-        step = self._step()
-        names = [each.name for each in session.scenario.procedures]
+        def step_method(direction: int) -> None:
+            session.method = stepped(methods, offered, direction)
+
+        if len(methods) > 1:
+            method = offered if step is None else method_of(step.method)
+            value, help_ = self.say(f"method.{method.value}"), self.say("experiment.method help")
+            yield self.choice("method", value, step_method, is_enabled=step is None, help=help_)
+
+    def _procedure(self) -> Iterator[PageRow]:
+        """Yield the choice of what follows the touches; none where the head has no procedures."""
+        session, step = self.session, self._step()
+        names = ["", *(each.name for each in session.scenario.procedures)]
         chosen = session.procedure if session.procedure in names else ""
-        value = session.procedure_title(chosen if step is None else step.procedure)
-        help_ = self.say("experiment.procedure help")
-        return (self.choice("procedure", value, is_enabled=step is None, help=help_),)
 
-    def _assignments(self) -> tuple[MenuItem, ...]:
-        """Return the button of the curriculum; none for a trainee without one."""
+        def step_procedure(direction: int) -> None:
+            session.procedure = stepped(names, chosen, direction)
+
+        if len(names) > 1:
+            value = session.procedure_title(chosen if step is None else step.procedure)
+            help_ = self.say("experiment.procedure help")
+            yield self.choice(
+                "procedure", value, step_procedure, is_enabled=step is None, help=help_
+            )
+
+    def _assignments(self) -> Iterator[PageRow]:
+        """Yield the button of the curriculum; none for a trainee without one."""
         curriculum, words = self.session.curriculum, self.session.assignment_texts
-        if curriculum is None:
-            return ()
-        return (
-            self.button(
-                "assignments", value=words.summary(curriculum), help=words.advice(curriculum)
-            ),
-        )
+        if curriculum is not None:
+            yield self.button(
+                "assignments",
+                self.open_page(AssignmentsPage),
+                value=words.summary(curriculum),
+                help=words.advice(curriculum),
+            )
 
-    def _tutorial(self) -> tuple[MenuItem, ...]:
-        """Return the tutorial's button; none where there is no tutorial."""
+    def _tutorial(self) -> Iterator[PageRow]:
+        """Yield the tutorial's button; none where there is no tutorial."""
         session = self.session
         if tutorial_rule(session) is TutorialRule.SKIPPED:
-            return ()
+            return
         reason = tutorial_obstacle(session)
         is_done = session.tutorials.has_done(session.trainee.strip(), session.operator.learned)
         value = self.say("experiment.done" if is_done else "experiment.tutorial time")
-        help_ = reason or self.say("experiment.tutorial help")
-        return (self.button("tutorial", value=value, is_enabled=not reason, help=help_),)
+        yield self.button(
+            "tutorial",
+            session.begin_tutorial,
+            value=value,
+            is_enabled=not reason,
+            help=reason or self.say("experiment.tutorial help"),
+        )
 
-    def _skip(self) -> tuple[MenuItem, ...]:
-        """Return what skips the tutorial, then the trial run, where nobody requires them."""
+    def _skip(self) -> Iterator[PageRow]:
+        """Yield what skips the tutorial, then the trial run, where nobody requires them."""
         what = skippable(self.session)
-        if not what:
-            return ()
-        return (self.button("skip", self.say(f"experiment.skip {what}")),)
+        if what:
+            yield self.button("skip", self._skip_next, self.say(f"experiment.skip {what}"))
 
-    def _own_trials(self) -> tuple[MenuItem, ...]:
-        """Return the button of the trainee's own trials; none before the first."""
+    def _skip_next(self) -> None:
+        skip(self.session)
+        self.session.pages.focus(self._next_task())
+
+    def _own_trials(self) -> Iterator[PageRow]:
+        """Yield the button of the trainee's own trials; none before the first."""
         count = len(self.session.history.own(self.session.trainee.strip()))
-        return (self.button("trials", value=str(count)),) if count else ()
+        if count:
+            yield self.button("trials", self.open_page(OwnTrialsPage), value=str(count))
 
-    def _task(self, name: str) -> MenuItem:
+    def _task(self, name: str) -> PageRow:
         """Return a task's button: a disabled one says why."""
         session = self.session
         reason = obstacle(session, name)
         outcome = session.outcome_of(name)
-        return MenuItem(
+        return self.button(
             name,
+            partial(start_task, session, name),
             session.task_title(name),
             value=self.say(f"experiment.{outcome}") if outcome else "",
             is_enabled=not reason,
@@ -252,10 +239,13 @@ class ExperimentPage(SessionPage):
     def _step(self) -> StudyStep | None:
         return self.session.study.step_of(self.session.trainee.strip())
 
-    def _answer(self) -> None:
+    def _answer(self) -> Iterator[PageRow]:
+        """Yield the button of the questionnaire that the study asks next."""
         step = self._step()
-        if step is None:
-            return
+        if step is not None and step.kind == StepKind.QUESTIONNAIRE:
+            yield self.button("answer", partial(self._open_questionnaire, step))
+
+    def _open_questionnaire(self, step: StudyStep) -> None:
         try:
             self.session.pages.open(QuestionnairePage(self.session, step))
         except InputError as error:
@@ -273,48 +263,40 @@ class ScenarioPage(SessionPage):
         self._listing = session.list_scenarios()
         self._wanted = ""
 
-    def menu(self) -> Menu:
+    def content(self) -> PageContent:
         """Return the list, as far as it is known."""
         listed = self._listing.result() if self._listing.done() else []
-        text = "scenario.text" if self._listing.done() else "scenario.looking"
-        items = tuple(self._item(entry) for entry in listed)
-        return Menu(
-            self.name,
-            self.say("scenario.title"),
-            (self.say(text),),
-            items=(*items, self.button("back")),
-        )
-
-    def accept(self, item: str) -> None:
-        """Have a head loaded, or go back."""
-        if item == "back":
-            self.back()
-            return
-        self._wanted = item.removeprefix(_HEAD)
-        self.session.setting_up.use_scenario(self._wanted)
+        text = self.say("scenario.text" if self._listing.done() else "scenario.looking")
+        rows = (*map(self._head, listed), self.button("back"))
+        return PageContent(self.say("scenario.title"), (text,), rows=rows)
 
     def advance(self, dt: float) -> None:  # noqa: ARG002
         """Go back once the chosen head is loaded; stay if it was refused."""
-        if not self._wanted or self.session.setting_up.is_under_way:
+        if not self._wanted or self.session.reload.is_under_way:
             return
         is_there = self.session.scenario.name == self._wanted
         self._wanted = ""
         if is_there:
             self.back()
 
-    def _item(self, entry: ListedScenario) -> MenuItem:
+    def _head(self, entry: ListedScenario) -> PageRow:
         is_present = entry.name == self.session.scenario.name
-        is_loading = self.session.setting_up.is_under_way
+        is_loading = self.session.reload.is_under_way
         value = "scenario.loading" if entry.name == self._wanted and is_loading else ""
         value = "scenario.present" if is_present and not value else value
-        return MenuItem(
+        return self.button(
             _HEAD + entry.name,
+            partial(self._load, entry.name),
             entry.title,
             value=self.say(value) if value else "",
             is_enabled=not entry.problem and not is_loading,
             help=entry.problem or self.say("scenario.help"),
             picture=f"/scenarios/{entry.name}.png" if entry.preview else "",
         )
+
+    def _load(self, name: str) -> None:
+        self._wanted = name
+        self.session.reload.use_scenario(name)
 
 
 class AssignmentsPage(SessionPage):
@@ -327,39 +309,35 @@ class AssignmentsPage(SessionPage):
         curriculum = session.curriculum
         self.first = "" if curriculum is None else _ASSIGNMENT + curriculum.next
 
-    def menu(self) -> Menu:
+    def content(self) -> PageContent:
         """Return the list that Slicer sent last."""
-        curriculum = self.session.curriculum
+        curriculum, title = self.session.curriculum, self.say("assignments.title")
         back = self.button("back")
         if curriculum is None:
-            return Menu(self.name, self.say("assignments.title"), items=(back,))
+            return PageContent(title, rows=(back,))
         said = (curriculum.title, self.session.assignment_texts.advice(curriculum))
-        items = tuple(self._item(each) for each in curriculum.assignments)
-        return Menu(self.name, self.say("assignments.title"), said, items=(*items, back))
-
-    def accept(self, item: str) -> None:
-        """Begin a trial of an assignment, or go back."""
-        session, curriculum = self.session, self.session.curriculum
-        each = None if curriculum is None else curriculum.find(item.removeprefix(_ASSIGNMENT))
-        if item == "back" or each is None:
-            self.back()
-            return
-        session.mode = each.mode or session.mode
-        session.method, session.procedure = method_of(each.method), each.procedure
-        start_task(session, each.task)
+        return PageContent(title, said, rows=(*map(self._assignment, curriculum.assignments), back))
 
     def advance(self, dt: float) -> None:  # noqa: ARG002
         """Close where the trainee has no curriculum any more."""
         if self.session.curriculum is None:
             self.back()
 
-    def _item(self, each: AssignmentMessage) -> MenuItem:
+    def _assignment(self, each: AssignmentMessage) -> PageRow:
         words = self.session.assignment_texts
         reason = assignment_obstacle(self.session, each)
-        return MenuItem(
+        return self.button(
             _ASSIGNMENT + each.name,
+            partial(self._begin, each),
             words.label(each),
             value=words.progress(each),
             is_enabled=not reason,
             help=reason or f"{words.title(each)}. {words.goal(each)}",
         )
+
+    def _begin(self, each: AssignmentMessage) -> None:
+        """Begin a trial of an assignment."""
+        session = self.session
+        session.mode = each.mode or session.mode
+        session.method, session.procedure = method_of(each.method), each.procedure
+        start_task(session, each.task)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from rastrainer.protocol import TRIAL_RUN, TutorialRule
 from rastrainer_simulator.flow.pages.controls import ControlsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
@@ -13,9 +15,10 @@ from rastrainer_simulator.flow.session.chosen_trial import (
     start_task,
     tutorial_rule,
 )
+from rastrainer_simulator.flow.session.open_pages import PageContent
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName
-from rastrainer_simulator.presentation.screen import Fact, Menu
+from rastrainer_simulator.presentation.screen import Fact
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 
 SHEETS = 3
@@ -31,33 +34,19 @@ class IntroductionPage(SessionPage):
         super().__init__(session)
         self._sheet = 1
 
-    def menu(self) -> Menu:
-        """Return the sheet."""
-        return Menu(
-            self.name,
-            self.say(f"introduction.title.{self._sheet}"),
-            (
-                self.say(self._text),
-                self.say("introduction.sheet", sheet=self._sheet, sheets=SHEETS),
-            ),
-            items=(self.button("next"), self.button("skip"), self.button("back")),
-        )
-
-    @property
-    def _text(self) -> str:
-        """The key of the sheet's text: 3D Slicer is spoken of only where it is connected."""
+    def content(self) -> PageContent:
         key, alone = f"introduction.text.{self._sheet}", ".alone"
-        is_alone = not self.session.is_slicer_connected()
-        return f"{key}{alone}" if is_alone and f"{key}{alone}" in self.session.texts else key
-
-    def accept(self, item: str) -> None:
-        """Turn the sheet."""
-        if item == "back":
-            self.back()
-        elif item == "next" and self._sheet < SHEETS:
-            self._sheet += 1
-        else:
-            self.session.pages.replace(ControlsPage(self.session, leads_on=True))
+        # 3D Slicer is spoken of only where it is connected.
+        if not self.session.is_slicer_connected() and f"{key}{alone}" in self.session.texts:
+            key += alone
+        place = self.say("introduction.sheet", sheet=self._sheet, sheets=SHEETS)
+        rows = (
+            self.button("next", self._turn),
+            self.button("skip", self._leave),
+            self.button("back"),
+        )
+        title = self.say(f"introduction.title.{self._sheet}")
+        return PageContent(title, (self.say(key), place), rows=rows)
 
     def back(self) -> None:
         """Go back a sheet."""
@@ -66,55 +55,45 @@ class IntroductionPage(SessionPage):
         else:
             self._sheet -= 1
 
+    def _turn(self) -> None:
+        if self._sheet < SHEETS:
+            self._sheet += 1
+        else:
+            self._leave()
+
+    def _leave(self) -> None:
+        self.session.pages.replace(ControlsPage(self.session, leads_on=True))
+
 
 class TutorialPage(SessionPage):
     """Continues the tutorial, restarts it or leaves it."""
 
     name = "tutorial"
 
-    def menu(self) -> Menu:
-        """Return the choices for the tutorial."""
-        tutorial = self.session.tutorial
-        step, steps = (1, 1) if tutorial is None else tutorial.place
-        leave = self.say("tutorial.skip" if self._is_skipped else "tutorial.leave")
-        paused = (self.say("tutorial.paused", step=step, steps=steps),)
-        return Menu(
-            self.name,
-            self.session.practice_title,
-            () if self._is_practice else paused,
-            items=(
-                self.button("resume", self.say("trial.resume")),
-                self.button("controls"),
-                self.button("restart"),
-                self.button("leave", leave),
-            ),
-        )
-
-    def accept(self, item: str) -> None:
-        """Do what was chosen."""
+    def content(self) -> PageContent:
         session = self.session
-        if item == "resume":
-            self.back()
-        elif item == "controls":
-            session.pages.open(ControlsPage(session))
-        elif item == "restart":
-            session.restart_practice()
-        else:
-            if self._is_skipped:
-                session.tutorials.skip(session.trainee.strip())
-            session.end_tutorial()
-            session.pages.show_start()
-            session.pages.open(ExperimentPage(session))
+        tutorial = session.tutorial
+        step, steps = (1, 1) if tutorial is None else tutorial.place
+        is_practice = tutorial is not None and bool(tutorial.practiced)
+        is_optional = tutorial_rule(session) is not TutorialRule.REQUIRED
+        is_skipped = not is_practice and (is_optional or may_skip(session))
+        leave = self.say("tutorial.skip" if is_skipped else "tutorial.leave")
+        paused = self.say("tutorial.paused", step=step, steps=steps)
+        rows = (
+            self.button("resume", label=self.say("trial.resume")),
+            self.button("controls", self.open_page(ControlsPage)),
+            self.button("restart", session.restart_practice),
+            self.button("leave", lambda: self._leave(is_skipped), leave),
+        )
+        return PageContent(session.practice_title, () if is_practice else (paused,), rows=rows)
 
-    @property
-    def _is_practice(self) -> bool:
-        tutorial = self.session.tutorial
-        return tutorial is not None and bool(tutorial.practiced)
-
-    @property
-    def _is_skipped(self) -> bool:
-        is_optional = tutorial_rule(self.session) is not TutorialRule.REQUIRED
-        return not self._is_practice and (is_optional or may_skip(self.session))
+    def _leave(self, is_skipped: bool) -> None:
+        session = self.session
+        if is_skipped:
+            session.tutorials.skip(session.trainee.strip())
+        session.end_tutorial()
+        session.pages.show_start()
+        session.pages.open(ExperimentPage(session))
 
     def pressed(self, control: ControlName) -> bool:
         """The control that pauses also resumes."""
@@ -132,36 +111,24 @@ class TutorialDonePage(SessionPage):
         super().__init__(session)
         self._outcome = outcome
 
-    def menu(self) -> Menu:
-        """Return the figures and what comes next."""
-        outcome = self._outcome
+    def content(self) -> PageContent:
+        session, outcome = self.session, self._outcome
+        first = self.say("tutorial.mm", error=outcome.first_error_mm)
         errors = (self.say("tutorial.mm", error=error) for error in outcome.errors_mm)
-        touches = self.session.texts.listed(errors)
-        reason = obstacle(self.session, TRIAL_RUN)
-        trial_run = self.button("trial-run", is_enabled=not reason, help=reason)
-        return Menu(
-            self.name,
-            self.say("tutorial-done.title"),
-            (self.say("tutorial-done.text", trainee=outcome.trainee),),
-            (
-                Fact(self.say("tutorial-done.time"), self.session.duration(outcome.seconds)),
-                Fact(
-                    self.say("tutorial-done.first"),
-                    self.say("tutorial.mm", error=outcome.first_error_mm),
-                ),
-                Fact(self.say("tutorial-done.touches"), touches),
-            ),
-            items=(trial_run, self.button("again"), self.button("menu")),
+        facts = (
+            Fact(self.say("tutorial-done.time"), session.duration(outcome.duration_s)),
+            Fact(self.say("tutorial-done.first"), first),
+            Fact(self.say("tutorial-done.touches"), session.texts.listed(errors)),
         )
-
-    def accept(self, item: str) -> None:
-        """Begin the trial run, do the tutorial again, or go to the menu."""
-        if item == "trial-run":
-            start_task(self.session, TRIAL_RUN)
-        elif item == "again":
-            self.session.begin_tutorial()
-        else:
-            self.back()
+        reason = obstacle(session, TRIAL_RUN)
+        start = partial(start_task, session, TRIAL_RUN)
+        rows = (
+            self.button("trial-run", start, is_enabled=not reason, help=reason),
+            self.button("again", session.begin_tutorial),
+            self.button("menu"),
+        )
+        text = self.say("tutorial-done.text", trainee=outcome.trainee)
+        return PageContent(self.say("tutorial-done.title"), (text,), facts, rows)
 
 
 class PracticedPage(SessionPage):
@@ -173,16 +140,11 @@ class PracticedPage(SessionPage):
         super().__init__(session)
         self._title, self._error_mm = session.practice_title, outcome.errors_mm[-1]
 
-    def menu(self) -> Menu:
-        """Return the error and what comes next."""
+    def content(self) -> PageContent:
         error = self.say("tutorial.mm", error=self._error_mm)
-        facts = (Fact(self.say("practiced.error"), error, error_tone(self._error_mm)),)
-        items = (self.button("again"), self.button("menu", self.say("tutorial-done.menu")))
-        return Menu(self.name, self._title, (), facts, items)
-
-    def accept(self, item: str) -> None:
-        """Practice the point again, or go to the menu."""
-        if item == "again":
-            self.session.restart_practice()
-        else:
-            self.back()
+        fact = Fact(self.say("practiced.error"), error, error_tone(self._error_mm))
+        rows = (
+            self.button("again", self.session.restart_practice),
+            self.button("menu", label=self.say("tutorial-done.menu")),
+        )
+        return PageContent(self._title, (), (fact,), rows)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from rastrainer.errors import InputError
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.trial_review import ReplayPage
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.trainee_history import OwnTrial
-from rastrainer_simulator.presentation.screen import Menu, MenuItem
 
 MOST_TRIALS = 12
-_TRIAL = "trial "
 _VERDICTS = {True: "experiment.passed", False: "experiment.failed", None: "experiment.done"}
 
 
@@ -18,37 +19,32 @@ class OwnTrialsPage(SessionPage):
 
     name = "own-trials"
 
-    def menu(self) -> Menu:
-        """Return the list; a trial on another head cannot be shown on this one."""
-        trials = self.session.history.own(self.session.trainee.strip())
-        items = tuple(self._item(each) for each in reversed(trials[-MOST_TRIALS:]))
-        title = self.say("own-trials.title", trainee=self.session.trainee.strip())
-        back = self.button("back", self.say("experiment.back"))
-        return Menu(self.name, title, items=(*items, back))
+    def content(self) -> PageContent:
+        trainee = self.session.trainee.strip()
+        trials = reversed(self.session.history.own(trainee)[-MOST_TRIALS:])
+        back = self.button("back", label=self.say("experiment.back"))
+        title = self.say("own-trials.title", trainee=trainee)
+        return PageContent(title, rows=(*map(self._trial, trials), back))
 
-    def accept(self, item: str) -> None:
-        """Show a trial again, or go back."""
-        if item == "back":
-            self.back()
-            return
+    def _trial(self, each: OwnTrial) -> PageRow:
+        """Return a trial; one on another head cannot be shown on this one."""
+        past = each.past
+        is_shown = each.scenario == self.session.scenario.name and not past.is_aborted
+        verdict = self.say(_VERDICTS[each.is_passed])
+        when = each.started_utc[:16].replace("T", " ")
+        return self.button(
+            f"trial {past.trial_id}",
+            partial(self._show, past.trial_id),
+            f"{self.session.task_title(past.task)} ({when} UTC)",
+            value=verdict if past.is_aborted else f"{past.score:.0f} / 100, {verdict}",
+            is_enabled=is_shown,
+            help=self.say("own-trials.help" if is_shown else "own-trials.not shown"),
+        )
+
+    def _show(self, trial_id: str) -> None:
         try:
-            loading = self.session.load_trial(item.removeprefix(_TRIAL))
+            loading = self.session.load_trial(trial_id)
         except InputError as error:
             self.session.complain(str(error))
         else:
             self.session.pages.open(ReplayPage(self.session, loading, begins_at_worst=False))
-
-    def _item(self, each: OwnTrial) -> MenuItem:
-        past = each.past
-        is_here = each.scenario == self.session.scenario.name
-        verdict = self.say(_VERDICTS[each.is_passed])
-        value = verdict if past.is_aborted else f"{past.score:.0f} / 100, {verdict}"
-        when = each.started_utc[:16].replace("T", " ")
-        help_ = "own-trials.help" if is_here and not past.is_aborted else "own-trials.not shown"
-        return MenuItem(
-            _TRIAL + past.trial_id,
-            f"{self.session.task_title(past.task)} ({when} UTC)",
-            value=value,
-            is_enabled=is_here and not past.is_aborted,
-            help=self.say(help_),
-        )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from rastrainer.commands import CommandName
@@ -19,6 +20,7 @@ from rastrainer.trial.procedure_outcome import (
 )
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.trial_review import ErrorsPage
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.plan_marks import (
     PLACED,
     PLANNED,
@@ -30,8 +32,6 @@ from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.presentation.screen import (
     ErrorArrow,
     Fact,
-    Menu,
-    MenuItem,
     Screen,
     Tone,
 )
@@ -70,29 +70,25 @@ class ProcedurePage(SessionPage):
         if session.training.phase is Phase.ALIGNING and is_far and can_align:
             self.first = "align"
 
-    def menu(self) -> Menu:
+    def content(self) -> PageContent:
         """Return the choices of the phase; none where it has ended meanwhile."""
         phase = self.session.training.phase
-        items = tuple(self._item(name) for name in _ITEMS.get(phase, ()) if self._is_offered(name))
-        text = (self.session.texts.again(self.session.training.instruction),)
+        can_align = self.session.setup.settings.procedure.self_alignment
+        rows = (self._step(name) for name in _ITEMS.get(phase, ()) if name != "align" or can_align)
+        text = self.session.texts.again(self.session.training.instruction)
         title = self.say(f"procedure.title.{phase.value}") if phase in _ITEMS else ""
-        return Menu(self.name, title, text, items=(*items, self.button("work")))
+        return PageContent(title, (text,), rows=(*rows, self.button("work")))
 
-    def accept(self, item: str) -> None:
-        """Do what was chosen; a refusal is shown over the picture."""
-        self.session.pages.close()
-        if item in _COMMANDS:
-            arguments = {"standOffMm": STAND_OFF_MM} if item == "align" else {}
-            self.session.do(_COMMANDS[item], arguments)
-
-    def _is_offered(self, name: str) -> bool:
-        return name != "align" or self.session.setup.settings.procedure.self_alignment
-
-    def _item(self, name: str) -> MenuItem:
+    def _step(self, name: str) -> PageRow:
         procedure = self.session.training.procedure
         waits = name == "accept" and (procedure is None or procedure.registration is None)
         help_ = self.say("procedure.waits" if waits else f"procedure.{name} help")
-        return self.button(name, is_enabled=not waits, help=help_)
+        return self.button(name, partial(self._do, name), is_enabled=not waits, help=help_)
+
+    def _do(self, name: str) -> None:
+        """Carry out a step; a refusal is shown over the picture."""
+        self.back()
+        self.session.do(_COMMANDS[name], {"standOffMm": STAND_OFF_MM} if name == "align" else {})
 
 
 LONGEST_NAME = 60
@@ -149,27 +145,19 @@ class ProcedureErrorsPage(SessionPage):
         super().__init__(session)
         self._number = 0
 
-    def menu(self) -> Menu:
-        """Return the table of the chosen trajectory."""
+    def content(self) -> PageContent:
         each = self._trajectories
         details = each[self._number] if each else {}
-        several = len(each) > 1
-        choice = (self.choice("trajectory", _name(details)),) if several else ()
-        title = self.say("procedure-errors.title", name=_name(details))
-        items: tuple[MenuItem, ...] = (*choice, self.button("lines"), self.button("back"))
+        name = _text(details.get("name"))
+        choice = (self.choice("trajectory", name, self._step),) if len(each) > 1 else ()
+        lines = self.button("lines", self.open_page(ProcedureLinesPage))
         by_robot = details.get("selfAligned") is True
-        texts = (self.say("procedure-errors.robot text" if by_robot else "procedure-errors.text"),)
-        return Menu(self.name, title, texts, tuple(self._facts(details)), items)
+        text = self.say("procedure-errors.robot text" if by_robot else "procedure-errors.text")
+        title = self.say("procedure-errors.title", name=name)
+        rows = (*choice, lines, self.button("back"))
+        return PageContent(title, (text,), self._facts(details), rows)
 
-    def accept(self, item: str) -> None:
-        """Show the lines on the head, or go back."""
-        if item == "lines":
-            self.session.pages.open(ProcedureLinesPage(self.session))
-        elif item == "back":
-            self.back()
-
-    def step(self, item: str, direction: int) -> None:  # noqa: ARG002
-        """Show another trajectory."""
+    def _step(self, direction: int) -> None:
         self._number = (self._number + direction) % len(self._trajectories)
 
     @property
@@ -219,8 +207,7 @@ class ProcedureLinesPage(ErrorsPage):
         lines = _lines(session) if session.training.result is not None else ()
         return replace(super().screen(), errors=lines, is_head_clear=True)
 
-    @property
-    def _title(self) -> str:
+    def title(self) -> str:
         return self.say("procedure-lines.title")
 
 
@@ -251,10 +238,6 @@ def _tone(error: float | None, limit: float) -> Tone:
 def _number(details: Mapping[str, Any], name: str) -> float | None:
     value = details.get(name)
     return float(value) if is_number(value) and math.isfinite(value) else None
-
-
-def _name(details: Mapping[str, Any]) -> str:
-    return _text(details.get("name"))
 
 
 def _text(value: object) -> str:

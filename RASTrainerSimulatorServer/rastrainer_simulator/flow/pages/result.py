@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import math
+from functools import partial
 from typing import Any, TypeGuard
 
 from rastrainer.errors import InputError
@@ -25,6 +26,7 @@ from rastrainer_simulator.flow.pages.procedure import (
 )
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.trial_review import ErrorsPage, ReplayPage
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.own_score import OWN_SCORE
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.session.verdict import (
@@ -33,7 +35,7 @@ from rastrainer_simulator.flow.session.verdict import (
     is_passed,
     pass_mark,
 )
-from rastrainer_simulator.presentation.screen import Fact, Menu, MenuItem, Tone
+from rastrainer_simulator.presentation.screen import Fact, Tone
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
 from rastrainer_simulator.state import TrialResult
 from rastrainer_simulator.texts.texts import Texts
@@ -57,28 +59,30 @@ _ONWARD = ("next", "procedure", "errors", "worst", "replay", "again", "menu")
 class FinishedPage(SessionPage):
     """What both pages after a trial offer."""
 
-    def items(self) -> tuple[MenuItem, ...]:
+    def onward(self) -> tuple[PageRow, ...]:
         """Return where the trainee can go from here."""
-        best, words = self.session.next_assignment, self.session.assignment_texts
-        following = self._following()
-        title = self.session.task_title(following) if best is None else words.label(best)
-        label = self.say("result.next", task=title)
-        again = self.say("result.again", task=self.session.task_title(self.session.training.task))
-        buttons = [self.button("next", label)] if following or best is not None else []
-        if self._step() is None:
-            buttons.append(self.button("again", again))
-        return (*buttons, self.button("menu", self.say("result.menu")))
-
-    def accept(self, item: str) -> None:
-        """Go to the experiment menu, where the next task has the focus."""
         session = self.session
-        first = {"next": self._following(), "again": session.training.task}.get(item, "")
-        session.pages.show_start()
-        session.pages.open(ExperimentPage(session, first=first))
+        best, words = session.next_assignment, session.assignment_texts
+        following, task = self._following(), session.training.task
+        title = session.task_title(following) if best is None else words.label(best)
+        again = self.say("result.again", task=session.task_title(task))
+        rows = []
+        if following or best is not None:
+            leave = partial(self._leave, following)
+            rows.append(self.button("next", leave, self.say("result.next", task=title)))
+        if self._step() is None:
+            rows.append(self.button("again", partial(self._leave, task), again))
+        menu = partial(self._leave, "")
+        return (*rows, self.button("menu", menu, self.say("result.menu")))
 
     def back(self) -> None:
-        """Go to the experiment menu."""
-        self.accept("next")
+        """Go to the next task."""
+        self._leave(self._following())
+
+    def _leave(self, first: str) -> None:
+        """Go to the experiment menu, where a task has the focus."""
+        self.session.pages.show_start()
+        self.session.pages.open(ExperimentPage(self.session, first=first))
 
     def _step(self) -> StudyStep | None:
         return self.session.study.step_of(self.session.training.trainee)
@@ -101,8 +105,7 @@ class WaitingPage(FinishedPage):
 
     name = "waiting"
 
-    def menu(self) -> Menu:
-        """Return whom the trainee is waiting for."""
+    def content(self) -> PageContent:
         session = self.session
         own, is_there = session.own_score, session.is_slicer_connected()
         key = "waiting.slicer" if is_there else "waiting.nobody"
@@ -111,8 +114,8 @@ class WaitingPage(FinishedPage):
             key = "waiting.own"
         waiting = self.say(key, trainee=session.training.trainee)
         why = (self.say("waiting.problem", reason=problem),) if problem else ()
-        facts = _facts_of_trial(session)
-        return Menu(self.name, self.say("waiting.title"), (waiting, *why), facts, self.items())
+        facts, title = _facts_of_trial(session), self.say("waiting.title")
+        return PageContent(title, (waiting, *why), facts, self.onward())
 
 
 class ResultPage(FinishedPage):
@@ -135,64 +138,54 @@ class ResultPage(FinishedPage):
         result = self._result
         return is_passed(self.session.training.task, result.score, result.details)
 
-    def menu(self) -> Menu:
-        """Return the verdict, each value with its limit, and what helps."""
+    def content(self) -> PageContent:
         training, result, texts = self.session.training, self._result, self.session.texts
         verdict = {True: "passed", False: "failed", None: "title"}[self._is_passed]
         task = self.session.task_title(training.task)
-        return Menu(
-            self.name,
-            self.say(f"result.{verdict}", trainee=training.trainee, task=task),
-            (
-                *self._reasons(),
-                *_sentences(texts, result, "feedback", MAX_SHORT),
-                *_sentences(texts, result, "warnings", MAX_WARNINGS),
-                *self._what_comes_next(),
-                *((self.say("result.own"),) if result.details.get(OWN_SCORE) is True else ()),
-            ),
-            tuple(self._facts()),
-            self.items(),
+        step = self._step()
+        said = (
+            *self._reasons(),
+            *_sentences(texts, result, "feedback", MAX_SHORT),
+            *_sentences(texts, result, "warnings", MAX_WARNINGS),
+            *(() if step is None else (self.session.step_sentence(step),)),
+            *((self.say("result.own"),) if result.details.get(OWN_SCORE) is True else ()),
         )
+        title = self.say(f"result.{verdict}", trainee=training.trainee, task=task)
+        return PageContent(title, said, self._facts(), self.onward())
 
-    def items(self) -> tuple[MenuItem, ...]:
+    def onward(self) -> tuple[PageRow, ...]:
         """Return where the trainee can go: after a failure first to what helps.
 
         A study goes on all the same.
         """
-        items = {item.name: item for item in super().items()}
-        items |= {name: self.button(name) for name in ("errors", "worst", "replay")}
+        rows = [
+            *super().onward(),
+            self.button("errors", self.open_page(ErrorsPage)),
+            self.button("worst", partial(self.show_again, begins_at_worst=True)),
+            self.button("replay", self.show_again),
+        ]
         if procedure_details(self._result):
-            items["procedure"] = self.button("procedure")
+            rows.append(self.button("procedure", self.open_page(ProcedureErrorsPage)))
         worst = self._worst_point()
         if worst:
-            items["practice"] = self.button("practice", self.say("result.practice", point=worst))
+            practice = partial(self.session.begin_practice, self.session.training.task, worst)
+            label = self.say("result.practice", point=worst)
+            rows.append(self.button("practice", practice, label))
         is_helped = self._is_passed is False and self._step() is None
         order = _HELPFUL if is_helped else _ONWARD
-        return tuple(items[name] for name in order if name in items)
-
-    def accept(self, item: str) -> None:
-        """Show the trial again, practice its worst point, or continue."""
-        if item in ("replay", "worst"):
-            self._show_again(begins_at_worst=item == "worst")
-        elif item == "errors":
-            self.session.pages.open(ErrorsPage(self.session))
-        elif item == "procedure":
-            self.session.pages.open(ProcedureErrorsPage(self.session))
-        elif item == "practice":
-            self.session.begin_practice(self.session.training.task, self._worst_point())
-        else:
-            super().accept(item)
+        return tuple(sorted(rows, key=lambda row: order.index(row.item.name)))
 
     def back(self) -> None:
-        """Go to the experiment menu: to the task again, unless it is passed."""
-        self.accept("again" if self._is_passed is False else "next")
+        """Go to the next task, or to this one again where it is not passed."""
+        failed = self.session.training.task
+        self._leave(failed if self._is_passed is False else self._following())
 
     def closed(self) -> None:
         """Stop loading the trial."""
         if self._loading is not None:
             self._loading.cancel()
 
-    def _show_again(self, begins_at_worst: bool) -> None:
+    def show_again(self, begins_at_worst: bool = False) -> None:
         """Load the trial once, when it is first asked for."""
         session = self.session
         try:
@@ -223,11 +216,6 @@ class ResultPage(FinishedPage):
         if not reasons and mark is not None and self._result.score < mark:
             reasons = ["result.below"]
         return tuple(self.say(key) for key in reasons)
-
-    def _what_comes_next(self) -> tuple[str, ...]:
-        """Return what a study requires after this trial."""
-        step = self._step()
-        return () if step is None else (self.session.step_sentence(step),)
 
     @property
     def _mark(self) -> float | None:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import TypeVar
 
 from rastrainer_simulator.flow.session.open_pages import Page
 from rastrainer_simulator.flow.session.operator_device import SHOW, TILT
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
-from rastrainer_simulator.presentation.screen import PRESS, Hint, ItemKind, MenuItem
+from rastrainer_simulator.presentation.screen import PRESS, Hint
+
+T = TypeVar("T")
 
 
 class SessionPage(Page):
@@ -21,14 +24,20 @@ class SessionPage(Page):
         self.session.pages.close()
 
     def say(self, key: str, **values: object) -> str:
-        """Return a sentence in the chosen language."""
         return self.session.texts.say(key, **values)
 
-    def button(self, name: str, label: str = "", **others: Any) -> MenuItem:
-        return MenuItem(name, label or self.say(f"{self.name}.{name}"), **others)
+    def open_page(self, page: Callable[..., SessionPage], *arguments: object) -> Callable[[], None]:
+        """Return what opens a page of this kind."""
+        return lambda: self.session.pages.open(page(self.session, *arguments))
 
-    def choice(self, name: str, value: str, **others: Any) -> MenuItem:
-        return self.button(name, kind=ItemKind.CHOICE, value=value, **others)
+    def command(self, name: str, **arguments: object) -> Callable[[], None]:
+        """Return what has a command carried out."""
+        return lambda: self.session.do(name, arguments)
+
+
+def stepped(options: Sequence[T], value: T, direction: int) -> T:
+    """Return the next (1) or previous (−1) of some options, around the ends."""
+    return options[(options.index(value) + direction) % len(options)]
 
 
 def clickable_hint(session: TrainingSession, control: ControlName, key: str) -> Hint:

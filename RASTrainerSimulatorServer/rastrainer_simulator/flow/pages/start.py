@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.flow.pages.controls import ControlsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.introduction import IntroductionPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.preferences import (
     OF_A_TRIAL,
     OF_INSTRUCTORS,
@@ -20,8 +22,6 @@ from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import InputDevice
 from rastrainer_simulator.ops.instructor_pin import LONGEST_PIN, SHORTEST_PIN
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
-from rastrainer_simulator.presentation.screen import Menu, MenuItem
-from rastrainer_simulator.texts.texts import LANGUAGES
 
 
 class StartPage(SessionPage):
@@ -29,29 +29,16 @@ class StartPage(SessionPage):
 
     name = "start"
 
-    def menu(self) -> Menu:
-        """Return the start menu."""
-        items = ("train", "introduction", "controls", "settings", "quit")
-        return Menu(
-            self.name,
-            self.say("start.title"),
-            paragraphs=(self.say("start.text"),),
-            items=tuple(self.button(item) for item in items),
+    def content(self) -> PageContent:
+        has_read = self.session.has_read_introduction
+        rows = (
+            self.button("train", self.open_page(ExperimentPage if has_read else IntroductionPage)),
+            self.button("introduction", self.open_page(IntroductionPage)),
+            self.button("controls", self.open_page(ControlsPage)),
+            self.button("settings", self.open_page(SettingsPage)),
+            self.button("quit", self.open_page(QuitPage)),
         )
-
-    def accept(self, item: str) -> None:
-        """Open what was chosen."""
-        if item == "train" and self.session.has_read_introduction:
-            self.session.pages.open(ExperimentPage(self.session))
-            return
-        pages = {
-            "train": IntroductionPage,
-            "introduction": IntroductionPage,
-            "controls": ControlsPage,
-            "settings": SettingsPage,
-            "quit": QuitPage,
-        }
-        self.session.pages.open(pages[item](self.session))
+        return PageContent(self.say("start.title"), (self.say("start.text"),), rows=rows)
 
     def back(self) -> None:
         """Do nothing: there is no previous page."""
@@ -63,15 +50,13 @@ class QuitPage(SessionPage):
     name = "quit"
     first = "stay"
 
-    def menu(self) -> Menu:
-        """Return the question."""
-        items = (self.button("stay"), self.button("leave"))
-        return Menu(self.name, self.say("quit.title"), (self.say("quit.text"),), items=items)
+    def content(self) -> PageContent:
+        rows = (self.button("stay"), self.button("leave", self._leave))
+        return PageContent(self.say("quit.title"), (self.say("quit.text"),), rows=rows)
 
-    def accept(self, item: str) -> None:
-        if item == "leave":
-            self.session.quit()
-        self.session.pages.close()
+    def _leave(self) -> None:
+        self.session.quit()
+        self.back()
 
 
 class SettingsPage(SessionPage):
@@ -79,44 +64,33 @@ class SettingsPage(SessionPage):
 
     name = "settings"
 
-    def menu(self) -> Menu:
-        """Return the choices."""
-        items = tuple(self._item(name) for name in OPTIONS)
+    def content(self) -> PageContent:
         lock = self.session.lock
-        pin = (self.button("unlock" if lock.is_locked else "lock"),) if lock.has_pin else ()
-        items = (*items, *pin, self.button("back"))
-        return Menu(self.name, self.say("settings.title"), items=items)
+        unlock = self.button("unlock", self.open_page(PinPage))
+        pin = unlock if lock.is_locked else self.button("lock", lock.lock)
+        rows = (
+            *map(self._setting, OPTIONS),
+            *((pin,) if lock.has_pin else ()),
+            self.button("back"),
+        )
+        return PageContent(self.say("settings.title"), rows=rows)
 
-    def accept(self, item: str) -> None:
-        """Go back, ask for the PIN, or lock again."""
-        if item == "back":
-            self.back()
-        elif item == "unlock":
-            self.session.pages.open(PinPage(self.session))
-        else:
-            self.session.lock.lock()
-
-    def step(self, item: str, direction: int) -> None:
-        """Choose another option, which takes effect at once."""
-        wanted = self.session.preferences.stepped(item, direction)
-        while wanted.language not in self.session.languages:
-            wanted = wanted.stepped("language", direction)
-        self.session.prefer(wanted)
-
-    def _item(self, name: str) -> MenuItem:
+    def _setting(self, name: str) -> PageRow:
         lock = self.session.lock
         waits = self.session.has_open_trial and name in OF_A_TRIAL
         is_locked = lock.is_locked and name not in OF_TRAINEES
-        help_ = self.say("settings.waits") if waits else self._help(name)
+        help_ = self.say(f"settings.{name} help", file=PREFERENCES_FILE)
+        if waits:
+            help_ = self.say("settings.waits")
+        elif is_locked:
+            help_ = self.say("settings.locked")
         is_enabled = not waits and not is_locked and (lock.has_pin or name not in OF_INSTRUCTORS)
-        return self.choice(name, self._value(name), is_enabled=is_enabled, help=help_)
+        step = partial(self._step, name)
+        return self.choice(name, self._value(name), step, is_enabled=is_enabled, help=help_)
 
-    def _help(self, name: str) -> str:
-        if self.session.lock.is_locked and name not in OF_TRAINEES:
-            return self.say("settings.locked")
-        if name == "language" and set(self.session.languages) != set(LANGUAGES):
-            return self.say("window.no font")
-        return self.say(f"settings.{name} help", file=PREFERENCES_FILE)
+    def _step(self, name: str, direction: int) -> None:
+        """Choose another option, which takes effect at once."""
+        self.session.prefer(self.session.preferences.stepped(name, direction))
 
     def _value(self, name: str) -> str:
         value = getattr(self.session.preferences, name)
@@ -147,34 +121,30 @@ class PinPage(SessionPage):
         super().__init__(session)
         self._pin = ""
 
-    def menu(self) -> Menu:
-        """Return the digits, and the actions on them."""
+    def content(self) -> PageContent:
         is_whole = len(self._pin) >= SHORTEST_PIN
-        digits = tuple(self.button(digit, label=digit) for digit in DIGITS)
-        help_ = "" if is_whole else self.say("pin.too short")
-        dots = "•" * len(self._pin) + "_"
-        # First, so that the dots are visible even if the digits need more room than there is.
-        unlock = self.button("unlock", value=dots, is_enabled=is_whole, help=help_)
-        items = (unlock, *digits, self.button("delete"), self.button("cancel"))
-        return Menu(self.name, self.say("pin.title"), (self.say("pin.text"),), items=items)
-
-    def accept(self, item: str) -> None:
-        """Add or remove a digit, have the PIN checked, or leave."""
-        if item == "cancel":
-            self.back()
-        elif item == "unlock":
-            self.session.lock.guess(self._pin)
-        elif item == "delete":
-            self._pin = self._pin[:-1]
-        else:
-            self._add(item)
+        unlock = self.button(
+            "unlock",
+            lambda: self.session.lock.guess(self._pin),
+            value="•" * len(self._pin) + "_",
+            is_enabled=is_whole,
+            help="" if is_whole else self.say("pin.too short"),
+        )
+        rows = (
+            # First, so that the dots are visible even if the digits need more room than there is.
+            unlock,
+            *(self.button(digit, partial(self._add, digit), label=digit) for digit in DIGITS),
+            self.button("delete", self._delete),
+            self.button("cancel"),
+        )
+        return PageContent(self.say("pin.title"), (self.say("pin.text"),), rows=rows)
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
         """Add a typed digit; the focus goes to the button that unlocks, for the key Enter."""
         if device is not InputDevice.KEYBOARD or name not in {*_KEYS, _DELETE_KEY}:
             return False
         if name == _DELETE_KEY:
-            self._pin = self._pin[:-1]
+            self._delete()
         else:
             self._add(_KEYS[name])
         self.session.pages.focus("unlock")
@@ -206,3 +176,6 @@ class PinPage(SessionPage):
 
     def _add(self, digit: str) -> None:
         self._pin = (self._pin + digit)[:LONGEST_PIN]
+
+    def _delete(self) -> None:
+        self._pin = self._pin[:-1]

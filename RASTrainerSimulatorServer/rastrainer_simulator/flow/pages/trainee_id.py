@@ -3,131 +3,106 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
 
 from rastrainer.study.protocol.questionnaires import QuestionnaireItem, find_questionnaire
 from rastrainer.study.protocol.steps import StudyStep
-from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.pages.session_page import SessionPage, stepped
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.presentation.screen import Fact, Menu
+from rastrainer_simulator.presentation.screen import Fact
 
 ROWS = ("ABCDEFGHIJ", "KLMNOPQRST", "UVWXYZ-_.", "0123456789")
 MAX_KNOWN = 5
-_KNOWN, _ROW = "known ", "row "
-"""Prefix of an ID or a row's number in the name of an item."""
 
 
-class KeyboardPage(SessionPage):
+class _IdPage(SessionPage):
+    """Shows the ID as far as it is entered; `write` takes the new one."""
+
+    def __init__(self, session: TrainingSession, write: Callable[[str], None]) -> None:
+        super().__init__(session)
+        self._write = write
+
+    def _content(self, title: str, *rows: PageRow) -> PageContent:
+        entered = Fact(self.say("experiment.trainee"), self.session.trainee + "_")
+        return PageContent(self.say(title), (), (entered,), rows)
+
+    def _delete(self) -> PageRow:
+        return self.button("delete", lambda: self._write(self.session.trainee[:-1]))
+
+    def _add(self, character: str) -> None:
+        self._write(self.session.trainee + character)
+
+
+class KeyboardPage(_IdPage):
     """Rows of characters: left and right choose one, accepting types it."""
 
     name = "keyboard"
-    steps_when_accepted = False
 
-    def __init__(self, session: TrainingSession, write: Callable[[str, str], None]) -> None:
-        super().__init__(session)
-        self._write = write
-        self._places = [0] * len(ROWS)
+    def __init__(self, session: TrainingSession, write: Callable[[str], None]) -> None:
+        super().__init__(session, write)
+        self._chosen = [row[0] for row in ROWS]
 
-    def menu(self) -> Menu:
-        """Return the rows, the chosen character of each in brackets."""
-        rows = tuple(
-            self.choice(f"row{number}", self._row(number), label=self.say("keyboard.row"))
-            for number in range(len(ROWS))
-        )
-        return Menu(
-            self.name,
-            self.say("keyboard.title"),
-            facts=(Fact(self.say("experiment.trainee"), self.session.trainee + "_"),),
-            items=(*rows, self.button("delete"), self.button("done")),
-        )
+    def content(self) -> PageContent:
+        rows = (self._row(number) for number in range(len(ROWS)))
+        return self._content("keyboard.title", *rows, self._delete(), self.button("done"))
 
-    def accept(self, item: str) -> None:
-        """Type a character, delete one, or finish."""
-        trainee = self.session.trainee
-        if item == "done":
-            self.back()
-        elif item == "delete":
-            self._write("trainee", trainee[:-1])
-        else:
-            number = int(item.removeprefix("row"))
-            self._write("trainee", trainee + ROWS[number][self._places[number]])
+    def _row(self, number: int) -> PageRow:
+        """Return a row of characters, with the chosen one in brackets."""
+        chosen = self._chosen[number]
+        shown = " ".join(f"[{each}]" if each == chosen else each for each in ROWS[number])
+        label = self.say("keyboard.row")
+        row = self.choice(f"row{number}", shown, partial(self._step, number), label=label)
+        return replace(row, accept=lambda: self._add(chosen))
 
-    def step(self, item: str, direction: int) -> None:
-        """Choose the next character of a row."""
-        number = int(item.removeprefix("row"))
-        self._places[number] = (self._places[number] + direction) % len(ROWS[number])
-
-    def _row(self, number: int) -> str:
-        place = self._places[number]
-        return " ".join(
-            f"[{character}]" if index == place else character
-            for index, character in enumerate(ROWS[number])
-        )
+    def _step(self, number: int, direction: int) -> None:
+        self._chosen[number] = stepped(ROWS[number], self._chosen[number], direction)
 
 
-class ClickedIdPage(SessionPage):
+class ClickedIdPage(_IdPage):
     """Offers the IDs that have trained here last, and rows of characters to enter another one."""
 
     name = "clicked-id"
 
-    def __init__(self, session: TrainingSession, write: Callable[[str, str], None]) -> None:
-        super().__init__(session)
-        self._write = write
-
-    def menu(self) -> Menu:
-        """Return the ID so far, the known ones and the rows."""
+    def content(self) -> PageContent:
         known = (
-            self.button(_KNOWN + trainee, label=trainee)
+            self.button(f"known {trainee}", partial(self._use, trainee), label=trainee)
             for trainee in self.session.progress.latest_trainees(MAX_KNOWN)
         )
         rows = (
-            self.button(f"{_ROW}{number}", label=" ".join(ROWS[number]))
-            for number in range(len(ROWS))
+            self.button(
+                f"row {number}",
+                self.open_page(CharacterPage, self._write, row),
+                label=" ".join(row),
+            )
+            for number, row in enumerate(ROWS)
         )
-        return Menu(
-            self.name,
-            self.say("clicked-id.title"),
-            facts=(Fact(self.say("experiment.trainee"), self.session.trainee + "_"),),
-            items=(*known, *rows, self.button("delete"), self.button("done")),
-        )
+        return self._content("clicked-id.title", *known, *rows, self._delete(), self.button("done"))
 
-    def accept(self, item: str) -> None:
-        """Use an ID, open a row, delete a character, or finish."""
-        if item.startswith(_ROW):
-            row = ROWS[int(item.removeprefix(_ROW))]
-            self.session.pages.open(CharacterPage(self.session, self._write, row))
-        elif item == "delete":
-            self._write("trainee", self.session.trainee[:-1])
-        else:
-            if item.startswith(_KNOWN):
-                self._write("trainee", item.removeprefix(_KNOWN))
-            self.back()
+    def _use(self, trainee: str) -> None:
+        self._write(trainee)
+        self.back()
 
 
-class CharacterPage(SessionPage):
+class CharacterPage(_IdPage):
     """The characters of one row: a click adds one to the ID."""
 
     name = "character"
 
-    def __init__(
-        self, session: TrainingSession, write: Callable[[str, str], None], row: str
-    ) -> None:
-        super().__init__(session)
-        self._write = write
+    def __init__(self, session: TrainingSession, write: Callable[[str], None], row: str) -> None:
+        super().__init__(session, write)
         self._row = row
 
-    def menu(self) -> Menu:
-        """Return the characters."""
-        characters = (self.button(character, label=character) for character in self._row)
-        return Menu(
-            self.name,
-            self.say("clicked-id.title"),
-            facts=(Fact(self.say("experiment.trainee"), self.session.trainee + "_"),),
-            items=(*characters, self.button("back")),
+    def content(self) -> PageContent:
+        characters = (
+            self.button(character, partial(self._take, character), label=character)
+            for character in self._row
         )
+        return self._content("clicked-id.title", *characters, self.button("back"))
 
-    def accept(self, item: str) -> None:
-        if item != "back":
-            self._write("trainee", self.session.trainee + item)
+    def _take(self, character: str) -> None:
+        self._add(character)
         self.back()
 
 
@@ -146,61 +121,39 @@ class QuestionnairePage(SessionPage):
         self._questionnaire = find_questionnaire(step.questionnaire)
         self._answers: dict[str, int] = {}
 
-    def menu(self) -> Menu:
-        """Return the items, each with its answer."""
+    def content(self) -> PageContent:
         asked = self._questionnaire
-        items = tuple(
-            self.choice(
-                item.name,
-                str(self._answers.get(item.name, UNANSWERED)),
-                label=f"{number}. {self._line(item)}",
-            )
-            for number, item in enumerate(asked.items, start=1)
-        )
+        items = (self._item(number, item) for number, item in enumerate(asked.items, start=1))
         is_complete = len(self._answers) == len(asked.items)
-        keep = self.button(
-            "keep",
-            is_enabled=is_complete,
-            help="" if is_complete else self.say("questionnaire.open"),
-        )
-        text = self.say(
-            "questionnaire.text",
-            trainee=self._step.trainee,
-            lowest=asked.lowest,
-            highest=asked.highest,
-            low=self.say(f"{asked.name}.low"),
-            high=self.say(f"{asked.name}.high"),
-        )
-        return Menu(self.name, asked.title, (text,), items=(*items, keep, self.button("back")))
+        help_ = "" if is_complete else self.say("questionnaire.open")
+        keep = self.button("keep", self._keep, is_enabled=is_complete, help=help_)
+        ends = self._ends(asked.name)
+        text = self.say("questionnaire.text", trainee=self._step.trainee, **ends)
+        return PageContent(asked.title, (text,), rows=(*items, keep, self.button("back")))
 
-    def _line(self, item: QuestionnaireItem) -> str:
+    def _item(self, number: int, item: QuestionnaireItem) -> PageRow:
         """Return an item's question, with the ends of its scale if they are its own."""
-        topic = self.say(item.name)
-        if not item.anchors:
-            return topic
-        return self.say(
-            "questionnaire.ends",
-            topic=topic,
-            lowest=self._questionnaire.lowest,
-            highest=self._questionnaire.highest,
-            low=self.say(f"{item.name}.low"),
-            high=self.say(f"{item.name}.high"),
-        )
+        line = self.say(item.name)
+        if item.anchors:
+            line = self.say("questionnaire.ends", topic=line, **self._ends(item.name))
+        answer = str(self._answers.get(item.name, UNANSWERED))
+        mark = partial(self._mark, item.name)
+        return self.choice(item.name, answer, mark, label=f"{number}. {line}")
 
-    def step(self, item: str, direction: int) -> None:
+    def _ends(self, name: str) -> dict[str, object]:
+        asked = self._questionnaire
+        ends = {"low": self.say(f"{name}.low"), "high": self.say(f"{name}.high")}
+        return {"lowest": asked.lowest, "highest": asked.highest, **ends}
+
+    def _mark(self, name: str, direction: int) -> None:
         """Go to the next or previous mark; the first step goes to the end where it came from."""
         marks = self._questionnaire.marks
-        if item not in self._answers:
-            self._answers[item] = marks[0] if direction > 0 else marks[-1]
-        else:
-            place = marks.index(self._answers[item]) + direction
-            self._answers[item] = marks[place % len(marks)]
+        first = marks[-1] if direction > 0 else marks[0]
+        self._answers[name] = stepped(marks, self._answers.get(name, first), direction)
 
-    def accept(self, item: str) -> None:
-        """Submit the answers, or leave without them."""
-        if item == "keep":
-            answers = [self._answers[asked.name] for asked in self._questionnaire.items]
-            self.session.study.answer(self._step.trainee, answers)
+    def _keep(self) -> None:
+        answers = [self._answers[asked.name] for asked in self._questionnaire.items]
+        self.session.study.answer(self._step.trainee, answers)
         self.back()
 
     def advance(self, dt: float) -> None:  # noqa: ARG002

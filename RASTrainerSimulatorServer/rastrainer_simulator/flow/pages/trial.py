@@ -18,10 +18,11 @@ from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer_simulator.flow.pages.controls import ControlsPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.start import SettingsPage
+from rastrainer_simulator.flow.session.open_pages import PageContent
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.loop.timing import raise_thread_priority
-from rastrainer_simulator.presentation.screen import Fact, Menu, Tone
+from rastrainer_simulator.presentation.screen import Fact, Tone
 from rastrainer_simulator.state import TrainingState
 from rastrainer_simulator.training.replies import given
 
@@ -86,28 +87,24 @@ class MatchPage(SessionPage):
         super().__init__(session)
         self._looked = looked
 
-    def menu(self) -> Menu:
-        """Return what is known so far; a trace that cannot be matched cannot be accepted."""
-        if not self._looked.done():
-            return self._menu(self.say("match.looking"))
-        try:
-            report = self._looked.result()
-        except (RASTrainerError, OSError) as error:
-            return self._menu(self.say("match.impossible", reason=str(error)))
-        wrong = (self.say(f"match.{code}", slide=report.slide_mm) for code in report.codes)
-        return self._menu(*wrong, self.say("match.residual and error"), report=report)
-
-    def accept(self, item: str) -> None:
-        """Register the trial, or continue drawing."""
-        if item == "accept":
-            self.session.do(CommandName.REGISTER)
-        else:
-            self.session.pages.show(None)
-
-    def _menu(self, *said: str, report: MatchReport | None = None) -> Menu:
-        accept = self.button("accept", is_enabled=report is not None)
+    def content(self) -> PageContent:
+        report: MatchReport | None = None
+        said: tuple[str, ...] = (self.say("match.looking"),)
+        if self._looked.done():
+            try:
+                report = self._looked.result()
+            except (RASTrainerError, OSError) as error:
+                said = (self.say("match.impossible", reason=str(error)),)
+            else:
+                wrong = (self.say(f"match.{code}", slide=report.slide_mm) for code in report.codes)
+                said = (*wrong, self.say("match.residual and error"))
+        register = self.command(CommandName.REGISTER)
+        rows = (
+            self.button("accept", register, is_enabled=report is not None),
+            self.button("draw", lambda: self.session.pages.show(None)),
+        )
         facts = () if report is None else self._facts(report)
-        return Menu(self.name, self.say("match.title"), said, facts, (accept, self.button("draw")))
+        return PageContent(self.say("match.title"), said, facts, rows)
 
     def _facts(self, report: MatchReport) -> tuple[Fact, ...]:
         low, high = report.interval_mm
@@ -126,37 +123,26 @@ class TrialPage(SessionPage):
 
     name = "trial"
 
-    def menu(self) -> Menu:
-        """Return the choices for the trial."""
+    def content(self) -> PageContent:
         training = self.session.training
-        task = self.session.task_title(training.task)
         is_complete = training.phase is Phase.COMPLETE
-        items = ["resume", "controls", "settings"]
-        if training.touches and is_complete:
-            items[1:1] = ["register"]
-        items.append("finish" if training.task == TRIAL_RUN else "abort")
-        key = "trial.complete" if is_complete else "trial.paused"
         traced = 0 if training.trace is None else len(training.trace.points)
-        key = f"{key} trace" if traced else key
-        return Menu(
-            self.name,
-            self.say("trial.title", task=task),
-            (self.say(key, trainee=training.trainee, kept=len(training.touches), traced=traced),),
-            items=tuple(self.button(item) for item in items),
+        key = ("trial.complete" if is_complete else "trial.paused") + (" trace" if traced else "")
+        text = self.say(key, trainee=training.trainee, kept=len(training.touches), traced=traced)
+        is_run = training.task == TRIAL_RUN
+        finish = self.command(CommandName.ABORT, reason=AbortReason.TRAINEE.value)
+        may_register = training.touches and is_complete
+        rows = (
+            self.button("resume"),
+            *((self.button("register", self._register),) if may_register else ()),
+            self.button("controls", self.open_page(ControlsPage)),
+            self.button("settings", self.open_page(SettingsPage)),
+            self.button("finish", finish)
+            if is_run
+            else self.button("abort", self.open_page(AbortPage)),
         )
-
-    def accept(self, item: str) -> None:
-        """Do what was chosen."""
-        session = self.session
-        if item == "resume":
-            self.back()
-        elif item == "register":
-            self._register()
-        elif item == "finish":
-            session.do(CommandName.ABORT, {"reason": AbortReason.TRAINEE.value})
-        else:
-            pages = {"controls": ControlsPage, "settings": SettingsPage, "abort": AbortPage}
-            session.pages.open(pages[item](session))
+        title = self.say("trial.title", task=self.session.task_title(training.task))
+        return PageContent(title, (text,), rows=rows)
 
     def back(self) -> None:
         """Resume the trial."""
@@ -188,20 +174,14 @@ class PreparingPage(SessionPage):
     first = "menu"
     _is_resumed = False
 
-    def menu(self) -> Menu:
-        """Return how far the picture is."""
+    def content(self) -> PageContent:
         task = self.session.task_title(self.session.training.task)
         said = (self.say("preparing.text", task=task), self.session.preparing())
-        items = (self.button("menu", self.say("hint.menu")), self.button("begin"))
-        return Menu(self.name, self.say("preparing.title"), said, items=items)
-
-    def accept(self, item: str) -> None:
-        """Open the trial's menu, or begin without the picture."""
-        if item == "menu":
-            self.back()
-        else:
-            self.session.goes_on_blind = self.session.training.trial_id
-            self.session.do(CommandName.RESUME)
+        rows = (
+            self.button("menu", label=self.say("hint.menu")),
+            self.button("begin", self._begin_without_picture),
+        )
+        return PageContent(self.say("preparing.title"), said, rows=rows)
 
     def back(self) -> None:
         """Open the trial's menu."""
@@ -212,6 +192,10 @@ class PreparingPage(SessionPage):
             self._is_resumed = True
             self.session.do(CommandName.RESUME)
 
+    def _begin_without_picture(self) -> None:
+        self.session.goes_on_blind = self.session.training.trial_id
+        self.session.do(CommandName.RESUME)
+
 
 class AbortPage(SessionPage):
     """Asks for confirmation before a trial is aborted."""
@@ -219,19 +203,12 @@ class AbortPage(SessionPage):
     name = "abort"
     first = "keep"
 
-    def menu(self) -> Menu:
-        """Return the question."""
+    def content(self) -> PageContent:
         training = self.session.training
         text = self.say("abort.text", trainee=training.trainee, kept=len(training.touches))
-        items = (self.button("keep"), self.button("abort"))
-        return Menu(self.name, self.say("abort.title"), (text,), items=items)
-
-    def accept(self, item: str) -> None:
-        """Keep the trial or abort it."""
-        if item == "abort":
-            self.session.do(CommandName.ABORT, {"reason": AbortReason.TRAINEE.value})
-        else:
-            self.session.pages.close()
+        abort = self.command(CommandName.ABORT, reason=AbortReason.TRAINEE.value)
+        rows = (self.button("keep"), self.button("abort", abort))
+        return PageContent(self.say("abort.title"), (text,), rows=rows)
 
 
 class PracticePage(SessionPage):
@@ -240,24 +217,20 @@ class PracticePage(SessionPage):
     name = "practice"
     first = "resume"
 
-    def menu(self) -> Menu:
-        """Return the choice."""
-        items = (self.button("finish"), self.button("resume"))
+    def content(self) -> PageContent:
         trainee = self.session.training.trainee
         is_led = self.session.study.step_of(trainee) is not None
         text = self.say("practice.study" if is_led else "practice.text", trainee=trainee)
-        return Menu(self.name, self.say("practice.title"), (text,), items=items)
-
-    def accept(self, item: str) -> None:
-        """Finish, or keep practicing."""
-        if item == "finish":
-            self.session.note_done()
-            self.session.do(CommandName.ABORT, {"reason": AbortReason.PRACTICE_OVER.value})
-        else:
-            self.session.do(CommandName.RESUME)
+        rows = (self.button("finish", self._finish), self.button("resume"))
+        return PageContent(self.say("practice.title"), (text,), rows=rows)
 
     def back(self) -> None:
-        self.accept("resume")
+        """Keep practicing."""
+        self.session.do(CommandName.RESUME)
+
+    def _finish(self) -> None:
+        self.session.note_done()
+        self.session.do(CommandName.ABORT, {"reason": AbortReason.PRACTICE_OVER.value})
 
 
 class CompletePage(SessionPage):
@@ -265,16 +238,12 @@ class CompletePage(SessionPage):
 
     name = "complete"
 
-    def menu(self) -> Menu:
-        """Return the choice."""
+    def content(self) -> PageContent:
         training = self.session.training
-        items = tuple(self.button(item) for item in ("register", "undo", "abort"))
         text = self.say("complete.text", trainee=training.trainee, count=len(training.touches))
-        return Menu(self.name, self.say("complete.title"), (text,), items=items)
-
-    def accept(self, item: str) -> None:
-        """Do what was chosen."""
-        if item == "abort":
-            self.session.pages.open(AbortPage(self.session))
-        else:
-            self.session.do(CommandName.REGISTER if item == "register" else CommandName.UNDO)
+        rows = (
+            self.button("register", self.command(CommandName.REGISTER)),
+            self.button("undo", self.command(CommandName.UNDO)),
+            self.button("abort", self.open_page(AbortPage)),
+        )
+        return PageContent(self.say("complete.title"), (text,), rows=rows)

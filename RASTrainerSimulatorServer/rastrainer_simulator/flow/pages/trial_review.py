@@ -7,6 +7,7 @@ from dataclasses import replace
 from rastrainer.errors import InputError
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.pages.session_page import SessionPage, clickable_hint
+from rastrainer_simulator.flow.session.open_pages import PageContent
 from rastrainer_simulator.flow.session.plan_marks import plan_marks
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice, SourceKind
@@ -14,7 +15,6 @@ from rastrainer_simulator.presentation.feedback_event import feedback_event
 from rastrainer_simulator.presentation.screen import (
     ErrorArrow,
     Hint,
-    Menu,
     Screen,
     ScreenMessage,
     Tone,
@@ -47,9 +47,9 @@ class ErrorsPage(SessionPage):
 
     name = "errors"
 
-    def menu(self) -> Menu:
+    def content(self) -> PageContent:
         """Return what a view that draws no arrows would show."""
-        return Menu(self.name, self._title, items=(self.button("back"),))
+        return PageContent(self.title(), rows=(self.button("back"),))
 
     def screen(self) -> Screen:
         """Return the arrows; they show the true errors, which the score has already revealed."""
@@ -63,7 +63,7 @@ class ErrorsPage(SessionPage):
             turn = self.say("hint.turn_view")
             hints = (*(Hint(session.operator.pair_label(*pair), turn) for pair in pairs), back)
         return Screen(
-            instruction=ScreenMessage(self._title),
+            instruction=ScreenMessage(self.title()),
             hints=hints,
             language=session.preferences.language,
             errors=tuple(error_arrow(session.fiducial(t.label), t.position) for t in touches),
@@ -78,13 +78,8 @@ class ErrorsPage(SessionPage):
         session.view.control.turn(camera, *_TURNS[control], 1.0)
         return True
 
-    @property
-    def _title(self) -> str:
+    def title(self) -> str:
         return self.say("errors.title", longer=LONGER, good=GOOD_MM, poor=POOR_MM)
-
-    def accept(self, item: str) -> None:  # noqa: ARG002
-        """Go back to the result."""
-        self.back()
 
 
 def error_arrow(fiducial: Vector, touch: Vector) -> ErrorArrow:
@@ -122,9 +117,9 @@ class ReplayPage(SessionPage):
         self._begins_at_worst = begins_at_worst
         self._player: Player | None = None
 
-    def menu(self) -> Menu:
+    def content(self) -> PageContent:
         """Return what is read while the trial is being loaded."""
-        return Menu(self.name, self.say("replay.loading"), (), (), (self.button("back"),))
+        return PageContent(self.say("replay.loading"), rows=(self.button("back"),))
 
     def screen(self) -> Screen | None:
         """Return what is read while the trial is played; with the plan, where it was seen."""
@@ -144,10 +139,6 @@ class ReplayPage(SessionPage):
             self.playback.advance(dt)
         elif self._loading.loaded.done():
             self._begin()
-
-    def accept(self, item: str) -> None:  # noqa: ARG002
-        """Go back to the result."""
-        self.back()
 
     def pressed(self, control: ControlName) -> bool:
         """Steer the playback; while it is being loaded, the menu is steered."""

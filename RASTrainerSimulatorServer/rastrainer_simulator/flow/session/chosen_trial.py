@@ -173,7 +173,7 @@ def _unready(session: TrainingSession) -> str:
     """Return why nothing can begin yet; "" where trainee and robot are ready."""
     if not session.trainee.strip():
         return session.texts.say("experiment.no trainee")
-    return session.texts.say("being set up") if session.setting_up.is_under_way else ""
+    return session.texts.say("being set up") if session.reload.is_under_way else ""
 
 
 def tutorial_rule(session: TrainingSession) -> TutorialRule:

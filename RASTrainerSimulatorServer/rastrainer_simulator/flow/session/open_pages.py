@@ -1,58 +1,110 @@
-"""What a page is, which pages are open one over the other, and which item has the focus."""
+"""What a page is, which pages are open one over the other, and which row has the focus."""
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
-from typing import ClassVar
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
-from rastrainer_simulator.presentation.screen import ItemKind, Menu, MenuItem, Screen
+from rastrainer_simulator.presentation.screen import (
+    Fact,
+    ItemKind,
+    Menu,
+    MenuItem,
+    ScoreTrend,
+    Screen,
+)
 
 _STEPS = {ControlName.LEFT: -1, ControlName.RIGHT: 1}
 _MOVES = {ControlName.UP: -1, ControlName.DOWN: 1}
 
 
+@dataclass(frozen=True)
+class PageRow:
+    """One line of a page, and what it does.
+
+    Attributes:
+        item: what is shown of it.
+        accept: is called when a button is pressed, a text is chosen, or a choice accepted.
+        step: moves a choice to its next (1) or previous (−1) option.
+        write: is called with the new value of a text.
+    """
+
+    item: MenuItem
+    accept: Callable[[], object]
+    step: Callable[[int], object] = lambda _direction: None
+    write: Callable[[str], object] = lambda _value: None
+
+
+@dataclass(frozen=True)
+class PageContent:
+    """What a page shows, in the order of `Menu`."""
+
+    title: str
+    paragraphs: Sequence[str] = ()
+    facts: Sequence[Fact] = ()
+    rows: Sequence[PageRow] = ()
+    picture: str = ""
+    trend: ScoreTrend | None = None
+
+
 class Page:
-    """What is shown, and what its items do.
+    """What is shown, and what its rows do.
 
     Attributes:
         name: of the menu.
-        steps_when_accepted: whether accepting a choice goes to its next option.
-        first: name of the item that has the focus at first; "" is the first that can be chosen.
-        is_private: whether its items are only for the views of who operates.
+        first: name of the row that has the focus at first; "" is the first that can be chosen.
+        is_private: whether its rows are only for the views of who operates.
     """
 
     name: ClassVar[str] = ""
-    steps_when_accepted: ClassVar[bool] = True
     first: str = ""
     is_private: ClassVar[bool] = False
 
-    def menu(self) -> Menu:
-        """Return what is shown, without a focus."""
+    def content(self) -> PageContent:
         raise NotImplementedError
 
-    def screen(self) -> Screen | None:
-        """Return what is read in place of a menu; None where the menu is."""
-        return None
-
-    def accept(self, item: str) -> None:
-        """Handle the choice of an item."""
-
-    def step(self, item: str, direction: int) -> None:
-        """Move a choice to its next (1) or previous (−1) option."""
-
-    def write(self, item: str, value: str) -> None:
-        """Handle a new value of a text item."""
+    def say(self, key: str, **values: object) -> str:
+        """Return a sentence in the chosen language."""
+        raise NotImplementedError
 
     def back(self) -> None:
         """Leave the page, as the trainee wants."""
         raise NotImplementedError
 
-    def pressed_menu(self) -> None:
-        """Handle a press of the control for the menu."""
-        self.back()
+    def menu(self) -> Menu:
+        """Return what is shown, without a focus."""
+        shown = self.content()
+        return Menu(
+            self.name,
+            shown.title,
+            tuple(shown.paragraphs),
+            tuple(shown.facts),
+            tuple(row.item for row in shown.rows),
+            picture=shown.picture,
+            trend=shown.trend,
+        )
+
+    def button(
+        self, name: str, accept: Callable[[], object] | None = None, label: str = "", **others: Any
+    ) -> PageRow:
+        """Return a button; without a function it goes back."""
+        item = MenuItem(name, label or self.say(f"{self.name}.{name}"), **others)
+        return PageRow(item, accept or self.back)
+
+    def choice(
+        self, name: str, value: str, step: Callable[[int], object], label: str = "", **others: Any
+    ) -> PageRow:
+        """Return a choice; accepting it steps on."""
+        row = self.button(name, lambda: step(1), label, kind=ItemKind.CHOICE, value=value, **others)
+        return dataclasses.replace(row, step=step)
+
+    def screen(self) -> Screen | None:
+        """Return what is read in place of a menu; None where the menu is."""
+        return None
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:  # noqa: ARG002
         return False
@@ -75,7 +127,7 @@ class OpenPages:
     """The open pages; none while the trainee works.
 
     A page that opens automatically ignores presses for `GRACE_S` seconds of the simulator's clock;
-    clicks on its items count at once.
+    clicks on its rows count at once.
 
     Attributes:
         home: makes the page that all others lie over.
@@ -92,12 +144,12 @@ class OpenPages:
     def top(self) -> Page | None:
         return self._open[-1] if self._open else None
 
-    def show(self, page: Page | None, has_grace: bool = False) -> None:
+    def show(self, page: Page | None, ignore_input_briefly: bool = False) -> None:
         """Close all pages and open one, or none."""
         while self._open:
             self.close()
         if page is not None:
-            self.open(page, has_grace)
+            self.open(page, ignore_input_briefly)
 
     def advance(self, dt: float) -> None:
         """Advance the page that is shown by `dt` seconds."""
@@ -109,9 +161,9 @@ class OpenPages:
         """Close all pages except the first."""
         self.show(self.home())
 
-    def open(self, page: Page, has_grace: bool = False) -> None:
+    def open(self, page: Page, ignore_input_briefly: bool = False) -> None:
         """Open a page over the others; with a grace time where it opens automatically."""
-        self._grace_s = GRACE_S if has_grace else 0.0
+        self._grace_s = GRACE_S if ignore_input_briefly else 0.0
         self._open.append(page)
         self._focus.append(page.first)
 
@@ -144,15 +196,12 @@ class OpenPages:
             self._step(_STEPS[control])
         elif control is ControlName.ACCEPT:
             self.choose(self._focused(page.menu()))
-        elif control is ControlName.BACK:
+        elif control in (ControlName.BACK, ControlName.MENU):
             self._happened(FeedbackEvent.ACCEPT)
             page.back()
-        elif control is ControlName.MENU:
-            self._happened(FeedbackEvent.ACCEPT)
-            page.pressed_menu()
 
     def move(self, direction: int) -> None:
-        """Move the focus to the next (1) or previous (−1) item, around the ends."""
+        """Move the focus to the next (1) or previous (−1) row, around the ends."""
         page = self.top
         if page is None:
             return
@@ -168,55 +217,47 @@ class OpenPages:
             self._focus[-1] = name
 
     def choose(self, name: str) -> None:
-        """Choose an item: press a button, step a choice, go to a text."""
-        page, item = self.top, self._item(name)
-        if page is None or item is None:
-            return
-        self._focus[-1] = name
-        if not item.is_enabled:
-            self._happened(FeedbackEvent.ERROR)
-            return
-        self._happened(FeedbackEvent.ACCEPT)
-        if item.kind is ItemKind.CHOICE and page.steps_when_accepted:
-            page.step(name, 1)
-        else:
-            page.accept(name)
+        """Choose a row: press a button, step a choice, go to a text."""
+        row = self._row(name)
+        if row is not None:
+            self._focus[-1] = name
+            self._happened(FeedbackEvent.ACCEPT if row.item.is_enabled else FeedbackEvent.ERROR)
+            if row.item.is_enabled:
+                row.accept()
 
     def write(self, name: str, value: str) -> None:
-        """Put a value into a text item."""
-        page, item = self.top, self._item(name)
-        if page is not None and item is not None and item.kind is ItemKind.TEXT:
+        """Put a value into a text."""
+        row = self._row(name)
+        if row is not None and row.item.kind is ItemKind.TEXT:
             self._focus[-1] = name
-            page.write(name, value)
+            row.write(value)
 
     def typed(self, code: str, text: str) -> tuple[str, str] | None:
-        """Return the text item that has the focus, and its value after a key; None without one."""
-        item, is_deleting = self._focused_item(), code == "Backspace"
-        if item is None or item.kind is not ItemKind.TEXT:
+        """Return the text that has the focus, and its value after a key; None without one."""
+        row, is_deleting = self._focused_row(), code == "Backspace"
+        if row is None or row.item.kind is not ItemKind.TEXT:
             return None
         if not is_deleting and (len(text) != 1 or not text.isprintable()):
             return None
-        return item.name, item.value[:-1] if is_deleting else item.value + text
+        value = row.item.value
+        return row.item.name, value[:-1] if is_deleting else value + text
 
     def _step(self, direction: int) -> None:
-        page, item = self.top, self._focused_item()
-        if page is None or item is None or item.kind is not ItemKind.CHOICE:
-            return
-        if not item.is_enabled:
-            self._happened(FeedbackEvent.ERROR)
-            return
-        self._happened(FeedbackEvent.FOCUS)
-        page.step(item.name, direction)
+        row = self._focused_row()
+        if row is not None and row.item.kind is ItemKind.CHOICE:
+            self._happened(FeedbackEvent.FOCUS if row.item.is_enabled else FeedbackEvent.ERROR)
+            if row.item.is_enabled:
+                row.step(direction)
 
-    def _focused_item(self) -> MenuItem | None:
-        return None if self.top is None else self._item(self._focused(self.top.menu()))
+    def _focused_row(self) -> PageRow | None:
+        return None if self.top is None else self._row(self._focused(self.top.menu()))
 
-    def _item(self, name: str) -> MenuItem | None:
-        items = () if self.top is None else self.top.menu().items
-        return next((item for item in items if item.name == name), None)
+    def _row(self, name: str) -> PageRow | None:
+        rows = () if self.top is None else self.top.content().rows
+        return next((row for row in rows if row.item.name == name), None)
 
     def _focused(self, menu: Menu) -> str:
-        """Return the item with the focus: the first that can be chosen, where it is gone."""
+        """Return the row with the focus: the first that can be chosen, where it is gone."""
         if self._grace_s > 0.0:
             return ""
         items = [item for item in menu.items if item.kind is not ItemKind.AXIS]

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 
 from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import TRIAL_RUN, Phase
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.delivered_trial import scored_with_journal, with_progress_among
@@ -156,7 +157,9 @@ def register_open_trial(ask: Ask, trial_id: str, scenario: Scenario) -> None:
 
 def registered_alone(ask: Ask, trial_id: str, scenario: Scenario) -> TrialAnalysis:
     """Return the registration of a trial; it is not submitted yet."""
-    record = TrialRecord.from_json(ask(CommandName.GET_TRIAL, {"trialId": trial_id})["record"])
+    record = record_from_json(
+        TrialRecord, ask(CommandName.GET_TRIAL, {"trialId": trial_id})["record"]
+    )
     if record.scenario != scenario.name:
         # Another head may have been loaded since the trial was finished.
         raise InputError(
@@ -183,9 +186,8 @@ def score_alone(
         earlier: the trainee's earlier scored trials and failures, oldest first.
         records: folder of the trials' journals.
     """
-    truth = RevealedTruth.from_json(
-        _asked(ask, CommandName.SUBMIT_REGISTRATION, registration_arguments(analysis))
-    )
+    answer = _asked(ask, CommandName.SUBMIT_REGISTRATION, registration_arguments(analysis))
+    truth = record_from_json(RevealedTruth, answer, "The simulator's answer")
     scored = scored_with_journal(analysis, truth, scenario, records=records, pause=_rest)
     arguments = score_arguments(_with_progress(scored, earlier))
     arguments["details"][OWN_SCORE] = True

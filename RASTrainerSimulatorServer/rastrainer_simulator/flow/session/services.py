@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,7 +13,6 @@ from rastrainer_simulator.flow.session.assigned_training import Curricula, Study
 from rastrainer_simulator.loop.control_loop import BEING_SET_UP, TRIAL_IS_OPEN, ControlLoop
 from rastrainer_simulator.ops.instructor_pin import PinGuesses
 from rastrainer_simulator.state import Answer
-from rastrainer_simulator.texts.texts import LANGUAGES
 
 SET_UP_AFTER_S = 1.0
 """A simulation takes a second to make: who steps through the options shall not wait for each."""
@@ -36,7 +35,6 @@ class FlowServices:
         scores_alone: whether a trial outside of a study is scored here where no Slicer is
             connected.
         pin: the instructor's; None where there is never one.
-        languages: tags of those that can be chosen: the window may lack the letters of others.
     """
 
     config: Path
@@ -50,10 +48,9 @@ class FlowServices:
     curricula: Curricula = field(default_factory=Curricula)
     scores_alone: bool = False
     pin: PinGuesses | None = None
-    languages: Sequence[str] = tuple(LANGUAGES)
 
 
-class SettingUp:
+class SimulationReload:
     """Has the simulation continue with other settings, or on another head, between two trials."""
 
     def __init__(
@@ -77,7 +74,7 @@ class SettingUp:
         is_ours = self._answer is not None or self._wanted is not None
         return is_ours or self._control_loop.is_being_replaced
 
-    def want(self, present: SimulationSettings, wanted: SimulationSettings) -> None:
+    def request(self, present: SimulationSettings, wanted: SimulationSettings) -> None:
         """Continue with settings other than the present ones, once they have stayed unchanged."""
         is_needed = wanted != present or self._answer is not None
         self._wanted = wanted if is_needed else None

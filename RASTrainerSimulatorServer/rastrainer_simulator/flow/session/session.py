@@ -31,7 +31,7 @@ from rastrainer_simulator.flow.session.preferences import (
     Preferences,
     write_preferences,
 )
-from rastrainer_simulator.flow.session.services import FlowServices, SettingUp
+from rastrainer_simulator.flow.session.services import FlowServices, SimulationReload
 from rastrainer_simulator.flow.session.trace_places import TracePlaces
 from rastrainer_simulator.flow.session.trainee_history import (
     DoneTasks,
@@ -89,8 +89,7 @@ class TrainingSession:
         picture_share: how much of its picture the trainee's view has, 0 to 1, while it is awaited;
             else None.
         goes_on_blind: the trial that the trainee wants to go on without its picture; "" for none.
-        setting_up: has the simulation continue with other settings, or on another head.
-        languages: those that can be chosen.
+        reload: has the simulation continue with other settings, or on another head.
     """
 
     def __init__(
@@ -127,12 +126,11 @@ class TrainingSession:
         self.screen_sticks = ScreenSticks()
         self.layouts: dict[int, Mapping[str, str]] = {}
         self.lock = InstructorLock(services.pin)
-        self.languages = services.languages
         self.list_scenarios = services.list_scenarios
         self.is_slicer_connected = services.is_slicer_connected
         self.quit = services.quit
         self.study = services.study
-        self.setting_up = SettingUp(services, control_loop, self.complain)
+        self.reload = SimulationReload(services, control_loop, self.complain)
         self._services = services
         self._control_loop = control_loop
         self._controls = controls
@@ -217,7 +215,7 @@ class TrainingSession:
             self.own_score.advance(dt, self.training, self.scenario, is_in_study)
         self._take_answers()
         self._note_reached()
-        self.setting_up.advance(dt, self.has_open_trial)
+        self.reload.advance(dt, self.has_open_trial)
 
     def do(self, command: str, arguments: Mapping[str, Any] | None = None) -> None:
         """Have a command carried out."""
@@ -236,7 +234,7 @@ class TrainingSession:
 
     def begin_practice(self, task: str, point: str = "") -> None:
         """Open the practice of a task's point, recorded nowhere; without one the tutorial."""
-        if self.setting_up.is_under_way:
+        if self.reload.is_under_way:
             self.complain(self.texts.say("being set up"))
             return
         wanted = {"task": task, "trainee": self.trainee.strip(), "mode": self.mode}
@@ -274,12 +272,12 @@ class TrainingSession:
         before = self._control_loop.setup.settings
         self.preferences = preferences
         self.texts = Texts(LANGUAGES[preferences.language])
-        self.setting_up.want(before, preferences.applied_to(before))
+        self.reload.request(before, preferences.applied_to(before))
         self._save(lambda: write_preferences(self._services.config / PREFERENCES_FILE, preferences))
 
     def fiducial(self, label: str) -> Vector:
         """Return where a fiducial of the present trial is, World, m: only after the score."""
-        return self.truly_in_world(self._control_loop.truth.fiducials[label])
+        return self.truly_in_world(self._control_loop.truth.fiducials_ras[label])
 
     def truly_in_world(self, point: np.ndarray) -> Vector:
         """Return where a point of the MRI (RAS mm) truly is, World, m: only after the score."""

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.files.json_fields import read_fields
+from rastrainer.files.reading import read_json
 from rastrainer.files.writing import make_folder, write_text
 from rastrainer.journal.folder import TUTORIAL_SUFFIX, journals_of
 from rastrainer.journal.journal_file import (
@@ -25,6 +25,7 @@ from rastrainer.journal.journal_file import (
     file_stamp,
     iso,
 )
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import TRIAL_RUN, AbortReason, Phase, RegistrationMethod
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
@@ -111,6 +112,9 @@ _COUNTS_FOR = {
 """Keys also type an ID and go through menus: who has learned another device may come with them."""
 
 
+_MAX_TUTORIAL_BYTES = 1 << 20
+
+
 class FinishedTutorials:
     """Knows the devices that each trainee has finished the tutorial with."""
 
@@ -122,7 +126,7 @@ class FinishedTutorials:
         self._skipped: set[str] = set()
         for path in sorted(records.glob(f"*{TUTORIAL_SUFFIX}")):
             with contextlib.suppress(InputError, OSError):
-                self._note(TutorialOutcome.of(read_fields(path)))
+                self._note(record_from_json(TutorialOutcome, read_json(path, _MAX_TUTORIAL_BYTES)))
 
     def skip(self, trainee: str) -> None:
         """Have a trainee's trial run not wait for the tutorial until the simulator ends."""
@@ -145,7 +149,11 @@ class FinishedTutorials:
         path = self._records / f"{file_stamp(utc)}_{uuid.uuid4()}{TUTORIAL_SUFFIX}"
         make_folder(self._records, is_private=True)
         # One line, as a journal's first: by it the file is found when the trainee is deleted.
-        write_text(path, json.dumps({"utc": utc, **outcome.to_json()}) + "\n", is_private=True)
+        write_text(
+            path,
+            json.dumps({"utc": utc, **record_to_json(outcome, with_defaults=True)}) + "\n",
+            is_private=True,
+        )
 
     def _note(self, outcome: TutorialOutcome) -> None:
         self._devices[outcome.trainee].update(_COUNTS_FOR.get(outcome.device, (outcome.device,)))
@@ -236,13 +244,13 @@ def _own_trial(journal: Path) -> OwnTrial | None:
     try:
         last = {entry["kind"]: entry for entry in _last_entries(journal)}
         if "attempt" in last:
-            aborted = AbortedTrial.from_json(last["attempt"]["record"])
+            aborted = record_from_json(AbortedTrial, last["attempt"]["record"])
             failed = PastTrial.failed(aborted)
             own = OwnTrial(failed, aborted.scenario, aborted.started_utc, is_passed=False)
             return own if aborted.counts_as_failed else None
         if "registered" not in last or "scored" not in last:
             return None
-        record = TrialRecord.from_json(last["registered"]["record"])
+        record = record_from_json(TrialRecord, last["registered"]["record"])
         scored = last["scored"]["arguments"]
         details = scored["details"]
         if record.task == TRIAL_RUN:

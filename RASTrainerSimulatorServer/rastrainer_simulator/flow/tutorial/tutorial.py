@@ -233,7 +233,7 @@ class Tutorial:
         return {
             label: vector(truth.in_world(point).tolist())
             for truth in practices
-            for label, point in truth.fiducials.items()
+            for label, point in truth.fiducials_ras.items()
         }
 
     @property
@@ -310,8 +310,8 @@ class Tutorial:
             trainee=self.trainee,
             device=device.value,
             mode=self.mode,
-            seconds=sum(self._seconds.values()),
-            first_error_mm=self._first_error_mm,
-            errors_mm=self._guided.errors_mm(),
-            step_seconds=dict(self._seconds),
+            duration_s=round(sum(self._seconds.values()), 3),
+            first_error_mm=round(self._first_error_mm, 3),
+            errors_mm=tuple(round(error, 3) for error in self._guided.errors_mm()),
+            step_times_s={step: round(time, 3) for step, time in self._seconds.items()},
         )

@@ -26,7 +26,7 @@ from rastrainer_simulator.trial_state import ProcedureState, Tool
 
 def tool_tip(state: SimulationState, seq: int) -> Message:
     """Return the tool tip's pose, with what Slicer cannot read from a header in its metadata."""
-    metadata = {"seq": str(seq), "simTime": f"{state.sim_time:.6f}", "TransformStatus": "OK"}
+    metadata = {"seq": str(seq), "simTimeS": f"{state.sim_time:.6f}", "TransformStatus": "OK"}
     return Message(DeviceName.TOOL_TIP_TO_WORLD, _transform(state.tool_tip_to_world), metadata)
 
 
@@ -103,7 +103,7 @@ def sim_state(changing: Mapping[str, Any], state: SimulationState, seq: int) -> 
 
     `changing` is what `what_changes` gives; the times go along and are no reason to send it.
     """
-    times = {"simTime": round(state.sim_time, 6), "elapsedS": round(state.completion_time, 3)}
+    times = {"simTimeS": round(state.sim_time, 6), "elapsedS": round(state.completion_time, 3)}
     text = json.dumps({"seq": seq, **times, **changing}, allow_nan=False)
     return Message(DeviceName.SIM_STATE, String(text))
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import TRACED_METHODS, Phase
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.record import TrialRecord
@@ -79,7 +80,7 @@ class RegistrationCheck:
 
     def _fit(self, data: Mapping[str, Any], arguments: Mapping[str, Any]) -> dict[str, Any]:
         """Return the arguments that the trial's own points give."""
-        record = TrialRecord.from_json(data["record"]) if "record" in data else None
+        record = record_from_json(TrialRecord, data["record"]) if "record" in data else None
         given = GivenPoints.of_answer(data) if record is None else GivenPoints.of_record(record)
         scenario = self._find_scenario("" if record is None else record.scenario)
         registered = register_trial(given, scenario, pause=lambda: time.sleep(_REST_S))

@@ -29,6 +29,7 @@ from rastrainer.igtl.content import (
     Transform,
 )
 from rastrainer.igtl.message import Message
+from rastrainer.json_records import record_to_json
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName, Rate
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.steps import StepAnswers
@@ -352,7 +353,7 @@ class TrialOffers:
 
     def _offer(self, records: Iterable[AbortedTrial | TrialRecord]) -> None:
         for record in records:
-            body = json.dumps(record.to_json(), allow_nan=False)
+            body = json.dumps(record_to_json(record), allow_nan=False)
             number = next(self._numbers) % _NUMBERS
             is_aborted = isinstance(record, AbortedTrial)
             name = CommandName.TRIAL_ABORTED if is_aborted else CommandName.TRIAL_COMPLETED

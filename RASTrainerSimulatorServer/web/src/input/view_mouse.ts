@@ -11,6 +11,8 @@ const LINE_PIXELS = 16;
 /** A pinch on a touch pad comes as a wheel whose steps are small. */
 const PINCH = 8;
 const ZOOM_LIMIT = 4;
+/** A pointer that rests for so long is hidden. */
+const HIDDEN_MS = 3000;
 
 export class ViewMouse {
   private around = 0;
@@ -18,6 +20,7 @@ export class ViewMouse {
   private zoom = 1;
   private readonly fingers = new Map<number, { x: number; y: number }>();
   private dragged = -1;
+  private hiding: ReturnType<typeof setTimeout> | undefined;
 
   constructor(
     canvas: HTMLElement,
@@ -31,6 +34,13 @@ export class ViewMouse {
       canvas.addEventListener(end, (event) => this.release(event.pointerId));
     }
     canvas.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
+    canvas.addEventListener("pointermove", () => this.showPointer(canvas));
+  }
+
+  private showPointer(canvas: HTMLElement): void {
+    canvas.style.cursor = "";
+    clearTimeout(this.hiding);
+    this.hiding = setTimeout(() => (canvas.style.cursor = "none"), HIDDEN_MS);
   }
 
   /** Send what has come together since the last picture. */

@@ -10,6 +10,7 @@ import { Ghost } from "../scene/ghost";
 import { Gamepads } from "../input/gamepads";
 import { Keyboard } from "../input/keyboard";
 import { hasGuide, isTouchError, type ControlNews, type EventNews, type Hello, type News, type SceneNews, type Screen, type StateNews } from "../stream/messages";
+import { isSoftware } from "../scene/graphics";
 import { Loading } from "../overlay/loading";
 import { Overlay } from "../overlay/overlay";
 import { pair } from "../stream/pairing";
@@ -30,6 +31,9 @@ import { ViewMouse } from "../input/view_mouse";
 import { WornView } from "../scene/worn_view";
 import { GuidingPanel } from "../overlay/guiding_panel";
 import { Headset } from "../xr/headset";
+
+/** Where the processor draws, it has other work, too: no more than 30 pictures a second. */
+const LEAST_PAUSE_S = 0.9 / 30;
 
 export class Page {
   private readonly connection = new Connection(PAGE, {
@@ -68,6 +72,7 @@ export class Page {
   private lastEvent = 0;
   private scene: SceneNews | null = null;
   private isDue = true;
+  private lastPicture = -Infinity;
 
   constructor() {
     this.connection.isHolding = () =>
@@ -251,7 +256,7 @@ export class Page {
 
   private turn(stage: Stage, nowMs: number, frame?: XRFrame): void {
     const now = nowMs / 1000;
-    this.pads.poll();
+    if (!isDesktop) this.pads.poll();
     this.frames.asked(nowMs);
     this.frames.tell(nowMs);
     const { state, flat } = this;
@@ -295,8 +300,11 @@ export class Page {
   private drawFlat(flat: FlatView, now: number, model: SceneModel, state: StateNews): void {
     if (this.screen?.menu == null) this.mouse.tell();
     flat.choose(state, now, this.worn?.place(now) ?? null);
+    const pause = now - this.lastPicture;
+    if (isSoftware && pause >= 0 && pause < LEAST_PAUSE_S) return;
     const hasMoved = flat.advance(now) || this.isDue;
     if (!model.pulse(now) && !hasMoved) return;
+    this.lastPicture = now;
     this.isDue = false;
     this.place(model);
     model.mark(state);
@@ -310,13 +318,15 @@ export class Page {
     this.ring?.show(model, state, flat.camera, isWorking);
     this.arrows.show(model, flat.camera, state, isWorking, this.screen?.has_arrow ?? false);
     this.sight.show(model, flat.camera, state, isWorking);
-    flat.draw(inset !== "");
+    this.isDue = flat.draw(inset !== "", now);
     this.frames.drawn();
     this.picture.drawn(model.news.task);
   }
 }
 
-const PAGE: Hello = { kind: "page", device: browserName(), refreshHz: 0 };
+/** Whether this is the window of the simulator's own computer, which reads the gamepads itself. */
+const isDesktop = new URLSearchParams(location.search).has("desktop");
+const PAGE: Hello = { kind: isDesktop ? "desktop" : "page", device: browserName(), refreshHz: 0 };
 
 function browserName(): string {
   return /(Firefox|Edg|OPR|Chrome|Safari)\/\d+/.exec(navigator.userAgent)?.[0] ?? "";

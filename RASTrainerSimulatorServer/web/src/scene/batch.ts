@@ -12,6 +12,8 @@ import {
 } from "three";
 import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 
+import { isSoftware } from "./graphics";
+
 /** How a batch answers to light: matt for the room, glossy for what is looked at closely. */
 export type Finish = "matt" | "glossy";
 
@@ -63,7 +65,7 @@ function painted(geometry: BufferGeometry, color: Color): BufferGeometry {
 }
 
 function material(finish: Finish): MeshLambertMaterial | MeshStandardMaterial {
-  return finish === "matt"
+  return finish === "matt" || isSoftware
     ? new MeshLambertMaterial({ vertexColors: true })
     : new MeshStandardMaterial({ vertexColors: true, roughness: 0.42, metalness: 0.1 });
 }

@@ -3,6 +3,8 @@
 import { PerspectiveCamera, Vector2 } from "three";
 
 import { hasGuide, type CameraPlace, type SceneNews, type StateNews } from "../stream/messages";
+import { BackgroundCache, STATIC } from "./background_cache";
+import { isSoftware } from "./graphics";
 import type { Stage } from "./stage";
 import { Flight, Viewpoint } from "./viewpoint";
 
@@ -27,12 +29,17 @@ export class FlatView {
   private isBeside = false;
   private hasLine = false;
   /** What is seen through in the picture, and in its corner. */
+  private readonly caches: Record<"view" | "inset", BackgroundCache> | null;
   private covers: Record<"view" | "inset", readonly string[]> = { view: [], inset: [] };
 
   constructor(
     private readonly stage: Stage,
     private readonly frame: HTMLElement,
-  ) {}
+  ) {
+    const { renderer } = stage;
+    this.caches = isSoftware ? { view: new BackgroundCache(renderer), inset: new BackgroundCache(renderer) } : null;
+    for (const camera of [this.camera, this.other]) camera.layers.enable(STATIC);
+  }
 
   take(scene: SceneNews): void {
     this.scene = scene;
@@ -89,24 +96,34 @@ export class FlatView {
     return true;
   }
 
-  /** Draw, with the other camera in the corner if it is wanted. */
-  draw(hasInset: boolean): void {
-    const { renderer, scene, model } = this.stage;
+  /** Draw, with the other camera in the corner if it is wanted; return whether a better picture is to follow. */
+  draw(hasInset: boolean, now: number): boolean {
     const { x: width, y: height } = this.size;
-    renderer.setScissorTest(false);
-    renderer.setViewport(0, 0, width, height);
-    model?.seeThrough(this.covers.view);
-    renderer.render(scene, this.camera);
-    if (!hasInset) return;
+    const isUnfinished = this.drawInto("view", this.camera, new DOMRect(0, 0, width, height), now);
+    if (!hasInset) return isUnfinished;
     const box = this.frame.getBoundingClientRect();
     // A low window has no room for it beside the bull's-eye; and what it would cover comes first.
-    if (box.height === 0 || this.frame.classList.contains("clear")) return;
+    if (box.height === 0 || this.frame.classList.contains("clear")) return isUnfinished;
     this.inset.look(this.other, box.width / box.height);
-    renderer.setScissorTest(true);
-    renderer.setViewport(box.left, height - box.bottom, box.width, box.height);
-    renderer.setScissor(box.left, height - box.bottom, box.width, box.height);
-    model?.seeThrough(this.covers.inset);
-    renderer.render(scene, this.other);
+    return this.drawInto("inset", this.other, box, now) || isUnfinished;
+  }
+
+  private drawInto(place: "view" | "inset", camera: PerspectiveCamera, box: DOMRect, now: number): boolean {
+    const { renderer, scene, model } = this.stage;
+    const bottom = this.size.y - box.bottom;
+    model?.seeThrough(this.covers[place]);
+    if (this.caches !== null) {
+      const [left, low, width, height] = [box.left, bottom, box.width, box.height].map((length) =>
+        Math.round(length * renderer.getPixelRatio()),
+      ) as [number, number, number, number];
+      const content = model?.backgroundContent ?? "";
+      return this.caches[place].draw(scene, camera, { left, bottom: low, width, height }, content, now);
+    }
+    renderer.setScissorTest(place === "inset");
+    renderer.setViewport(box.left, bottom, box.width, box.height);
+    renderer.setScissor(box.left, bottom, box.width, box.height);
+    renderer.render(scene, camera);
     renderer.setScissorTest(false);
+    return false;
   }
 }

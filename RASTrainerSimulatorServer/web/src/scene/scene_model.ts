@@ -14,6 +14,8 @@ import {
 } from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 
+import { STATIC } from "./background_cache";
+import { isSoftware } from "./graphics";
 import { batch, ownColor, type Finish } from "./batch";
 import { served } from "../stream/served";
 import { isTouchError, type ProcedureNews, type SceneNews, type StateNews, type TouchStage } from "../stream/messages";
@@ -69,8 +71,11 @@ export class SceneModel {
   nextPlace: Vector3 | null = null;
   private readonly skinColor = new Color();
   private skinMesh: Mesh | null = null;
-  private readonly skin = new MeshStandardMaterial({ roughness: 0.6 });
+  private readonly skin = isSoftware ? new MeshLambertMaterial() : new MeshStandardMaterial({ roughness: 0.6 });
   private readonly noGo: Object3D[] = [];
+  /** The skin and what it holds, fiducials apart. */
+  private readonly inHead: Mesh[] = [];
+  private backgroundChanges = 0;
   /** What is drawn of each body of the arm, with its own material. */
   private readonly arm = new Map<string, readonly (readonly [Mesh, Material | Material[]])[]>();
   private readonly seenThrough = new MeshLambertMaterial({
@@ -112,6 +117,7 @@ export class SceneModel {
   paintSkin(shares: Float32Array | null): void {
     const { skin, skinMesh } = this;
     if (skinMesh === null) return;
+    this.backgroundChanges++;
     if (skin.vertexColors !== (shares !== null)) {
       skin.vertexColors = shares !== null;
       skin.color.copy(shares === null ? this.skinColor : WHITE);
@@ -172,6 +178,15 @@ export class SceneModel {
     this.skin.opacity = isClear ? CLEAR_SKIN : 1;
     this.skin.depthWrite = !isClear;
     this.skin.needsUpdate = true;
+    // Through the skin only what is drawn before it can be seen.
+    for (const mesh of this.inHead) mesh.layers.set(isClear ? 0 : STATIC);
+    this.backgroundChanges++;
+  }
+
+  /** What the picture of what stands still depends on. */
+  get backgroundContent(): string {
+    const head = this.named.get("head");
+    return [this.root.id, this.backgroundChanges, ...(head?.position ?? []), ...(head?.quaternion ?? [])].join();
   }
 
   /** Brighten and darken the next fiducial; return whether it changes the picture at `now` (s). */
@@ -193,7 +208,7 @@ export class SceneModel {
 
   private prepare(bodies: readonly string[]): void {
     const none = new Set<Object3D>();
-    for (const name of FURNITURE) this.batchNode(name, "matt", none);
+    for (const name of FURNITURE) for (const mesh of this.batchNode(name, "matt", none)) mesh.layers.set(STATIC);
     const tip = this.named.get("tip_marker");
     const apart = [tip, ...AT_THE_TOOL.map((name) => this.named.get(name))];
     const kept = new Set(apart.filter((node) => node !== undefined));
@@ -223,13 +238,15 @@ export class SceneModel {
       }
     }
     head.add(marks);
-    batch(marks, "matt", new Set());
+    this.inHead.push(...batch(marks, "matt", new Set()));
     if (skin instanceof Mesh) {
       this.skinColor.copy(ownColor(skin).color);
       this.skin.color.copy(this.skinColor);
       this.skinMesh = skin;
       skin.material = this.skin;
+      this.inHead.push(skin);
     }
+    for (const mesh of this.inHead) mesh.layers.set(STATIC);
   }
 
   private batchNode(name: string, finish: Finish, apart: Set<Object3D>): Mesh[] {

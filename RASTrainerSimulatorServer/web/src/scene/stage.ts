@@ -14,14 +14,17 @@ import {
 } from "three";
 import { RoomEnvironment } from "three/addons/environments/RoomEnvironment.js";
 
+import { STATIC } from "./background_cache";
+import { isSoftware } from "./graphics";
 import type { SceneModel } from "./scene_model";
 
 const SKY = new Color(0xe6edf2);
+/** Light of sky, ground and sun; where no environment lights, too, it is as bright without it. */
+const LIGHT = isSoftware
+  ? { sky: 3.4, ground: 0xb0b4b6, sun: 1.6 }
+  : { sky: 1.3, ground: 0x8b8f90, sun: 2.0 };
 const SHADOW_SIDE = 0.9;
 const SHADOW_PIXELS = 1024;
-
-/** Names of renderers that draw with the processor, which the simulator may need itself. */
-const SOFTWARE = /llvmpipe|softpipe|swiftshader|software/i;
 
 export type Quality = "high" | "low";
 
@@ -30,12 +33,12 @@ export class Stage {
   /** In World: x forward, y left, z up. */
   readonly world = new Object3D();
   model: SceneModel | null = null;
-  private readonly sun = new DirectionalLight(0xfff6ea, 2.0);
+  private readonly sun = new DirectionalLight(0xfff6ea, LIGHT.sun);
 
   /** Return a stage that draws on a canvas; null where the browser has no WebGL. */
   static on(canvas: HTMLCanvasElement): Stage | null {
     try {
-      return new Stage(new WebGLRenderer({ canvas, antialias: true }));
+      return new Stage(new WebGLRenderer({ canvas, antialias: !isSoftware }));
     } catch {
       return null;
     }
@@ -60,10 +63,7 @@ export class Stage {
 
   /** What this machine can afford on a flat display. */
   get affordable(): Quality {
-    const context = this.renderer.getContext();
-    const names = context.getExtension("WEBGL_debug_renderer_info");
-    const name = context.getParameter(names?.UNMASKED_RENDERER_WEBGL ?? context.RENDERER);
-    return SOFTWARE.test(String(name)) ? "low" : "high";
+    return isSoftware ? "low" : "high";
   }
 
   /** Draw with shadows, or without. */
@@ -81,10 +81,12 @@ export class Stage {
   }
 
   private light(): void {
-    const environment = new PMREMGenerator(this.renderer).fromScene(new RoomEnvironment(), 0.04);
-    this.scene.environment = environment.texture;
-    this.scene.environmentIntensity = 0.45;
-    const hemisphere = new HemisphereLight(0xf4f8ff, 0x8b8f90, 1.3);
+    if (!isSoftware) {
+      const environment = new PMREMGenerator(this.renderer).fromScene(new RoomEnvironment(), 0.04);
+      this.scene.environment = environment.texture;
+      this.scene.environmentIntensity = 0.45;
+    }
+    const hemisphere = new HemisphereLight(0xf4f8ff, LIGHT.ground, LIGHT.sky);
     this.sun.position.set(-0.25 + 0.48, 1.6, 0.9);
     this.sun.target.position.set(0.48, 0.2, 0);
     const shadow = this.sun.shadow;
@@ -96,6 +98,7 @@ export class Stage {
     shadow.bias = -0.0006;
     shadow.normalBias = 0.004;
     shadow.radius = 3;
+    for (const light of [hemisphere, this.sun]) light.layers.enable(STATIC);
     this.scene.add(hemisphere, this.sun, this.sun.target);
   }
 }

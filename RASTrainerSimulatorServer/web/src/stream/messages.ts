@@ -229,7 +229,7 @@ export type Role = "view" | "spectator";
 
 /** What a view says about itself when it connects. */
 export interface Hello {
-  readonly kind: "page" | "headset" | "spectator";
+  readonly kind: "desktop" | "page" | "headset" | "spectator";
   readonly device: string;
   readonly refreshHz: number;
 }

@@ -11,7 +11,7 @@ export async function pair(form: HTMLFormElement, wasPaired: boolean): Promise<v
   const [, given, role] = /^#code=(\d{1,64})(?:&role=(spectator))?$/.exec(location.hash) ?? [];
   let wrong = wasPaired ? say("restarted") : "";
   if (given !== undefined) {
-    history.replaceState(null, "", location.pathname);
+    history.replaceState(null, "", location.pathname + location.search);
     wrong = await send(given, (role ?? "view") as Role, "oldCode");
     if (wrong === "") return;
   }

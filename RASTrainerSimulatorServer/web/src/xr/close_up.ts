@@ -13,6 +13,7 @@ import {
 } from "three";
 
 import { COLORS } from "../panels/pen";
+import { STATIC } from "../scene/background_cache";
 import type { StateNews } from "../stream/messages";
 import type { Stage } from "../scene/stage";
 import { Viewpoint } from "../scene/viewpoint";
@@ -35,6 +36,7 @@ export class CloseUp {
   private turn = 0;
 
   constructor(wide: number) {
+    this.camera.layers.enable(STATIC);
     this.target.texture.colorSpace = SRGBColorSpace;
     this.target.texture.minFilter = LinearFilter;
     const material = new MeshBasicMaterial({ map: this.target.texture, toneMapped: false });

@@ -7,6 +7,7 @@ import type { FrameCount } from "../stream/frame_count";
 import type { Aim, ControlNews, DepthRuler, EventNews, Hello, SceneNews, Screen, StateNews } from "../stream/messages";
 import type { SceneModel } from "../scene/scene_model";
 import type { Sounds } from "../audio/sounds";
+import { STATIC } from "../scene/background_cache";
 import type { Stage } from "../scene/stage";
 import { RoomPanels } from "./room_panels";
 import { headsetModel } from "./device";
@@ -49,6 +50,7 @@ export class Headset {
   ) {
     const { scene, renderer } = stage;
     this.worn = new WornPoses(connection, stage.world);
+    this.camera.layers.enable(STATIC);
     this.placement.rig.add(this.camera);
     scene.add(this.placement.rig, this.panels.room);
     this.panels.room.add(this.arrow.group);

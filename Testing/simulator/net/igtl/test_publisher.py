@@ -159,7 +159,7 @@ def test_tip_is_sent_in_millimeters_with_its_number_and_time(publisher, receiver
     first, second = receiver.of("ToolTipToWorld")
     expected = ((0, -1, 0, 500), (1, 0, 0, -250), (0, 0, 1, 125), (0, 0, 0, 1))
     assert first.content.matrix == expected
-    assert first.metadata["simTime"] == "2.500000"
+    assert first.metadata["simTimeS"] == "2.500000"
     assert first.metadata["TransformStatus"] == "OK"
     assert int(second.metadata["seq"]) > int(first.metadata["seq"])
 
@@ -179,7 +179,7 @@ def test_state_is_ascii_json_with_the_agreed_keys(publisher, receiver):
     sent = json.loads(message.content.text)
     assert sent.pop("seq") > 0
     assert sent == {
-        "simTime": 3.0,
+        "simTimeS": 3.0,
         "elapsedS": state.elapsed,
         "phase": "running",
         "trainee": "Zoë",

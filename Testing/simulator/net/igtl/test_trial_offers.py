@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from rastrainer.igtl.client import Client
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import PROTOCOL_VERSION, Phase
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer_simulator.net.igtl.simulator_link import OFFERS_AT_ONCE
@@ -62,7 +63,7 @@ def test_trial_is_offered_the_moment_it_is_registered(collector, link_server):
 
 def test_aborted_trials_are_offered_before_one_finished_later(link_server):
     """A client that has just connected would otherwise count a repeat before it knows of both."""
-    aborted = AbortedTrial.from_json(make_aborted())
+    aborted = record_from_json(AbortedTrial, make_aborted())
     link_server.simulated.unacknowledged = (aborted, record("old"), record("repeat"))
     link_server.simulated.arrivals = 1
     registered = at_rest(training=TrainingState(1, Phase.REGISTERED, trial_id="repeat"))
@@ -106,10 +107,10 @@ def test_offers_are_numbered_so_that_each_can_be_answered(link_server):
 
 
 def test_an_aborted_trial_is_offered_as_such(link_server):
-    aborted = AbortedTrial.from_json(make_aborted())
+    aborted = record_from_json(AbortedTrial, make_aborted())
     link_server.simulated.unacknowledged = (aborted,)
     with Collector(link_server, "TrialAborted") as collector:
         collector.server.thread.call(link_server.link.offers.repeat)
         collector.send_command("ListTasks")
         (offer,) = collector.offers
-    assert AbortedTrial.from_json(json.loads(offer.body)) == aborted
+    assert record_from_json(AbortedTrial, json.loads(offer.body)) == aborted

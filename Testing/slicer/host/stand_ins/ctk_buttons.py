@@ -32,7 +32,6 @@ class Folding(QtCore.QObject):
             return
         self._isAtWork = True
         for child in self._hidden:
-            child.removeEventFilter(self)
             child.show()
         self._isAtWork = False
         self._hidden = []
@@ -41,10 +40,9 @@ class Folding(QtCore.QObject):
         """Hide those children that are not hidden yet."""
         direct = QtCore.Qt.FindChildOption.FindDirectChildrenOnly
         for child in self._widget.findChildren(QtWidgets.QWidget, options=direct):
+            child.installEventFilter(self)
             if not child.isHidden():
                 self._hide(child)
-                self._hidden.append(child)
-                child.installEventFilter(self)
 
     def heed(self, event: QtCore.QEvent) -> None:
         """Hide a child that was just added."""
@@ -53,15 +51,18 @@ class Folding(QtCore.QObject):
             self.hide_children()
 
     def eventFilter(self, child: QtCore.QObject, event: QtCore.QEvent) -> bool:
-        """Remember that a child of the collapsed widget is to stay hidden."""
-        isHidden = event.type() == QtCore.QEvent.Type.HideToParent
-        if isHidden and not self._isAtWork and child in self._hidden:
-            self._hidden.remove(child)
-            child.removeEventFilter(self)
+        """Remember what a child is to be when the collapsed widget is opened."""
+        if self.is_collapsed and not self._isAtWork:
+            if event.type() == QtCore.QEvent.Type.HideToParent and child in self._hidden:
+                self._hidden.remove(child)
+            elif event.type() == QtCore.QEvent.Type.ShowToParent:
+                self._hide(child)
         return False
 
     def _hide(self, child: QtWidgets.QWidget) -> None:
         self._isAtWork = True
+        if child not in self._hidden:
+            self._hidden.append(child)
         child.hide()
         # Otherwise Qt would send no event when it is hidden once more.
         child.setAttribute(QtCore.Qt.WidgetAttribute.WA_WState_ExplicitShowHide, False)

@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, Generic, TypeVar
 
 from rastrainer.commands import CommandName
+from rastrainer.json_records import record_from_json
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.signal import Signal
@@ -183,7 +184,7 @@ class AbortedTrialLogic:
             self.kept.emit(record)
 
     def _keep(self, delivery: Delivery) -> AbortedTrial:
-        record = AbortedTrial.from_json(delivery)
+        record = record_from_json(AbortedTrial, delivery)
         with self._openStudy() as study:
             AbortedTrials(study).add(record, delivery)
         return record

@@ -136,7 +136,7 @@ class ModuleSession:
         self.files = scenarioLoader(scene, self.work)
         self.scenarioMaker = ScenarioMaker(scene, self.simulator, cache, places.library, run)
         self.scenarioFiles = ScenarioFiles(self.simulator, cache, places.library)
-        self.training = TrainingLogic(scene, self.link, cache.find)
+        self.training = TrainingLogic(scene, self.link, cache.find, later=self.work.changeScene)
         self.slices = SliceFollower(scene, self.training, later=self.work.later)
         self.study = StudyLogic(self.trainees, self.training, self.link)
         self.curriculum = CurriculumLogic(self.trainees, self.link)
@@ -287,6 +287,7 @@ class ModuleSession:
 
     def sceneWasCleared(self) -> None:
         """Forget references into the old scene; a running trial is shown again."""
+        self.work.forgetScene()
         self.layout.forgetScene()
         self.plan.points.forget()
         self.landmarks.points.forget()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -77,13 +77,24 @@ class ScenarioLogic:
         """Return the scenario of that name; raise `InputError` if there is none."""
         return self._cache.find(scenarioName)
 
-    def show(self, scenarioName: str, taskName: str) -> None:
-        """Show a scenario's head and the fiducials of one of its tasks."""
-        scenario = self._cache.find(scenarioName)
-        showScenario(self._scene, scenario)
-        showImages(self._scene)
+    def show(
+        self, scenarioName: str, taskName: str, then: Callable[[], None] = lambda: None
+    ) -> None:
+        """Show a scenario's head and the fiducials of one of its tasks in the next turns.
+
+        `then` is called in the last of them.
+        """
+        scenario, later = self._cache.find(scenarioName), self._work.changeScene
+        scenario.task(taskName)  # Raises before anything is shown.
+        showScenario(self._scene, scenario, later)
+        later(partial(showImages, self._scene))
+        later(partial(showTask, self._scene, scenario, taskName))
+        later(partial(showOnlyTouchesOf, self._scene, scenario.name, taskName))
+        later(partial(self._showPlace, scenario, taskName))
+        later(then)
+
+    def _showPlace(self, scenario: Scenario, taskName: str) -> None:
         fixed = showTask(self._scene, scenario, taskName)
-        showOnlyTouchesOf(self._scene, scenario.name, taskName)
         placed = findNode(self._scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
         if placed is None or isPlanned(placed):
             showPlannedPlace(self._scene, scenario, capturedPointsNode(self._scene), fixed)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from rastrainer.commands import CommandName
@@ -13,6 +14,7 @@ from rastrainer.igtl.client import Reply
 from rastrainer.json_checks import is_number
 from rastrainer.protocol import FIDUCIAL_COUNT, OPEN_PHASES, TRIAL_RUN, Phase, RegistrationMethod
 from rastrainer.scenario.scenario import Scenario, method_of
+from rastrainer.slicer.background_work import CallLater, callNow
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode
@@ -86,7 +88,9 @@ class TrainingLogic:
         link: Link,
         findScenario: Callable[[str], Scenario],
         clock: Callable[[], float] = time.monotonic,
+        later: CallLater = callNow,
     ) -> None:
+        """`later` changes the scene, one part after the other."""
         self.changed = Signal()
         self.answered = Signal()
         self.sceneShown = Signal()
@@ -95,6 +99,7 @@ class TrainingLogic:
         self._link = link
         self._findScenario = findScenario
         self._clock = clock
+        self._later = later
         self._state: Mapping[str, Any] = {}
         self._stateTime = 0.0
         self._shownTrial = ""
@@ -249,14 +254,21 @@ class TrainingLogic:
             return
         try:
             scenario = self._findScenario(str(reply.data.get("scenario", "")))
-            showScenario(self._scene, scenario)
-            method = method_of(self._state.get("method"))
-            fixed = showTask(self._scene, scenario, str(self._state.get("task", "")), method)
+            task, method = str(self._state.get("task", "")), method_of(self._state.get("method"))
+        except InputError as error:
+            self.answered.emit(str(error))
+            return
+        showScenario(self._scene, scenario, self._later)
+        self._later(partial(self._showTask, scenario, task, method))
+
+    def _showTask(self, scenario: Scenario, task: str, method: RegistrationMethod) -> None:
+        try:
+            fixed = showTask(self._scene, scenario, task, method)
         except InputError as error:
             self.answered.emit(str(error))
             return
         self._total = fixed.GetNumberOfControlPoints()
-        noteTouchedTask(self._scene, scenario.name, str(self._state.get("task", "")), method)
+        noteTouchedTask(self._scene, scenario.name, task, method)
         showPlannedPlace(self._scene, scenario, capturedPointsNode(self._scene), fixed)
         self.sceneShown.emit(scenario)
         self.changed.emit()

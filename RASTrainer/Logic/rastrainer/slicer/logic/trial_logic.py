@@ -24,6 +24,7 @@ from typing import Any
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import OPEN_PHASES
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork
@@ -238,7 +239,8 @@ class TrialLogic:
         isOther = self._state.get("trialId") != analysis.record.trial_id
         if isOther and self._state.get("phase") in OPEN_PHASES:
             return
-        showTrial(self._scene, self._findScenario(analysis.record.scenario), analysis)
+        scenario = self._findScenario(analysis.record.scenario)
+        showTrial(self._scene, scenario, analysis, self._work.changeScene)
 
     def _score(
         self,
@@ -281,7 +283,7 @@ class TrialLogic:
         """
 
         def score(answer: Mapping[str, Any]) -> None:
-            truth = RevealedTruth.from_json(answer)
+            truth = record_from_json(RevealedTruth, answer, "The simulator's answer")
             self._work.do(
                 self._checksJournals,
                 lambda isChecked: fetch(truth) if isChecked else compute(truth, None),

@@ -60,17 +60,14 @@ FIDUCIAL_COLOR = (0.25, 0.55, 0.95)
 TARGET_COLOR = (0.2, 0.75, 0.35)
 
 
-def showScenario(scene: Any, scenario: Scenario) -> None:
-    """Show head, skull, targets and trajectory; called again, nothing is made twice.
+def showScenario(scene: Any, scenario: Scenario, later: CallLater = callNow) -> None:
+    """Show head, skull, targets and trajectory, one after the other by `later`.
 
-    Meshes and images come later, by a `scenarioLoader`. The first point of the list of targets is
+    Called again, nothing is made twice. Meshes and images come still later, by a `scenarioLoader`. The first point of the list of targets is
     the scenario's own, at which the target error is reported.
     """
-    _showHead(scene, scenario)
-    _showSkull(scene, scenario)
-    _showTargets(scene, scenario)
-    _showTrajectory(scene, scenario)
-    requestVolume(scene, scenario)
+    for show in (_showHead, _showSkull, _showTargets, _showTrajectory, requestVolume):
+        later(partial(show, scene, scenario))
 
 
 def showTask(

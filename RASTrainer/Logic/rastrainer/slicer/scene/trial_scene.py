@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from hashlib import sha256
 from typing import Any
 
@@ -14,6 +15,7 @@ from rastrainer.protocol import TRACED_METHODS, RegistrationMethod
 from rastrainer.registration.fits import MINIMUM_POINTS, RIGID
 from rastrainer.registration.registration import Registration
 from rastrainer.scenario.scenario import Scenario
+from rastrainer.slicer.background_work import CallLater, callNow
 from rastrainer.slicer.scene.error_colors import showResidualArrows
 from rastrainer.slicer.scene.nodes import (
     Role,
@@ -188,21 +190,26 @@ def followPlacement(scene: Any) -> None:
     placeRobot(scene, node if node is not None and isApplied(node) else None)
 
 
-def showTrial(scene: Any, scenario: Scenario, analysis: TrialAnalysis) -> None:
-    """Replace what the scene shows by this trial; the touches are those of its record."""
-    showScenario(scene, scenario)
-    record = analysis.record
-    fixed = showTask(scene, scenario, record.task, record.method)
-    moving = showTouches(scene, record)
-    showRegistration(scene, analysis.rigid, moving, fixed)
-    showResiduals(scene, analysis.rigid, _leaveOneOut(analysis))
-    kinds = list(analysis.fits)
-    showFits(
-        scene,
-        [analysis.fits[kind] for kind in kinds],
-        [analysis.target_errors[kind] for kind in kinds],
-    )
-    showResidualArrows(scene, analysis.rigid)
+def showTrial(
+    scene: Any, scenario: Scenario, analysis: TrialAnalysis, later: CallLater = callNow
+) -> None:
+    """Replace what the scene shows by this trial, one part after the other by `later`.
+
+    The touches are those of its record.
+    """
+    record, rigid = analysis.record, analysis.rigid
+    errors = [analysis.target_errors[kind] for kind in analysis.fits]
+
+    def findFixed() -> Any:
+        return showTask(scene, scenario, record.task, record.method)
+
+    showScenario(scene, scenario, later)
+    later(findFixed)
+    later(partial(showTouches, scene, record))
+    later(lambda: showRegistration(scene, rigid, capturedPointsNode(scene), findFixed()))
+    later(lambda: showResiduals(scene, rigid, _leaveOneOut(analysis)))
+    later(partial(showFits, scene, list(analysis.fits.values()), errors))
+    later(partial(showResidualArrows, scene, rigid))
 
 
 def _leaveOneOut(analysis: TrialAnalysis) -> np.ndarray | None:

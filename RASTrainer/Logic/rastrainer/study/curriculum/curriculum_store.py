@@ -8,8 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 
 from rastrainer.errors import InputError
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import PROCEDURE_PHASES, TRIAL_RUN
 from rastrainer.study.curriculum.curriculum import Curriculum, curriculum_from_json
 from rastrainer.study.curriculum.standing import (
@@ -191,7 +193,7 @@ def _scored(
     score_json: str,
     outcome_json: str | None,
 ) -> CountedTrial:
-    score = decoded(score_json, TrialScore.from_json)
+    score = decoded(score_json, partial(record_from_json, TrialScore))
     found: TrialScore | ProcedureScore = score
     parts: Mapping[str, float] = score.parts
     procedure = ""

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
+from functools import partial
 from typing import Any
 
 from rastrainer.errors import InputError
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.study.database import deliveries, study_trainees, study_trials
 from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study import Study
@@ -58,8 +60,8 @@ class AbortedTrials:
         """
         if not isinstance(record, AbortedTrial):
             delivered = record
-            record = AbortedTrial.from_json(delivered)
-        text = record_text(delivered or record.to_json())
+            record = record_from_json(AbortedTrial, delivered)
+        text = record_text(delivered or record_to_json(record))
         with self._database.writing() as connection:
             return _add(connection, record, text)
 
@@ -104,7 +106,7 @@ def stored_of(connection: Connection, pseudonym: str) -> tuple[StoredAbortedTria
         (pseudonym,),
     ).fetchall()
     found = [
-        StoredAbortedTrial(decoded(text, AbortedTrial.from_json), step, reason)
+        StoredAbortedTrial(decoded(text, partial(record_from_json, AbortedTrial)), step, reason)
         for text, step, reason in rows
     ]
     return tuple(sorted(found, key=lambda stored: moment(stored.record.started_utc)))
@@ -135,7 +137,9 @@ def _add(connection: Connection, record: AbortedTrial, text: str) -> bool:
     row = connection.execute(
         "SELECT record_json FROM aborted_trials WHERE trial_id = ?", (record.trial_id,)
     ).fetchone()
-    is_other = row is not None and decoded(row[0], AbortedTrial.from_json) != record
+    is_other = (
+        row is not None and decoded(row[0], partial(record_from_json, AbortedTrial)) != record
+    )
     if is_other or study_trials.exists(connection, record.trial_id):
         raise InputError(
             f"Another trial is stored under the UUID {record.trial_id}; the stored one is kept."

@@ -12,6 +12,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import decode_finite_json
+from rastrainer.json_records import record_to_json
 from rastrainer.study.database import study_trainees, study_trials
 from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study import Study
@@ -116,7 +117,7 @@ class CohortStore:
         with self._database.writing() as connection:
             study_trainees.create_where_missing(connection, record.trainee, consent=True)
             # Not new where a second process plays the same cohort; its trial is the same.
-            if study_trials.add(connection, record, record.to_json()):
+            if study_trials.add(connection, record, record_to_json(record)):
                 study_trials.add_results(
                     connection,
                     record.trial_id,

@@ -7,7 +7,6 @@ sentences.
 
 from __future__ import annotations
 
-import hashlib
 import os
 import time
 from abc import ABC, abstractmethod
@@ -19,8 +18,6 @@ from typing import Any, Protocol
 from urllib.parse import parse_qsl, quote, unquote, urlencode, urlsplit
 
 from rastrainer.errors import InputError
-from rastrainer.files.writing import make_folder
-from rastrainer.home_folder import home_folder
 
 SCHEMES = ("postgresql://", "postgres://")
 EXAMPLE = "postgresql://USER@HOST/DATABASE"
@@ -137,21 +134,6 @@ def _port(text: str) -> int:
     if not text.isdecimal() or not 0 < int(text[:6]) < 65536:
         raise InputError("The port of a study is a number from 1 to 65535.")
     return int(text)
-
-
-def path_beside_study(place: StudyPlace) -> Path:
-    """Return the path whose name begins those of files beside a study, such as what was sent where.
-
-    That of the study's file; for a study in PostgreSQL one in the user's own folder, by its
-    address.
-    """
-    if isinstance(place, Path):
-        return place
-    folder = home_folder() / "RASTrainer" / "studies"
-    make_folder(folder, is_private=True)
-    # Not by the role or the options: another one leads to the same study.
-    where = f"{place.host}:{place.port or 5432}/{place.database}"
-    return folder / hashlib.sha256(where.encode()).hexdigest()[:16]
 
 
 BUSY_TIMEOUT_S = 30.0

@@ -12,6 +12,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.files import writing
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.study.database import deliveries, study_trainees, study_trials
@@ -168,9 +169,9 @@ class Study:
         """
         if not isinstance(record, TrialRecord):
             delivered = record
-            record = TrialRecord.from_json(delivered)
+            record = record_from_json(TrialRecord, delivered)
         with self._database.writing() as connection:
-            is_new = study_trials.add(connection, record, delivered or record.to_json())
+            is_new = study_trials.add(connection, record, delivered or record_to_json(record))
             if is_new:
                 study_trials.add_results(
                     connection, record.trial_id, registrations, target_errors or {}, score

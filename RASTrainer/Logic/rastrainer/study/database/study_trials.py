@@ -6,11 +6,13 @@ import json
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any, TypeVar
 
 from rastrainer import json_checks, protocol
 from rastrainer.errors import InputError
 from rastrainer.json_checks import decode_finite_json
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.registration import Registration
@@ -116,7 +118,13 @@ def add_results(
         connection.execute(
             "INSERT INTO scores (trial_id, score, version, score_json, stored_utc) "
             "VALUES (?, ?, ?, ?, ?)",
-            (trial_id, score.score, score.version, json_text(score.to_json()), utc_now()),
+            (
+                trial_id,
+                score.score,
+                score.version,
+                json_text(record_to_json(score, with_defaults=True)),
+                utc_now(),
+            ),
         )
     if procedure is not None:
         stored_outcome = json_text(StoredProcedure.of(procedure).to_json())
@@ -179,7 +187,7 @@ def find_record(connection: Connection, trial_id: str) -> TrialRecord:
     (text,) = connection.execute(
         "SELECT record_json FROM trials WHERE trial_id = ?", (trial_id,)
     ).fetchone()
-    return decoded(text, TrialRecord.from_json)
+    return decoded(text, partial(record_from_json, TrialRecord))
 
 
 def find(connection: Connection, trial_id: str) -> StoredTrial:
@@ -200,7 +208,7 @@ def find(connection: Connection, trial_id: str) -> StoredTrial:
         registrations={
             kind: decoded(text, StoredRegistration.from_json) for kind, text in registrations
         },
-        score=None if score is None else decoded(score[0], TrialScore.from_json),
+        score=None if score is None else decoded(score[0], partial(record_from_json, TrialScore)),
         true_tre_mm=None if truth is None else truth[0],
         head_to_world=None if truth is None else decoded(truth[1], tuple),
         motion={} if motion is None else decoded(motion[0], dict),
@@ -246,7 +254,7 @@ def past_trials(connection: Connection, pseudonym: str) -> tuple[PastTrial, ...]
 def _past_trial(
     trial_id: str, task: str, mode: str, seconds: float, method: str, latest: str
 ) -> PastTrial:
-    score = decoded(latest, TrialScore.from_json)
+    score = decoded(latest, partial(record_from_json, TrialScore))
     return PastTrial(
         trial_id,
         task,
@@ -269,7 +277,7 @@ def unscored(connection: Connection, pseudonym: str) -> tuple[TrialRecord, ...]:
         "AND trial_id NOT IN (SELECT trial_id FROM scores)",
         (pseudonym, protocol.TRIAL_RUN),
     ).fetchall()
-    return tuple(decoded(text, TrialRecord.from_json) for (text,) in rows)
+    return tuple(decoded(text, partial(record_from_json, TrialRecord)) for (text,) in rows)
 
 
 def unrevealed(connection: Connection) -> tuple[TrialRecord, ...]:
@@ -278,7 +286,7 @@ def unrevealed(connection: Connection) -> tuple[TrialRecord, ...]:
         "SELECT record_json FROM trials "
         "WHERE trial_id NOT IN (SELECT trial_id FROM truths) ORDER BY rowid"
     ).fetchall()
-    return tuple(decoded(text, TrialRecord.from_json) for (text,) in rows)
+    return tuple(decoded(text, partial(record_from_json, TrialRecord)) for (text,) in rows)
 
 
 def cohort(connection: Connection, mode: str | None) -> list[Trial]:

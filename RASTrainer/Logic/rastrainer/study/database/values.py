@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.trial.analysis import RevealedTruth
@@ -86,7 +87,7 @@ class StoredRegistration:
             matrix=tuple(map(float, np.ravel(registration.matrix))),
             fre_mm=registration.fre_mm,
             residuals_mm=tuple(map(float, registration.residuals_mm)),
-            warnings=tuple(warning.to_json() for warning in registration.warnings),
+            warnings=tuple(record_to_json(warning) for warning in registration.warnings),
             target_mm=None if error is None else error.target_mm,
             expected_tre_mm=None if error is None else error.expected_mm,
             tre_interval_mm=None if error is None else error.interval_mm,
@@ -148,12 +149,15 @@ class StoredProcedure:
         return cls(outcome.analysis.to_json(), outcome.score)
 
     def to_json(self) -> dict[str, Any]:
-        return {"analysis": dict(self.analysis), "score": self.score.to_json()}
+        return {
+            "analysis": dict(self.analysis),
+            "score": record_to_json(self.score, with_defaults=True),
+        }
 
     @classmethod
     def from_json(cls, value: Mapping[str, Any]) -> StoredProcedure:
         """Return the outcome that `to_json` described."""
-        return cls(dict(value["analysis"]), ProcedureScore.from_json(value["score"]))
+        return cls(dict(value["analysis"]), record_from_json(ProcedureScore, value["score"]))
 
     @property
     def name(self) -> str:

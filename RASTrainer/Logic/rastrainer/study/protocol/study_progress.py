@@ -264,10 +264,10 @@ def _check_trial(
             f"{record.task} in the mode {record.mode}, registered by {record.method.value}."
         )
     skin = record.skin
-    if not step.is_played_on(skin.rms_mm, skin.indentation_mm):
+    if not step.is_played_on(skin.shift_mm, skin.indentation_mm):
         raise InputError(
             f"The trial {trial_id} is not the one that the step {step.name} asks for: its skin had "
-            f"shifted by {skin.rms_mm:g} mm and was indented by {skin.indentation_mm:g} mm."
+            f"shifted by {skin.shift_mm:g} mm and was indented by {skin.indentation_mm:g} mm."
         )
     if objections := step.objections(record):
         raise InputError(

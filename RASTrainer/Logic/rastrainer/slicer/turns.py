@@ -1,0 +1,61 @@
+"""Work of the main thread in small parts, one in a turn of its event loop."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Callable, Iterator
+from importlib import import_module, util
+
+_OURS = re.compile(r"^from (rastrainer[\w.]*) import", re.MULTILINE)
+
+
+class Turns:
+    """Runs the steps of an iterator, each in a later turn; it may be finished at once.
+
+    Attributes:
+        isOver: whether all steps are done, or none will follow.
+    """
+
+    def __init__(
+        self, steps: Iterator[object], callSoon: Callable[[Callable[[], None]], None]
+    ) -> None:
+        """Begin in the next turn, in which `callSoon` calls a function."""
+        self.isOver = False
+        self._steps = steps
+        self._callSoon = callSoon
+        callSoon(self._go)
+
+    def finish(self) -> None:
+        """Do now what is left, unless a step asks for that itself."""
+        while not self.isOver:
+            self._step()
+
+    def stop(self) -> None:
+        self.isOver = True
+
+    def _go(self) -> None:
+        if not self.isOver:
+            self._step()
+            self._callSoon(self._go)
+
+    def _step(self) -> None:
+        try:
+            next(self._steps)
+        except BaseException as error:
+            self.isOver = True
+            if not isinstance(error, StopIteration):
+                raise
+
+
+def importInTurns(name: str) -> Iterator[None]:
+    """Import a module of ours; each step imports one, after those it imports at file scope."""
+    if name in sys.modules:
+        return
+    spec = util.find_spec(name)
+    source = getattr(spec and spec.loader, "get_source", lambda _name: "")(name)
+    for each in _OURS.findall(source or ""):
+        if each != name:
+            yield from importInTurns(each)
+    import_module(name)
+    yield

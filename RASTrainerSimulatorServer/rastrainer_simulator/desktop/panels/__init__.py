@@ -1,1 +1,0 @@
-"""The panels over the picture, painted from the simulator's screen."""

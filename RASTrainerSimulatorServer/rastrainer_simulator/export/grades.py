@@ -1,0 +1,57 @@
+"""Grades of a course: one score for each trainee, as CSV that Moodle or Canvas imports."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from rastrainer.protocol import RegistrationMethod
+from rastrainer.study.tidy_csv import csv_text, plain_cell
+from rastrainer.trial.trial_feedback import PastTrial
+
+PLATFORMS = ("moodle", "canvas")
+RULES = ("best", "latest")
+GRADE_COLUMN = "RASTrainer"
+FULL_GRADE = 100
+CANVAS_COLUMNS = ("Student", "ID", "SIS User ID", "SIS Login ID", "Section", GRADE_COLUMN)
+"""As in Canvas's own export; a student is found by any of the first four."""
+
+
+def grade(
+    trials: Iterable[PastTrial],
+    task: str | None,
+    mode: str | None,
+    method: RegistrationMethod,
+    rule: str,
+) -> float | None:
+    """Return the score of the trial that counts, 0 to 100; None without an acceptable one.
+
+    A trial that is not acceptable gives no grade: its registration would have misled an
+    instrument.
+
+    Args:
+        trials: scored ones of one trainee, in order of starting.
+        task, mode: of the trials that count; None for any.
+        method: of their registration: scores of different methods are not compared.
+        rule: which of them counts, one of `RULES`.
+    """
+    scores = [
+        trial.score
+        for trial in trials
+        if trial.acceptable
+        and trial.method is method
+        and task in (None, trial.task)
+        and mode in (None, trial.mode)
+    ]
+    if not scores:
+        return None
+    return max(scores) if rule == "best" else scores[-1]
+
+
+def grades_csv(grades: Mapping[str, float], platform: str) -> str:
+    """Return grades by pseudonym as a file for one of `PLATFORMS`."""
+    rows = [(plain_cell(name), f"{score:.2f}") for name, score in sorted(grades.items())]
+    if platform == "moodle":
+        return csv_text(("ID number", GRADE_COLUMN), rows)
+    points = ("Points Possible", "", "", "", "", FULL_GRADE)
+    students = [(name, "", "", name, "", score) for name, score in rows]
+    return csv_text(CANVAS_COLUMNS, [points, *students])

@@ -1,0 +1,211 @@
+"""Every record that the product reads from JSON refuses what is wrong by an error that names it."""
+
+from __future__ import annotations
+
+import functools
+import importlib
+import json
+import math
+import pkgutil
+import re
+import uuid
+from dataclasses import is_dataclass
+from pathlib import Path
+from typing import Any, get_args
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import rastrainer
+import rastrainer_headless
+import rastrainer_simulator
+from rastrainer.errors import InputError
+from rastrainer.json_checks import decode_finite_json
+from rastrainer.json_records import RecordField, record_fields, record_from_json, record_to_json
+
+READ = re.compile(r"record_from_json(?:\(|,)\s*\(?([A-Z]\w+)")
+EYE = [float(row == column) for row in range(4) for column in range(4)]
+LIKELY = [
+    *(0, 1, 0.5, True, "a", "a-b", "", [], {}, None),
+    *([0.0, 0.0, 1.0], [0, 0], EYE, ["a"], "#102030"),
+    *("2024-05-17T09:30:00Z", str(uuid.UUID(int=7)), "https://example.org/a", "a.json", "de"),
+    *(15, 100, 1000),
+]
+WRONG = [
+    *(
+        None,
+        True,
+        -1,
+        0,
+        10**400,
+        -1e308,
+        0.5,
+        math.nan,
+        math.inf,
+        "",
+        "a",
+        "\0",
+        "\ud800",
+        "x" * 5000,
+    ),
+    *(
+        [],
+        [[]],
+        [None],
+        [{}],
+        ["a", "a"],
+        [1e308] * 3,
+        [math.nan] * 16,
+        [True] * 16,
+        list(range(3000)),
+    ),
+    *({}, {"": {}}, {"a": None}, {"a": [[]]}, {"\0": 1}),
+]
+
+
+def modules():
+    for package in (rastrainer, rastrainer_simulator, rastrainer_headless):
+        yield package
+        for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+            # Slicer's own packages are not everywhere.
+            try:
+                yield importlib.import_module(found.name)
+            except ImportError:
+                continue
+
+
+@functools.cache
+def records() -> dict[str, type]:
+    """Return the dataclasses that are read from JSON, and those within them."""
+    found: dict[str, type] = {}
+    for module in modules():
+        source = Path(module.__file__).read_text(encoding="utf-8")
+        for name in READ.findall(source):
+            add_record(found, getattr(module, name, None))
+    return dict(sorted(found.items()))
+
+
+def add_record(found: dict[str, type], kind: Any) -> None:
+    if isinstance(kind, type) and is_dataclass(kind) and kind.__name__ not in found:
+        found[kind.__name__] = kind
+        for each in record_fields(kind):
+            for part in parts_of(each.hint):
+                add_record(found, part)
+
+
+def parts_of(hint: Any):
+    yield hint
+    for part in get_args(hint):
+        yield from parts_of(part)
+
+
+def accepted_value(each: RecordField) -> Any:
+    """Return decoded JSON that a field accepts."""
+    candidates = [*LIKELY, *nested(each.hint)]
+    for candidate in candidates:
+        try:
+            each.read(candidate, "It", False)
+        except InputError as error:
+            words = re.search(r"must be (?:one of|a list of some of) (.+)\.$", str(error))
+            candidates += [words[1].split(", ")[0]] if words else []
+        else:
+            return candidate
+    raise AssertionError(f"no value for {each.key}: {each.hint}")
+
+
+def nested(hint: Any) -> list[Any]:
+    found = []
+    for part in parts_of(hint):
+        if isinstance(part, type) and is_dataclass(part):
+            value = valid(part)
+            found += [value, [value], {"a": value}]
+    return found
+
+
+def valid(kind: type) -> dict[str, Any]:
+    """Return an object each of whose keys is accepted."""
+    return {each.key: accepted_value(each) for each in record_fields(kind)}
+
+
+def read_or_refuse(kind: type, value: Any) -> str:
+    """Return the error, "" without one; what is accepted is written and reads the same."""
+    try:
+        record = record_from_json(kind, value, "It")
+    except InputError as error:
+        return str(error)
+    written = json.loads(json.dumps(record_to_json(record), allow_nan=False))
+    again = record_to_json(record_from_json(kind, written, "It"))
+    assert json.loads(json.dumps(again)) == written
+    return ""
+
+
+KINDS = list(records().values())
+PLAIN = st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=70)
+ANY_JSON = st.recursive(
+    PLAIN,
+    lambda inner: (
+        st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=8), inner, max_size=4)
+    ),
+    max_leaves=8,
+)
+
+
+def test_the_records_are_found():
+    assert {"TrialRecord", "AbortedTrial", "TouchedPoint", "TrialScore"} <= set(records())
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
+def test_each_wrong_value_is_refused_by_an_error_that_names_its_key(kind):
+    good = valid(kind)
+    for each in record_fields(kind):
+        for wrong in WRONG:
+            error = read_or_refuse(kind, {**good, each.key: wrong})
+            try:
+                each.read(wrong, "It", False)
+            except InputError:
+                assert error.startswith(f"It: {each.key}"), (each.key, wrong)
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
+def test_each_missing_key_is_named_or_has_a_default(kind):
+    good = valid(kind)
+    for each in record_fields(kind):
+        error = read_or_refuse(kind, {key: good[key] for key in good if key != each.key})
+        if each.default is None:
+            assert error == f"It needs the key {json.dumps(each.key)}."
+
+
+def check_any_json(kind: type, examples: int) -> None:
+    good = valid(kind)
+
+    @settings(max_examples=examples)
+    @given(ANY_JSON | st.fixed_dictionaries({}, optional=dict.fromkeys(good, ANY_JSON)))
+    def of_any_json(value):
+        read_or_refuse(kind, {**good, **value} if isinstance(value, dict) else value)
+
+    text = json.dumps(good).encode()
+
+    @settings(max_examples=examples)
+    @given(st.integers(0, len(text)), st.integers(0, 8), st.binary(max_size=8))
+    def of_any_bytes(start, length, other):
+        damaged = text[:start] + other + text[start + length :]
+        try:
+            value = decode_finite_json(damaged.decode())
+        except ValueError:
+            return
+        read_or_refuse(kind, value)
+
+    of_any_json()
+    of_any_bytes()
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
+def test_any_json_and_any_bytes_make_a_record_or_an_error_for_people(kind):
+    check_any_json(kind, 10)
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
+def test_much_json_and_many_bytes_make_a_record_or_an_error_for_people(kind):
+    check_any_json(kind, 1000)
