@@ -29,7 +29,13 @@ from rastrainer.procedure.plan import (
     located,
     named_once,
 )
-from rastrainer.protocol import (COARSE_LANDMARKS, PLAYED_METHODS, SKIN_KEYS, WORLD_LIMIT_MM, RegistrationMethod)
+from rastrainer.protocol import (
+    COARSE_LANDMARKS,
+    PLAYED_METHODS,
+    SKIN_KEYS,
+    WORLD_LIMIT_MM,
+    RegistrationMethod,
+)
 from rastrainer.scenario.points import (
     MAX_LANDMARKS,
     MAX_TARGETS,

@@ -20,12 +20,25 @@ from rastrainer.files.point_list import PointList
 from rastrainer.files.reading import read_record
 from rastrainer.files.writing import make_private_folder, rounded, write_json
 from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
-from rastrainer.head.volume import HeadVolume, VolumeFile, read_head_volume, read_volume_file, write_head_volume
+from rastrainer.head.volume import (
+    HeadVolume,
+    VolumeFile,
+    read_head_volume,
+    write_head_volume,
+)
 from rastrainer.json_checks import identifier_of, text
 from rastrainer.json_records import record_to_json
 from rastrainer.procedure.plan import NO_GO_FOLDER, POINT_DECIMALS, procedure_json
 from rastrainer.scenario.points import PlannedTarget, Task
-from rastrainer.scenario.scenario import Camera, FILE_NAME, FORMAT_VERSION, SKULL_KINDS, Scenario, ScenarioFile, SkullFile, SkullKind, TaskFile
+from rastrainer.scenario.scenario import (
+    FILE_NAME,
+    FORMAT_VERSION,
+    Scenario,
+    ScenarioFile,
+    SkullFile,
+    SkullKind,
+    TaskFile,
+)
 
 HEAD_NAME, SKULL_NAME = Path("head.ply"), Path("skull.ply")
 VOLUME_NAME = Path("volume.nrrd")
