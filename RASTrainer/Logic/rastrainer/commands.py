@@ -27,7 +27,7 @@ from rastrainer.json_checks import (
     trial_id,
     whole_number,
 )
-from rastrainer.json_records import record_from_json, record_to_json
+from rastrainer.json_records import record_fields, record_from_json
 from rastrainer.protocol import (
     ALL_DONE,
     COMMANDED_ABORTS,
@@ -126,7 +126,7 @@ class StartTutorialArguments:
     """
 
     trainee: Annotated[str, pseudonym()]
-    mode: Mode = Mode.DESKTOP
+    mode: _Mode = Mode.DESKTOP.value
 
 
 @dataclass(frozen=True)
@@ -135,7 +135,7 @@ class StartTaskArguments:
 
     task: str
     trainee: Annotated[str, pseudonym()]
-    mode: Mode = Mode.DESKTOP
+    mode: _Mode = Mode.DESKTOP.value
     seed: Annotated[
         int | None,
         whole_number(0, 2**63 - 1),
@@ -614,7 +614,7 @@ def check_arguments(command: str, arguments: Mapping[str, Any]) -> dict[str, Any
     if arguments and not fields(kind):
         raise InputError(f"{command} takes no arguments.")
     record = record_from_json(kind, arguments, command, only_known=True)
-    return record_to_json(record, with_defaults=True)
+    return {each.key: getattr(record, each.name) for each in record_fields(kind)}
 
 
 def decode_json_object(body: str) -> dict[str, Any]:
