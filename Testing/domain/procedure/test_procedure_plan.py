@@ -133,7 +133,7 @@ LINE = (0, "trajectories", 0)
         (set_in(0, "title", ""), "title must be printable text"),
         (set_in(0, "trajectories", []), "trajectories must be a list of 1 to 20 objects"),
         (many_lines, "trajectories must be a list of 1 to 20 objects"),
-        (many_structures, "noGo must be a list of 0 to 10 objects"),
+        (many_structures, "noGo must be a list of at most 10 objects"),
         (many_files, "at most 30 files of no-go meshes"),
         (same_name, "procedures must be a list in which each name occurs once"),
         (same_trajectory, "trajectories must be a list in which each name occurs once"),

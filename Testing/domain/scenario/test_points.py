@@ -157,7 +157,7 @@ def test_journals_of_fiducial_trials_stay_valid_when_landmarks_are_placed_later(
             id="same name",
         ),
         pytest.param([{"name": "Nasion"}], "positionRas", id="no place"),
-        pytest.param(PLACES * 4, "list of 0 to 15", id="too many"),
+        pytest.param(PLACES * 4, "list of at most 15", id="too many"),
     ],
 )
 def test_unusable_landmarks_are_named(load, landmarks, said):
