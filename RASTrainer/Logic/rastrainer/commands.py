@@ -17,6 +17,7 @@ from rastrainer.errors import InputError
 from rastrainer.json_checks import (
     MAX_RECORD_VALUES,
     decode_message_object,
+    list_of,
     number,
     numbers,
     one_of,
@@ -82,12 +83,6 @@ def skin_amounts(value: Any) -> dict[str, float]:
 
 
 _Skin = Annotated[Mapping[str, float], skin_amounts]
-
-
-def _up_to_all_assignments(value: Any) -> Any:
-    if not isinstance(value, (list, tuple)) or len(value) > MAX_ASSIGNMENTS:
-        raise ValueError(f"a list of up to {MAX_ASSIGNMENTS} assignments")
-    return value
 
 
 @dataclass(frozen=True)
@@ -302,7 +297,7 @@ class CurriculumArguments:
     next: Annotated[_Name, "name of the assignment to practice next"] = ""
     assignments: Annotated[
         tuple[AssignmentArguments, ...],
-        _up_to_all_assignments,
+        list_of(0, MAX_ASSIGNMENTS, "assignments"),
         "each with `name`, `task`, `goal` (`score`, `competent`), `state` (`locked`, `open`, "
         "`reached`), `needed`, *`scenario`*, *`mode`*, *`method`*, *`procedure`*, *`done`*, "
         "*`mark`*, *`played`*, *`missing`* (names of what a locked one waits for), *`weakest`* "

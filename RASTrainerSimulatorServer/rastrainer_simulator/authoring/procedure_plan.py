@@ -165,7 +165,7 @@ def with_procedure(
         name, mesh = structure.file.name, read_head_mesh(structure.file)
         stem = structure.file.stem
         numbers = count(2)
-        while name in kept and not _same(kept[name], mesh):
+        while name in kept and not _are_same(kept[name], mesh):
             name = f"{stem[:36]}-{next(numbers)}.ply"
         kept[name] = mesh
         structures.append(replace(structure, file=Path(NO_GO_FOLDER, name)))
@@ -179,9 +179,9 @@ def with_procedure(
     return replace(scenario, procedures=tuple(procedures)), kept
 
 
-def _same(one: HeadMesh, other: HeadMesh) -> bool:
-    pairs = ((one.vertices, other.vertices), (one.triangles, other.triangles))
-    return all(a.shape == b.shape and bool((a == b).all()) for a, b in pairs)
+def _are_same(one: HeadMesh, other: HeadMesh) -> bool:
+    are_alike = np.array_equal(one.vertices, other.vertices)
+    return are_alike and np.array_equal(one.triangles, other.triangles)
 
 
 def _skull(scenario: Scenario) -> Path:
