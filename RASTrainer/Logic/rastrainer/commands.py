@@ -64,11 +64,11 @@ _Position = Annotated[_Numbers, numbers(3, WORLD_LIMIT_MM, "mm")]
 _TrialId = Annotated[str, trial_id]
 _Mode = Annotated[str, one_of(*(mode.value for mode in Mode))]
 _Name = Annotated[str, text(40, 0)]
-"""Of a procedure, a method or an assignment; empty for none."""
+"""Name of a procedure, a method or an assignment; empty for none."""
 
 
 def skin_amounts(value: Any) -> dict[str, float]:
-    """Accept how far the skin shifts (RMS) and is indented, mm; what is left out is 0.
+    """Accept how far the skin shifts (RMS) and is indented, mm; a missing amount is 0.
 
     Raises:
         ValueError: anything else; the words follow "must be".
@@ -87,7 +87,7 @@ _Skin = Annotated[Mapping[str, float], skin_amounts]
 
 @dataclass(frozen=True)
 class NoArguments:
-    """Of a command without arguments."""
+    """The record of a command without arguments."""
 
 
 @dataclass(frozen=True)
@@ -331,7 +331,7 @@ class CommandEntry(str):
     """A command that clients may send: its name, and all that both sides have to know about it.
 
     Attributes:
-        effect: what it does, for docs/openigtlink.md.
+        effect: sentences for docs/openigtlink.md.
         answer: data of the answer, for docs/openigtlink.md.
         arguments: record of the arguments. Texts in its annotations are for docs/openigtlink.md.
         refused: code of the refusal in each phase in which the command is wrong; None for a
@@ -623,7 +623,7 @@ def decode_answer_object(body: str) -> dict[str, Any]:
 
 
 def deflection(value: float) -> float:
-    """Return how far something is pushed, limited to −1…1; 0 for what is no finite number.
+    """Return the push of a stick or key, limited to −1…1; 0 for a number that is not finite.
 
     `max(-1, min(1, value))` would make full speed of a value that is not a number.
     """

@@ -88,7 +88,7 @@ _OUTSIDE = "the path of a file inside the scenario's folder"
 
 
 def relative_path(value: Any) -> Path:
-    """Accept the path of a file in the folder of the one that names it, or below."""
+    """Accept the path of a file within the folder of the file that names it."""
     path = Path(text(200)(value))
     if "\\" in value or path.is_absolute() or ".." in path.parts or not path.name:
         raise ValueError(_OUTSIDE)

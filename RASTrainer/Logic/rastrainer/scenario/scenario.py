@@ -58,7 +58,7 @@ UNKNOWN_LICENSE = "Not to be shared: its license is unknown."
 
 
 class SkullKind(str, Enum):
-    """What a skull is made from; an approximation is estimated from the skin, as from MRI."""
+    """The origin of a skull; an approximation is estimated from the skin, as from MRI."""
 
     BONE = "bone"
     APPROXIMATION = "approximation"
@@ -125,7 +125,7 @@ class Stand:
 
 @dataclass(frozen=True)
 class Furniture:
-    """What the robot and the head stand on."""
+    """Table and stand, which carry the robot and the head."""
 
     table: OperatingTable
     stand: Stand
