@@ -37,7 +37,7 @@ def test_every_given_option_is_used(tmp_path):
     )
     assert (wishes.title, wishes.source, wishes.license) == ("Ms X", "clinic", "CC0")
     assert [target.name for target in wishes.targets] == ["Tumor", "Cyst"]
-    assert np.array_equal(wishes.targets[0].position, [1.0, -2.0, 3.5])
+    assert np.array_equal(wishes.targets[0].position_ras, [1.0, -2.0, 3.5])
     assert wishes.trajectory.name == "Biopsy"
     assert np.array_equal(wishes.trajectory.entry_ras, [0.0, 0.0, 90.0])
     assert np.array_equal(wishes.trajectory.target_ras, [1.0, 2.0, 3.0])
@@ -62,7 +62,7 @@ def test_every_given_option_is_used(tmp_path):
         (["--trajectory", "B", "0", "0", "1e9", "1", "2", "3"], "--trajectory must be within"),
         (["--seed", "-1"], "--seed must be from 0"),
         (["--setup", "{}/none.json"], "none.json"),
-        (["--setup", "{}/bad.json"], "a set-up has no 'haed'"),
+        (["--setup", "{}/bad.json"], 'there is no "haed"; use head'),
         (["--setup", "{}/wrong.json"], "yawDeg"),
     ],
 )
