@@ -41,7 +41,7 @@ def test_every_given_option_is_used(tmp_path):
     assert wishes.trajectory.name == "Biopsy"
     assert np.array_equal(wishes.trajectory.entry_ras, [0.0, 0.0, 90.0])
     assert np.array_equal(wishes.trajectory.target_ras, [1.0, 2.0, 3.0])
-    assert wishes.setup.head_yaw_deg == 20.0
+    assert wishes.setup.head.yaw_deg == 20.0
     assert wishes.setup.perturbation == Perturbation(15.0, 8.0, 1.0)
     assert [path.name for path in wishes.task_files] == ["a.mrk.json", "b.mrk.json"]
     assert wishes.seed == 7
