@@ -194,6 +194,11 @@ class TrainingState:
         return self.method is RegistrationMethod.FIDUCIALS
 
     @property
+    def is_running(self) -> bool:
+        """Whether the trial's clock or that of its procedure runs."""
+        return self.phase in (Phase.RUNNING, *PROCEDURE_PHASES)
+
+    @property
     def is_tracing(self) -> bool:
         """Whether the skin is traced now: all landmarks are touched, and nothing is registered."""
         is_open = self.phase in (Phase.RUNNING, Phase.COMPLETE)

@@ -33,7 +33,11 @@ from rastrainer.trial.ctps import PUBLISHED_STUDY, read_trials
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.flow.session.own_score import OWN_SCORE, registered_alone, score_alone
+from rastrainer_simulator.flow.session.local_scorer import (
+    SCORED_BY_SIMULATOR,
+    registered_alone,
+    score_alone,
+)
 from rastrainer_simulator.flow.session.trainee_history import ScoreHistory
 from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.virtual.scripted_trial import play_trial, send_hello
@@ -84,7 +88,7 @@ class Alone:
 
 
 def without_its_mark(scored):
-    details = {key: value for key, value in scored["details"].items() if key != OWN_SCORE}
+    details = {key: value for key, value in scored["details"].items() if key != SCORED_BY_SIMULATOR}
     return {**scored, "details": details}
 
 
@@ -112,7 +116,7 @@ def test_the_result_without_slicer_is_that_of_slicers_study_on_100_seeded_trials
             study.add_results(record.trial_id, score=scored.score)
             slicers = score_arguments(with_progress(scored, study))
             (own,) = alone.entries(record.trial_id, "scored")
-            assert own["details"][OWN_SCORE] is True
+            assert own["details"][SCORED_BY_SIMULATOR] is True
             assert without_its_mark(own) == slicers
             (registered,) = alone.entries(record.trial_id, "registration")
             assert tuple(registered["matrix"]) == registration["matrix"]
@@ -157,7 +161,7 @@ def test_slicer_connecting_later_stores_the_trial_and_its_score_replaces_the_ide
         (registered,) = alone.entries(trial, "registration")
         assert registered["matrix"] == analysis.rigid.matrix.ravel().tolist()
         own, slicers = alone.entries(trial, "scored")
-        assert OWN_SCORE not in slicers["details"]
+        assert SCORED_BY_SIMULATOR not in slicers["details"]
         # Many trials arrive out of order, and are compared with those already stored.
         for entry in (own, slicers):
             del entry["details"]["feedback"]

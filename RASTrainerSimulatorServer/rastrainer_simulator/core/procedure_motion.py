@@ -18,7 +18,7 @@ from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.state import Event, EventKind, OperatorInput
 from rastrainer_simulator.teleoperation.commanded_motion import MoveCommand, PathCommand
-from rastrainer_simulator.texts.texts import LocalizedText, Texts
+from rastrainer_simulator.texts.texts import LocalizedText, say
 from rastrainer_simulator.training.feed import LONGEST_FEED_M, NO_FEED, Feed, FeedDrive, HeadAhead
 from rastrainer_simulator.training.head_pose import RegisteredPlan
 from rastrainer_simulator.trial_state import GuideAxis, PlannedLine, ProcedureState
@@ -158,7 +158,6 @@ class ProcedureMotion:
         guide: GuideAxis,
         procedure: ProcedureState | None,
         stand_off_mm: float,
-        texts: Texts,
     ) -> PathCommand | LocalizedText:
         """Return the robot's own path onto the planned line, or why there is none.
 
@@ -166,10 +165,9 @@ class ProcedureMotion:
             guide: where it is now.
             procedure: in the phase `aligning`; the line is by the registration in use.
             stand_off_mm: of the tip before the line's entry at the end.
-            texts: the sentences.
         """
         if not self._may_align:
-            return texts.say("no self-alignment")
+            return say("no self-alignment")
         outline = self._outline
         assert procedure is not None, "the phase has a procedure"
         assert procedure.registration is not None, "it is accepted"
@@ -177,7 +175,7 @@ class ProcedureMotion:
         assert outline is not None, "the scenario has a procedure"
         line, stand_off = procedure.present.line, stand_off_mm / MM_PER_M
         if not self._reach.judge_guide(line.entry, line.direction, [stand_off]).reachable:
-            return texts.say("line out of reach", stand_off=stand_off_mm)
+            return say("line out of reach", stand_off=stand_off_mm)
         plan = RegisteredPlan.of(procedure.registration.matrix)
         assert plan is not None, "what is in use is rigid"
 

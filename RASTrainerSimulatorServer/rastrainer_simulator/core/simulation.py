@@ -40,7 +40,6 @@ from rastrainer_simulator.teleoperation.commanded_motion import (
 )
 from rastrainer_simulator.teleoperation.steering import ChosenAxes
 from rastrainer_simulator.teleoperation.teleoperation import MotionRequest, Teleoperation
-from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.training.replies import TrainingReply
 from rastrainer_simulator.training.rules import TouchMoment, refusal, touch_stage
@@ -67,10 +66,7 @@ class Simulation:
         """Build the scene; takes about a second, most of it for the head's surface."""
         settings = setup.settings
         self.setup = setup
-        self._texts = Texts()
-        self._training = Training(
-            setup.scenario, seed, settings.training, self._texts, settings.procedure
-        )
+        self._training = Training(setup.scenario, seed, settings.training, settings.procedure)
         self._axes = ChosenAxes(setup.scenario.cameras, settings.camera, settings.axes)
         self._planned_target: PlanInWorld | None = None
         self._teleoperation = Teleoperation(settings.teleoperation)
@@ -164,7 +160,7 @@ class Simulation:
     def _carry_out(self, command: OperatorCommand, sim_time: float) -> TrainingReply:
         if self._training.handles(command.name):
             return self._training.handle(command, self._moment_of(command, sim_time))
-        sentence = refusal(command, self._training.state, self._texts)
+        sentence = refusal(command, self._training.state)
         if sentence is not None:
             return TrainingReply(False, sentence)
         arguments = command.arguments
@@ -183,7 +179,7 @@ class Simulation:
         if command.name == CommandName.ALIGN_GUIDE:
             procedure = self._training.state.procedure
             motion = self._procedure_motion.way(
-                self._guide_axis, procedure, arguments["standOffMm"], self._texts
+                self._guide_axis, procedure, arguments["standOffMm"]
             )
         else:
             tool = self._posture.tool_axes

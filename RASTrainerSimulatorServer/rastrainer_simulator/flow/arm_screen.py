@@ -1,4 +1,4 @@
-"""What a trainee who drives the arm reads, and how far the tip is from its path."""
+"""Texts for a trainee who drives the arm, and the distance of the tip from its path."""
 
 from __future__ import annotations
 
@@ -51,7 +51,6 @@ class ArmScreen:
         self._refusal = ""
 
     def take(self, event: Event) -> None:
-        """Process an event."""
         if event.kind is EventKind.REJECTED:
             self._refusal = event.data["message"]
         if event.kind is EventKind.REACH:
@@ -69,7 +68,6 @@ class ArmScreen:
         return self._refusal != "" and self._state.training.instruction == self._refusal
 
     def screen(self) -> Screen:
-        """Return what is read while no menu is open."""
         return Screen(
             instruction=self.instruction(),
             warnings=self.warnings(),
@@ -79,7 +77,6 @@ class ArmScreen:
         )
 
     def instruction(self) -> ScreenMessage:
-        """Return what to do now."""
         raise NotImplementedError
 
     def status(self) -> tuple[str, ...]:
@@ -87,11 +84,9 @@ class ArmScreen:
         raise NotImplementedError
 
     def hints(self) -> tuple[Hint, ...]:
-        """Return the relevant controls."""
         raise NotImplementedError
 
     def warnings(self) -> tuple[ScreenMessage, ...]:
-        """Return the warnings about the arm's position."""
         say = self._session.texts.say
         warnings = []
         state = self._state
@@ -122,7 +117,6 @@ class ArmScreen:
             session.do(CommandName.SET_CAMERA, {"camera": camera})
 
     def _movement_hints(self) -> tuple[Hint, ...]:
-        """Return what moves the tip."""
         session = self._session
         up_and_down = session.operator.pair_label(ControlName.MOVE_UP, ControlName.MOVE_DOWN)
         return (
@@ -170,9 +164,9 @@ class ArmScreen:
 
 
 FARTHEST = 0.045
-"""Distance beside the path up to which the tip is on it, m."""
+"""Largest distance from the path at which the tip is on it, m."""
 BACK_WITHIN = 0.03
-"""Distance beside the path below which it is on it again, m."""
+"""Distance from the path at which the tip is on it again, m."""
 ABOVE_LEAST = 0.35
 """Share of the largest component from which another one is worth a word."""
 
@@ -192,7 +186,7 @@ class PathArc:
     end: Vector
 
     def beside(self, tip: Vector) -> float:
-        """Return how far the tip is beside the path, along the head, in m."""
+        """Return the distance of the tip from the path, along the head, in m."""
         out = subtract(tip, self.center)
         first, last, here = (unit(subtract(p, self.center)) for p in (self.start, self.end, tip))
         return length(out) * _angle_to_arc(here, first, last)

@@ -1,4 +1,4 @@
-"""From the start menu to the result: which screen follows from what happens (paper, figure 4)."""
+"""The order of the screens from the start menu to the result (paper, figure 4)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from rastrainer.commands import CommandName
 from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, GhostRule, Guidance, Phase
-from rastrainer_simulator.flow.pages.experiment import ExperimentPage
+from rastrainer_simulator.flow.pages.experiment import open_experiment
 from rastrainer_simulator.flow.pages.introduction import PracticedPage, TutorialDonePage
 from rastrainer_simulator.flow.pages.procedure import (
     ProcedureErrorsPage,
@@ -30,7 +30,7 @@ from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage
 from rastrainer_simulator.record.trial_context import GhostReport, GuidanceReport
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.state import Answer, SimulationState, StepResult, TouchStage, TrialResult
-from rastrainer_simulator.texts.texts import LocalizedText
+from rastrainer_simulator.texts.texts import key_of
 
 PICTURE_GRACE_S = 0.5
 """A picture that is there so soon is no reason to pause a trial."""
@@ -43,8 +43,8 @@ INTERRUPTED = ("interrupted", "interrupted procedure")
 class Flow:
     """Follows the trial with the pages, and the trainee's presses with commands.
 
-    The trial's phase decides what is open, no matter who changed it: a trial that Slicer starts,
-    pauses or aborts leads to the same screen as one of the trainee's.
+    The trial's phase decides which page is open, no matter who changed it: a trial that Slicer
+    starts, pauses or aborts leads to the same screen as one of the trainee's.
     """
 
     def __init__(self, session: TrainingSession, control_loop: ControlLoop) -> None:
@@ -65,12 +65,11 @@ class Flow:
 
     @property
     def situation(self) -> ControlContext:
-        """Whether the trainee drives the arm or is in a menu."""
         return ControlContext.WORK if self._session.pages.top is None else ControlContext.MENU
 
     @property
     def playback(self) -> Playback | None:
-        """What is shown in place of the arm: the trial, while it is shown again."""
+        """The replay that is shown in place of the arm."""
         page = self._session.pages.top
         return page.playback if isinstance(page, ReplayPage) else None
 
@@ -80,11 +79,9 @@ class Flow:
         return state if tutorial is None else tutorial.practice.shown(state)
 
     def take(self, result: StepResult) -> None:
-        """Process a tick in which something happened."""
         touch = self.shown(result.state).touch
         for event in result.events:
-            said = result.state.training.instruction
-            is_back = isinstance(said, LocalizedText) and said.key == NOT_RECORDED
+            is_back = key_of(result.state.training.instruction) == NOT_RECORDED
             felt = feedback_event(event, touch, is_back)
             if felt is not None:
                 self._session.happened(felt)
@@ -94,7 +91,6 @@ class Flow:
         self._touch = touch
 
     def advance(self, dt: float, state: SimulationState) -> None:
-        """Advance by `dt` seconds with the newest state."""
         session = self._session
         session.advance(dt, state)
         touch = self.shown(state).touch
@@ -120,7 +116,6 @@ class Flow:
             self._trial_screen.open_menu()
 
     def pressed(self, control: ControlName) -> None:
-        """Process a press of a control."""
         if self._session.pages.top is None:
             is_menu = control in (ControlName.MENU, ControlName.PAUSE)
             if is_menu or self._session.picture_share is None:
@@ -142,13 +137,12 @@ class Flow:
         if isinstance(session.pages.top, PreparingPage) and why != "unseen.still":
             self._unseen = why
             session.pages.replace(TrialPage(session))
-        is_running = session.training.phase in (Phase.RUNNING, *PROCEDURE_PHASES)
+        is_running = session.training.is_running
         if (is_running or session.tutorial is not None) and session.pages.top is None:
             self._unseen = why
             self._screen_of_work.open_menu()
 
     def screen(self) -> Screen:
-        """Return what the trainee reads now."""
         session = self._session
         page, menu = session.pages.top, session.pages.menu()
         notices = session.notices
@@ -206,12 +200,10 @@ class Flow:
         return Answer(0, True, data={"isNeeded": True})
 
     def close(self) -> None:
-        """Release what the open pages have started."""
         self._session.pages.show(None)
 
     @property
     def _screen_of_work(self) -> TrialScreen | ProcedureScreen | TutorialScreen:
-        """What is read while the arm is driven."""
         if self._session.tutorial is not None:
             return self._tutorial_screen
         is_at_procedure = self._procedure_screen.is_open
@@ -231,8 +223,7 @@ class Flow:
         self._tutorial_screen.advance(dt)
         if tutorial.is_done:
             outcome = session.end_tutorial()
-            session.pages.show_start()
-            session.pages.open(ExperimentPage(session))
+            open_experiment(session)
             if outcome is not None:
                 page = PracticedPage if tutorial.practiced else TutorialDonePage
                 session.pages.open(page(session, outcome), ignore_input_briefly=True)
@@ -242,7 +233,7 @@ class Flow:
         session = self._session
         training = session.training
         session.history.changed(training.trainee, training.trial_id)
-        # Whoever begins or ends a trial meanwhile: the tutorial is another time's.
+        # Another client started or ended a trial: leave the tutorial.
         session.end_tutorial()
         self._note_trial(before[0])
         is_requested = self._trial_screen.take_menu_request()
@@ -261,8 +252,7 @@ class Flow:
             session.pages.show(ResultPage(session), ignore_input_briefly=True)
         elif before[1] in OPEN_PHASES or isinstance(session.pages.top, RESULT_PAGES):
             # Another simulation may follow a trial while other pages are open: they stay.
-            session.pages.show_start()
-            session.pages.open(ExperimentPage(session), ignore_input_briefly=was_working)
+            open_experiment(session, ignore_input_briefly=was_working)
 
     def _note_trial(self, previous_id: str) -> None:
         """Note a new trial, and a trial run whose points are all touched."""
@@ -292,7 +282,7 @@ class Flow:
     def _wait_for_picture(self, dt: float) -> None:
         """Pause a trial whose picture is not there, so that its clock waits for it."""
         session = self._session
-        is_running = session.training.phase in (Phase.RUNNING, *PROCEDURE_PHASES)
+        is_running = session.training.is_running
         if session.picture_share is None or not is_running:
             self._without_picture_s = 0.0
             self._waits_for_picture = False
@@ -323,11 +313,9 @@ class Flow:
         if self._unseen:
             return (ScreenMessage(self._session.texts.say(self._unseen), Tone.WARNING),)
         said = self._session.training.instruction
-        if isinstance(said, LocalizedText) and said.key in INTERRUPTED:
-            return (ScreenMessage(self._session.texts.again(said), Tone.WARNING),)
-        if isinstance(said, LocalizedText) and said.key == NOT_RECORDED:
-            return (ScreenMessage(self._session.texts.again(said), Tone.ERROR),)
-        return ()
+        tones = {**dict.fromkeys(INTERRUPTED, Tone.WARNING), NOT_RECORDED: Tone.ERROR}
+        tone = tones.get(key_of(said))
+        return () if tone is None else (ScreenMessage(self._session.texts.again(said), tone),)
 
     def _menu_hints(self) -> tuple[Hint, ...]:
         session = self._session

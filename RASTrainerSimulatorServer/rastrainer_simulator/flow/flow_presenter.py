@@ -49,7 +49,7 @@ REFRESH_S = 0.1
 """How often a screen is rebuilt though nothing was pressed: its clock, distances and axes."""
 
 _IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlName.BACK}
-"""What a view's own buttons mean while a menu is open: those of a headset have no bindings."""
+"""Meanings of a view's own buttons while a menu is open: a headset's buttons have no bindings."""
 
 
 class FlowPresenter(Presenter):
@@ -74,13 +74,14 @@ class FlowPresenter(Presenter):
         super().__init__()
         self._control_loop = control_loop
         self.shown = PlaybackSwitch(control_loop)
-        self.controls = Controls(bindings, self, self._may_be_taken)
+        # Another operator may take control from an idle one, unless a PIN locks it.
+        self.controls = Controls(bindings, self, lambda: not self._session.lock.is_locked)
         self._session = TrainingSession(
             control_loop, self.controls, services, preferences, self.happened
         )
         self._flow = Flow(self._session, control_loop)
         self._view = OperatedView(self._session, self.controls, control_loop, self.shown)
-        self.rumble: Callable[[float, float], None] = _nothing_vibrates
+        self.rumble: Callable[[float, float], None] = lambda _strength, _seconds: None
         self._arriving = threading.Lock()
         self._newest = control_loop.latest
         self._results: list[StepResult] = []
@@ -94,7 +95,6 @@ class FlowPresenter(Presenter):
         self._unsubscribe = control_loop.subscribe(self._take_tick)
 
     def close(self) -> None:
-        """Release the sticks and the control loop."""
         self._unsubscribe()
         self._flow.close()
         self._session.view.close()
@@ -104,7 +104,6 @@ class FlowPresenter(Presenter):
         self._control_loop.hold_sticks(HANDS_OFF)
 
     def advance(self, dt: float) -> None:
-        """Advance by `dt` seconds."""
         # A state ahead of its events would sound the alarm of a contact twice.
         with self._arriving:
             results, self._results = self._results, []
@@ -119,27 +118,28 @@ class FlowPresenter(Presenter):
         self._settle()
         self._since_refresh += dt
         if self._is_changed or self._since_refresh >= REFRESH_S:
-            self._refresh()
+            self._is_changed = False
+            self._since_refresh = 0.0
+            screen = self._flow.screen()
+            if screen != self.screen:
+                self.screen = screen
+                self.publish(screen)
 
     def pictures(self, now: SimulationState) -> Pictures:
         return self._view.pictures(now)
 
     def ghost(self, now: SimulationState) -> tuple[np.ndarray, ...] | None:
-        """Return the pose of the ghost beside the arm; None if none is shown."""
         return None if self._flow.playback is not None else self._session.ghost.poses(now)
 
     def trace_guidance(self, now: SimulationState) -> TraceGuidance:
-        """Return how a trainee who traces the skin is guided; not at all during a replay."""
         is_replayed = self._flow.playback is not None
         return TraceGuidance() if is_replayed else self._session.places.guidance(now)
 
     def seat(self) -> Seat:
-        """Return what a teacher's board shows of this seat."""
         count = len(self._control_loop.truth.fiducials_ras)
         return seat_of(self._session, self.screen, self.control.holder, count)
 
     def instruct(self, order: InstructorOrder, text: str) -> str:
-        """Carry out a teacher's order; return why it is impossible, or ""."""
         problem = instruct(self._session, self._flow, order, text)
         self._is_changed = True
         self._settle()
@@ -147,11 +147,10 @@ class FlowPresenter(Presenter):
 
     @property
     def is_tracing_guided(self) -> bool:
-        """Whether a trainee who traces the skin now is shown what is covered, and what is next."""
+        """Whether a trainee who traces the skin now sees the covered area and the next place."""
         return self._session.places.guidance(self._control_loop.latest).covered_mm > 0.0
 
     def start_tutorial(self, trainee: str, mode: str) -> Answer:
-        """Open the tutorial for a trainee whose trial run Slicer wants to start, if it is first."""
         answer = self._flow.start_tutorial(trainee, mode)
         self._is_changed = True
         self._settle()
@@ -184,7 +183,6 @@ class FlowPresenter(Presenter):
         self._settle()
 
     def on_layout(self, view: int, keys: Mapping[str, str]) -> None:
-        """Name the keys of a view's operator as they are written."""
         self._session.layouts[view] = keys
         self._is_changed = True
 
@@ -212,12 +210,10 @@ class FlowPresenter(Presenter):
         self._settle()
 
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
-        """Turn the view, which only the operator may do."""
         source = self._views.source(SourceKind.MOUSE, view)
         self._view.turn(source, around_deg, higher_deg, zoom)
 
     def on_press(self, view: int, control: str) -> None:
-        """Process one press of a control; an unknown name does nothing."""
         if control not in ControlName._value2member_map_:
             return
         name = ControlName(control)
@@ -229,7 +225,6 @@ class FlowPresenter(Presenter):
         self._settle()
 
     def on_item(self, view: int, name: str) -> None:
-        """Process a click on an item of the menu, or on a hint that presses a control."""
         pressed = name.removeprefix(PRESS) if name.startswith(PRESS) else ""
         control = ControlName._value2member_map_.get(pressed)
         source = self._views.hand_source(SourceKind.MOUSE, view)
@@ -243,13 +238,12 @@ class FlowPresenter(Presenter):
         self._settle()
 
     def on_text(self, view: int, name: str, value: str) -> None:
-        """Process the new text of a text item."""
         if self.controls.allows(self._views.hand_source(SourceKind.KEYBOARD, view)):
             self._session.pages.write(name, value)
             self._is_changed = True
 
     def on_frames(self, view: int, frames: Frames) -> None:
-        """Process how smoothly a view draws; that of the trainee's view is recorded."""
+        """Process how smoothly a view draws; the journal notes it of the trainee's view."""
         self._views.hear(view, True)
         hello = self._views.hello(view)
         if hello is None or view != self._views.watched(self.controls.holder):
@@ -260,7 +254,7 @@ class FlowPresenter(Presenter):
         self._control_loop.note_display(report)
 
     def on_picture(self, view: int, task: str, share: float) -> None:
-        """Note how much of its picture a view has: a task waits for that of the trainee's view."""
+        """Note how much of its picture a view has: a task waits for the trainee's view."""
         self._pictures.take(view, task, share)
 
     def on_visibility(self, view: int, is_visible: bool) -> None:
@@ -286,7 +280,6 @@ class FlowPresenter(Presenter):
         return page is not None and page.input_pressed(device, name)
 
     def taken_over(self, source: Source) -> None:
-        """Another operator has taken the control."""
         name = self._session.texts.say(f"source.{source.kind.value}")
         self._session.notices.add(self._session.texts.say("control.taken", source=name))
         self._flow.taken_over()
@@ -311,12 +304,10 @@ class FlowPresenter(Presenter):
         self.controls.forget(source)
 
     def warn(self, about: str, key: str = "", **values: object) -> None:
-        """Show a warning until it is withdrawn by an empty key."""
         self._session.notices.warn(about, key, **values)
         self._is_changed = True
 
     def happened(self, what: FeedbackEvent) -> None:
-        """Play a sound and a vibration, once."""
         preferences = self._session.preferences
         volume = 0.0 if preferences.muted else preferences.volume / 100.0
         self._number += 1
@@ -325,12 +316,8 @@ class FlowPresenter(Presenter):
             self.rumble(feedback.rumble, FEEDBACK_EFFECTS[what].seconds)
         self.publish(feedback)
 
-    def _may_be_taken(self) -> bool:
-        """Return whether another operator may take control from an idle one."""
-        return not self._session.lock.is_locked
-
     def _lose_sight(self, view: int, why: str) -> None:
-        """Release what is operated without being seen; `why` is the key of a sentence."""
+        """Pause and release control if no one can see the trial; `why` is the key of a sentence."""
         if view == self._views.watched(self.controls.holder):
             self._flow.pause(why)
         for kind in SourceKind:
@@ -341,7 +328,7 @@ class FlowPresenter(Presenter):
         session, view = self._session, self._views.watched(self.controls.holder)
         if view is None and not self._views.is_empty:
             return
-        # What is shown of the newest state follows only when it has been processed.
+        # The views show the newest state only when it has been processed.
         is_replayed = self._flow.playback is not None
         shown = self.shown.latest if is_replayed else self._flow.shown(newest)
         training = shown.training
@@ -372,7 +359,7 @@ class FlowPresenter(Presenter):
         return True
 
     def _settle(self) -> None:
-        """Pass on what follows at once: what is shown, the situation, the sticks, the control."""
+        """Pass on the shown state, the situation, the sticks and the holder of control."""
         self.shown.show(self._flow.playback)
         self.shown.alter = None if self._session.tutorial is None else self._flow.shown
         self.controls.enter(self._flow.situation)
@@ -388,15 +375,3 @@ class FlowPresenter(Presenter):
             self.control = control
             self.publish(control)
             self._is_changed = True
-
-    def _refresh(self) -> None:
-        self._is_changed = False
-        self._since_refresh = 0.0
-        screen = self._flow.screen()
-        if screen != self.screen:
-            self.screen = screen
-            self.publish(screen)
-
-
-def _nothing_vibrates(strength: float, seconds: float) -> None:
-    """Stand in for a gamepad."""

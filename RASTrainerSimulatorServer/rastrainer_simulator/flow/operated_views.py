@@ -31,7 +31,7 @@ class _LoadedScene:
 
 
 class AwaitedPictures:
-    """Knows what each view has drawn, as far as views say so; one that says nothing is ready."""
+    """Knows how much each view has drawn; a view that reports nothing counts as ready."""
 
     def __init__(self) -> None:
         self._loaded: dict[int, _LoadedScene] = {}
@@ -73,12 +73,10 @@ class ViewSources:
         return self._views.pop(view, None)
 
     def hello(self, view: int) -> Hello | None:
-        """Return a view; None if it is unknown."""
         return self._views.get(view)
 
     @property
     def is_empty(self) -> bool:
-        """Whether no view has joined."""
         return not self._views
 
     @property
@@ -103,7 +101,7 @@ class ViewSources:
         return self._yaw_deg.get(holder.view)
 
     def watched(self, holder: Source | None) -> int | None:
-        """Return the view that the trainee looks at: a headset, else the one that is operated."""
+        """Return the view that the trainee looks at: a headset, else the operated view."""
         # A headset whose network broke comes back as another view, long before the first has left.
         heard = [each for each in reversed(self._views.items()) if each[0] not in self._silent]
         by_kind = {hello.kind: view for view, hello in heard}
@@ -159,7 +157,6 @@ class OperatedView:
         return self._session.view.pictures(now, self._shown.setup.scenario.cameras)
 
     def turn(self, source: Source, around_deg: float, higher_deg: float, zoom: float) -> None:
-        """Turn the view, which only the operator may do."""
         if self._controls.is_operator(source):
             shown = self._shown
             camera = shown.setup.scenario.cameras[shown.latest.camera]

@@ -1,4 +1,4 @@
-"""What the trainee reads from the registration to the placed instrument, and the controls."""
+"""Texts and controls from the registration to the placed instrument."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _FELT: Mapping[str, Tone] = {
     FeedLayer.THROUGH.value: Tone.WARNING,
     FeedLayer.BLOCKED.value: Tone.ERROR,
 }
-"""What a hand feels of the drill or the instrument, and the words for it."""
+"""Layers that a hand feels through the drill or the instrument, and their tones."""
 
 
 class ProcedureScreen(ArmScreen):
@@ -57,7 +57,6 @@ class ProcedureScreen(ArmScreen):
         )
 
     def take(self, event: Event) -> None:
-        """Process an event."""
         super().take(event)
         if event.kind is EventKind.FEED:
             self._layer = event.data["layer"]
@@ -86,7 +85,7 @@ class ProcedureScreen(ArmScreen):
         return ScreenMessage(text, Tone.WARNING if self._is_refused else Tone.GOOD)
 
     def warnings(self) -> tuple[ScreenMessage, ...]:
-        """Return the warnings, and what is felt of the drill or the instrument."""
+        """Return the warnings, and the layer that drill or instrument feels."""
         session, say = self._session, self._session.texts.say
         training = session.training
         if training.phase is Phase.VERIFYING and self._procedure.registration is None:
@@ -132,7 +131,7 @@ class ProcedureScreen(ArmScreen):
         return (*self._stick_hints(phase), *self._control_hints(names), *on_screen)
 
     def screen(self) -> Screen:
-        """Return what is read; from the alignment on, the trainee looks into the head."""
+        """From the alignment on, the trainee looks into the head."""
         is_head_clear = self._procedure.present is not None
         shown = super().screen()
         return replace(
@@ -149,7 +148,6 @@ class ProcedureScreen(ArmScreen):
         return plan_marks(procedure, session.planned_bone(procedure.name))
 
     def _ruler(self) -> DepthRuler | None:
-        """Return the scale of depths while something is fed."""
         procedure = self._procedure
         if procedure.stage not in FED or procedure.present is None:
             return None
@@ -165,7 +163,7 @@ class ProcedureScreen(ArmScreen):
         return procedure
 
     def _figures(self) -> tuple[str, ...]:
-        """Return the position of the guide or of what is in it, by the registration."""
+        """Return the position of the guide, the drill or the instrument, by the registration."""
         state, say = self._session.state, self._session.texts.say
         alignment, ruler = state.alignment, self._ruler()
         if ruler is not None:
@@ -185,7 +183,7 @@ class ProcedureScreen(ArmScreen):
         )
 
     def _stick_hints(self, phase: Phase) -> tuple[Hint, ...]:
-        """Return what the sticks do; in a headset what is not drawn in the hands."""
+        """Return the functions of the sticks; in a headset only those not drawn in the hands."""
         session, say = self._session, self._session.texts.say
         up_and_down = session.operator.pair_label(ControlName.MOVE_DOWN, ControlName.MOVE_UP)
         if phase in FED:
@@ -203,7 +201,7 @@ class ProcedureScreen(ArmScreen):
     def _why_not_registered(self) -> tuple[ScreenMessage, ...]:
         """Return why the touches are not registered yet, if that will not change by itself."""
         session, say = self._session, self._session.texts.say
-        own = session.own_score
+        own = session.local_scorer
         if own is not None and own.problem:
             return (ScreenMessage(say("waiting.problem", reason=own.problem), Tone.ERROR),)
         if own is None and not session.is_slicer_connected():

@@ -60,7 +60,6 @@ class RunningPresenter:
             self._gamepads = self._started()
 
     async def run(self) -> None:
-        """Run the presenter; never returns."""
         before = time.monotonic()
         while True:
             await asyncio.sleep(PERIOD_S if self._sources else QUIET_S)
@@ -69,13 +68,11 @@ class RunningPresenter:
             before = now
 
     def advance(self, dt: float) -> None:
-        """Read the gamepads and advance by `dt` seconds."""
         if self._gamepads is not None:
             self._gamepads.poll()
         self.presenter.advance(dt)
 
     def close(self) -> None:
-        """Release everything."""
         self.presenter.close()
         if self._gamepads is not None:
             self._gamepads.close()
@@ -96,7 +93,6 @@ class RunningPresenter:
         self.presenter.warn("gamepad", "warning.unplugged", name=name)
 
     def gamepad_unknown(self, name: str) -> None:
-        """Report a gamepad that cannot be used."""
         self.presenter.warn("gamepad", "warning.unmapped", name=name)
 
     def _started(self) -> Gamepads | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, Phase
+from rastrainer.protocol import OPEN_PHASES
 from rastrainer_simulator.flow.flow import Flow
 from rastrainer_simulator.flow.pages.result import ResultPage
 from rastrainer_simulator.flow.pages.trial_review import ReplayPage
@@ -19,7 +19,7 @@ def seat_of(session: TrainingSession, screen: Screen, holder: str, count: int) -
     """Return what a board shows of a seat; `count` is how many points its trial has."""
     training, curriculum = session.training, session.curriculum
     is_open = training.phase in OPEN_PHASES
-    trainee = training.trainee if is_open else session.trainee.strip()
+    trainee = training.trainee if is_open else session.trainee_id
     scores = [trial.score for trial in session.history.of(trainee) if not trial.is_aborted]
     return Seat(
         trainee=trainee,
@@ -44,7 +44,7 @@ def instruct(session: TrainingSession, flow: Flow, order: InstructorOrder, text:
         return ""
     if order is InstructorOrder.PAUSE:
         is_shown = flow.playback is not None
-        is_running = session.training.phase in (Phase.RUNNING, *PROCEDURE_PHASES)
+        is_running = session.training.is_running
         if not is_shown and not (is_running or session.tutorial is not None):
             return session.texts.say("instructor.nothing runs")
         flow.pause("unseen.instructor")

@@ -1,4 +1,4 @@
-"""What the trainee reads while driving the arm."""
+"""Texts and controls while the trainee drives the arm."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from rastrainer.protocol import (
     FIDUCIAL_COUNT,
     MAX_TRACE_POINTS,
     MIN_TRACE_POINTS,
-    PROCEDURE_PHASES,
     TRIAL_RUN,
     Guidance,
     Phase,
@@ -90,7 +89,7 @@ class TrialScreen(ArmScreen):
         It stays when Slicer continues the study, a moment before or after it.
         """
         state = self._session.state
-        step = self._session.study.step_of(state.training.trainee)
+        step = self._session.trial_step
         is_new = step is not self._practice_step
         if step is not None and step.kind == StepKind.TRIAL_RUN and is_new:
             self._practice_step = step
@@ -118,7 +117,6 @@ class TrialScreen(ArmScreen):
         self.guidance = guidance_of(self._session)
 
     def pressed(self, control: ControlName) -> None:
-        """Carry out a control while the arm is driven."""
         session = self._session
         phase = session.training.phase
         if control is ControlName.CAMERA:
@@ -158,7 +156,7 @@ class TrialScreen(ArmScreen):
         """Open the menu; a trial that runs is paused, and the menu opens when it is."""
         session = self._session
         phase = session.training.phase
-        if phase in (Phase.RUNNING, *PROCEDURE_PHASES):
+        if session.training.is_running:
             session.do(CommandName.PAUSE)
         else:
             page = TrialPage if phase is Phase.COMPLETE else StartPage
@@ -261,7 +259,7 @@ class TrialScreen(ArmScreen):
         session = self._session
         if session.training.task != TRIAL_RUN:
             return session.duration(session.state.completion_time)
-        # What is rounded up must not be a whole second and a float's last digit.
+        # Rounding first: an error in a float's last digit must not add a second.
         left = math.ceil(max(0.0, round(self._practice_s - session.state.elapsed, 6)))
         return session.texts.say("status.left", time=session.duration(left))
 

@@ -1,4 +1,4 @@
-"""What the trainee reads and does during the tutorial, and how the arm gets to its start."""
+"""Texts and controls of the tutorial, and the way of the arm to its start."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ TAKEN_OVER = 0.2
 
 
 class TutorialScreen(ArmScreen):
-    """The present step of the session's tutorial, what it needs, and its controls."""
+    """The present step of the session's tutorial, its progress and its controls."""
 
     def __init__(self, session: TrainingSession) -> None:
         super().__init__(session)
@@ -103,7 +103,7 @@ class TutorialScreen(ArmScreen):
         return self._homing is not None and not self._homing.is_done
 
     def screen(self) -> Screen:
-        """Return what is read, with the errors of guided touches as a result shows them."""
+        """Show the errors of guided touches, as a result does."""
         practice = self._tutorial.practice
         errors: tuple[ErrorArrow, ...] = ()
         if self._tutorial.step in (TutorialStep.GUIDED, None):
@@ -190,7 +190,6 @@ class TutorialScreen(ArmScreen):
         return tuple(facts)
 
     def hints(self) -> tuple[Hint, ...]:
-        """Return the controls of the step, and the one for the menu."""
         session, step = self._session, self._tutorial.step
         say = session.texts.say
         if step is None:

@@ -44,7 +44,7 @@ from rastrainer_simulator.state import (
     StartingPoint,
     StepResult,
 )
-from rastrainer_simulator.texts.texts import Texts
+from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.training.rules import ENDING_A_TRIAL, RECORDING_FAILED, REFUSALS
 
@@ -53,9 +53,9 @@ CATCH_UP_S = 0.1
 COMMANDS_PER_TICK = 16
 SHUTTING_DOWN = "The simulator is shutting down."
 ARCHIVE_FAILED = "The trial's record could not be used: the simulator's log says why."
-TRIAL_IS_OPEN = Texts().say("no other head in a trial")
-BEING_SET_UP = Texts().say("being set up")
-TOO_MANY_STARTS = Texts().say("too many starts")
+TRIAL_IS_OPEN = say("no other head in a trial")
+BEING_SET_UP = say("being set up")
+TOO_MANY_STARTS = say("too many starts")
 
 _BEGIN_REPLACEMENT = "BeginReplacement"
 """Waits for its turn among the commands; clients cannot send it."""

@@ -23,7 +23,7 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.record.aborted_archive import AbortedArchive
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.state import FinalRegistration
-from rastrainer_simulator.texts.texts import Texts
+from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training.head_pose import Truth
 
 FIRST_REACH = 1 << 16
@@ -159,7 +159,7 @@ class TrialArchive:
         elif command == CommandName.SUBMIT_REGISTRATION:
             trial = self._with_registration(trial, arguments, times)
         elif command == CommandName.TRIAL_SCORED and trial.registration is None:
-            raise InputError(Texts().say("no registration"))
+            raise InputError(say("no registration"))
         elif command == CommandName.TRIAL_SCORED and trial.scored != arguments:
             self._append(trial_id, {"kind": "scored", **times, "arguments": arguments})
             trial = replace(trial, scored=arguments)
@@ -174,7 +174,7 @@ class TrialArchive:
     def _journal_piece(self, trial: ArchivedTrial, start: int) -> dict[str, Any]:
         """Return a piece of a trial's journal, once the truth in it is no secret."""
         if trial.registration is None:
-            raise InputError(Texts().say("no registration"))
+            raise InputError(say("no registration"))
         (path,) = journals_of(self._folder, trial.record.trial_id)
         try:
             with path.open("rb") as file:
@@ -195,7 +195,7 @@ class TrialArchive:
             return replace(trial, registration=arguments)
         kept, given = map(FinalRegistration.from_arguments, (trial.registration, arguments))
         if not kept.agrees_with(given):
-            raise InputError(Texts().say("registration is final"))
+            raise InputError(say("registration is final"))
         return trial
 
     def _keep(self, trial: ArchivedTrial) -> None:
@@ -211,7 +211,7 @@ class TrialArchive:
             for path in journals_of(self._folder, trial_id):
                 self._load(path)
         if trial_id not in self._trials:
-            raise InputError(Texts().say("no such trial", trial_id=trial_id))
+            raise InputError(say("no such trial", trial_id=trial_id))
         return self._trials[trial_id]
 
     def _reading_of(self, trial_id: str) -> JournalReading | None:

@@ -15,9 +15,9 @@ from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import BEING_SET_UP, ControlLoop
 from rastrainer_simulator.state import Answer
-from rastrainer_simulator.texts.texts import Texts
+from rastrainer_simulator.texts.texts import say
 
-FAILED = Texts().say("scenario failed")
+FAILED = say("scenario failed")
 
 _log = logging.getLogger(__name__)
 

@@ -78,6 +78,11 @@ class LocalizedText(str):
         return self
 
 
+def key_of(sentence: str) -> str:
+    """Return the key of a sentence; "" if it is not ours."""
+    return sentence.key if isinstance(sentence, LocalizedText) else ""
+
+
 class _Formatter(Formatter):
     """Fills in values; numbers get the language's decimal sign and a true minus sign."""
 
@@ -118,6 +123,9 @@ class Texts:
             else sentence
         )
 
+
+say = Texts().say
+"""Returns a sentence in English; views say it again in their language."""
 
 NO_NAMES: Mapping[str, str] = MappingProxyType({})
 

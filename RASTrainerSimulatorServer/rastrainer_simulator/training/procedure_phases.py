@@ -16,7 +16,7 @@ from rastrainer.procedure.record import MAX_ATTEMPTS, MAX_TOUCHED_CHECKPOINTS
 from rastrainer.protocol import STAND_OFF_LIMIT_MM, Phase, TouchRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import EventKind, OperatorCommand, TrainingState
-from rastrainer_simulator.texts.texts import Texts
+from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training.feed import NO_FEED, Feed, ProcedureSettings
 from rastrainer_simulator.training.head_pose import RegisteredPlan
 from rastrainer_simulator.training.replies import RefusedStep, TrialStep
@@ -74,14 +74,12 @@ class ProcedurePhases:
         labels: Sequence[str],
         touches: TrainingSettings,
         settings: ProcedureSettings,
-        texts: Texts,
     ) -> None:
         """`labels` are those of the task's fiducials; `touches` is what counts as a touch."""
         self._procedure = procedure
         self._labels = tuple(labels)
         self._touches = touches
         self._settings = settings
-        self._texts = texts
 
     def step(
         self, command: OperatorCommand, state: TrainingState, now: TouchMoment, elapsed: float
@@ -111,10 +109,10 @@ class ProcedurePhases:
         registration = FinalRegistration.from_arguments(moment.arguments)
         known = moment.procedure.registration
         if known is not None and not known.agrees_with(registration):
-            return RefusedStep(self._texts.say("already in use"))
+            return RefusedStep(say("already in use"))
         plan = RegisteredPlan.of(registration.matrix)
         if plan is None:
-            return RefusedStep(self._texts.say("not rigid"))
+            return RefusedStep(say("not rigid"))
         used = known or registration
         procedure = replace(
             moment.procedure,
@@ -166,7 +164,7 @@ class ProcedurePhases:
         self, procedure: ProcedureState, name: str, error: float, now: TouchMoment
     ) -> str | None:
         """Return why a touch of a checkpoint does not count, None where it does."""
-        say, radius = self._texts.say, self._settings.checkpoint_radius
+        radius = self._settings.checkpoint_radius
         if procedure.registration is None:
             return say("not in use yet")
         if not name:
@@ -185,7 +183,7 @@ class ProcedurePhases:
     def _accept(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
         procedure = moment.procedure
         if procedure.registration is None:
-            return RefusedStep(self._texts.say("not in use yet"))
+            return RefusedStep(say("not in use yet"))
         attempts = (*procedure.attempts, _attempt(moment))
         state = moment.entering(Phase.ALIGNING, attempts=attempts, trajectory=0)
         return TrialStep(state, "align", {"name": procedure.trajectories[0].line.name})
@@ -194,7 +192,7 @@ class ProcedurePhases:
         """Touch all points again; what was touched stays in the record as an attempt."""
         attempts = (*moment.procedure.attempts, _attempt(moment))
         if len(attempts) >= MAX_ATTEMPTS:
-            return RefusedStep(self._texts.say("too many attempts", most=MAX_ATTEMPTS))
+            return RefusedStep(say("too many attempts", most=MAX_ATTEMPTS))
         state = moment.entering(
             Phase.RUNNING, registration=None, checkpoints=(), trajectories=(), attempts=attempts
         )
@@ -207,12 +205,10 @@ class ProcedurePhases:
         now, limit_mm = moment.now, STAND_OFF_LIMIT_MM
         ahead = now.feed.ahead
         if ahead.skin is None:
-            return RefusedStep(self._texts.say("off the head"))
+            return RefusedStep(say("off the head"))
         distance_mm = MM_PER_M * ahead.skin
         if distance_mm > limit_mm:
-            return RefusedStep(
-                self._texts.say("too far to lock", distance=distance_mm, limit=limit_mm)
-            )
+            return RefusedStep(say("too far to lock", distance=distance_mm, limit=limit_mm))
         entered = moment.entering(Phase.DRILLING)
         aligned = _present(entered)
         guide = GuideAxis(now.tip, now.direction)
@@ -239,7 +235,7 @@ class ProcedurePhases:
     def _retract(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
         """Remove the drill and align again: only before it has cut bone."""
         if moment.now.feed.has_cut_bone:
-            return RefusedStep(self._texts.say("bone is cut"))
+            return RefusedStep(say("bone is cut"))
         state = moment.entering(Phase.ALIGNING)
         return TrialStep(state, "realign", {"name": _present(state).line.name}, feed=NO_FEED)
 
@@ -247,7 +243,7 @@ class ProcedurePhases:
         """Exchange the drill for the instrument, which begins at the guide's tip."""
         feed = moment.now.feed
         if feed.drilled <= 0.0:
-            return RefusedStep(self._texts.say("nothing drilled"))
+            return RefusedStep(say("nothing drilled"))
         entered = moment.entering(Phase.INSERTING)
         drilled = replace(_present(entered), drill_depth=feed.drilled)
         return TrialStep(
@@ -261,7 +257,7 @@ class ProcedurePhases:
         """Leave the instrument where it is; the next line follows, or the end."""
         depth = moment.now.feed.depth
         if depth <= 0.0:
-            return RefusedStep(self._texts.say("still in the guide"))
+            return RefusedStep(say("still in the guide"))
         procedure = moment.procedure
         following = procedure.trajectory + 1
         is_last = following == len(procedure.trajectories)

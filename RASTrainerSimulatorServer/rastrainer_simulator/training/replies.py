@@ -11,7 +11,7 @@ import numpy as np
 from rastrainer.protocol import Phase, RegistrationMethod
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import Event, EventKind, TrainingState, TrialResult
-from rastrainer_simulator.texts.texts import Texts
+from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training.feed import Feed
 from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.trial_state import FinalRegistration
@@ -118,13 +118,13 @@ def trial_data(state: TrainingState, truth: Truth) -> dict[str, Any]:
 
 
 def take_registration(
-    arguments: Mapping[str, Any], state: TrainingState, truth: Truth, texts: Texts
+    arguments: Mapping[str, Any], state: TrainingState, truth: Truth
 ) -> TrialStep | TrainingReply:
     """Accept a registration, which becomes final, and reveal the truth; refuse any other."""
     known = state.registration
     registration = FinalRegistration.from_arguments(arguments)
     if known is not None and not known.agrees_with(registration):
-        return TrainingReply(False, texts.say("registration is final"))
+        return TrainingReply(False, say("registration is final"))
     matrix = registration.matrix if known is None else known.matrix
     data, truth_data = {"trialId": state.trial_id}, revealed(truth, state, matrix)
     if known is not None:
@@ -135,12 +135,12 @@ def take_registration(
 
 
 def take_score(
-    arguments: Mapping[str, Any], state: TrainingState, truth: Truth, texts: Texts
+    arguments: Mapping[str, Any], state: TrainingState, truth: Truth
 ) -> TrialStep | TrainingReply:
     """Accept the score of a registered trial; a repetition changes nothing."""
     registration, answered = state.registration, {"trialId": state.trial_id}
     if registration is None:
-        return TrainingReply(False, texts.say("no registration"))
+        return TrainingReply(False, say("no registration"))
     result = TrialResult(
         registration=registration,
         true_tre_mm=revealed(truth, state, registration.matrix)["trueTreMm"],

@@ -22,7 +22,7 @@ from rastrainer.protocol import (
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.scoring import DEPTH_LIMIT_MM
 from rastrainer_simulator.state import OperatorCommand, TouchStage, TrainingState
-from rastrainer_simulator.texts.texts import Texts
+from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training.feed import NO_FEED, Feed
 from rastrainer_simulator.vectors import ZERO, Vector, distance
 
@@ -50,7 +50,7 @@ NAMING_A_TRIAL = (*ENDING_A_TRIAL, CommandName.USE_REGISTRATION, CommandName.GET
 
 
 def refusal(
-    command: OperatorCommand, state: TrainingState, texts: Texts, count: int = FIDUCIAL_COUNT
+    command: OperatorCommand, state: TrainingState, count: int = FIDUCIAL_COUNT
 ) -> str | None:
     """Return the sentence that refuses a command in the trial's phase, None if it is allowed.
 
@@ -58,17 +58,17 @@ def refusal(
     `count` is how many points the trial has to touch.
     """
     if command.name not in REFUSALS:
-        return texts.say("not a simulation command", command=command.name)
+        return say("not a simulation command", command=command.name)
     named = command.arguments.get("trialId")
     is_other = named not in (None, state.trial_id)
     if command.name in NAMING_A_TRIAL and is_other:
-        return texts.say("no such trial", trial_id=named)
+        return say("no such trial", trial_id=named)
     key = _trace_key(command.name, state, REFUSALS[command.name].get(state.phase))
     if key is None and command.name == CommandName.ABORT and is_other:
         key = "another trial is open"
     if key is None:
         return None
-    return texts.say(
+    return say(
         key,
         trainee=state.trainee,
         task=state.task,
@@ -158,7 +158,6 @@ def refused_touch(
     next_point: str,
     fiducials: Mapping[str, Vector],
     settings: TrainingSettings,
-    texts: Texts,
     method: RegistrationMethod,
 ) -> str | None:
     """Return why a touch does not count, None where it does.
@@ -168,7 +167,6 @@ def refused_touch(
         next_point: label of the fiducial or landmark that is next.
         fiducials: label → position, World, m, of all of them.
         settings: what counts as a touch.
-        texts: the sentences.
         method: of the trial.
     """
     away, radius = distance(now.tip, fiducials[next_point]), settings.radius(method)
@@ -176,13 +174,11 @@ def refused_touch(
         label = min(fiducials, key=lambda key: distance(now.tip, fiducials[key]))
         nearest = distance(now.tip, fiducials[label])
         if nearest <= radius:
-            return texts.say(
-                "wrong point", point=next_point, label=label, nearest=MM_PER_M * nearest
-            )
-        return _too_far(next_point, MM_PER_M * away, MM_PER_M * radius, method, texts)
+            return say("wrong point", point=next_point, label=label, nearest=MM_PER_M * nearest)
+        return _too_far(next_point, MM_PER_M * away, MM_PER_M * radius, method)
     is_above = now.tip_clearance > settings.skin_tolerance
     if settings.touch_rule is TouchRule.ON_SKIN and is_above:
-        return texts.say("above the skin", point=next_point, height=MM_PER_M * now.tip_clearance)
+        return say("above the skin", point=next_point, height=MM_PER_M * now.tip_clearance)
     return None
 
 
@@ -193,15 +189,13 @@ UNMARKED_STEP_MM = 10
 """Where a point that is not marked is, is what the trainee has to know: its distance is rounded."""
 
 
-def _too_far(
-    point: str, away_mm: float, radius_mm: float, method: RegistrationMethod, texts: Texts
-) -> str:
+def _too_far(point: str, away_mm: float, radius_mm: float, method: RegistrationMethod) -> str:
     """Return the refusal of a touch that is farther from its point than touches count."""
     step = 1 if method is RegistrationMethod.FIDUCIALS else UNMARKED_STEP_MM
     away = step * max(round(away_mm / step), math.floor(radius_mm / step) + 1)
     most = max(TOLD_MM, TOLD_RADII * radius_mm)
     key = "too far" if away <= most else "much too far"
-    return texts.say(key, point=point, distance=away, most=f"{most:g}", radius=radius_mm)
+    return say(key, point=point, distance=away, most=f"{most:g}", radius=radius_mm)
 
 
 _TOUCHING = (Phase.RUNNING, Phase.COMPLETE)

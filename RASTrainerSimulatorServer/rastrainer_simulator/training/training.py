@@ -11,7 +11,7 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import Event, EventKind, OperatorCommand, TrainingState
-from rastrainer_simulator.texts.texts import Texts
+from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training import tracing
 from rastrainer_simulator.training.feed import ProcedureSettings, recorded_feed
 from rastrainer_simulator.training.head_pose import PlacedHead, Truth
@@ -65,21 +65,19 @@ class Training:
         scenario: Scenario,
         seed: int,
         settings: TrainingSettings | None = None,
-        texts: Texts | None = None,
         procedure: ProcedureSettings | None = None,
     ) -> None:
         self._scenario = scenario
         self._settings = settings or TrainingSettings()
-        self._texts = texts or Texts()
         self._starter = TrialStarter(
-            scenario, seed, self._settings, procedure or ProcedureSettings(), self._texts
+            scenario, seed, self._settings, procedure or ProcedureSettings()
         )
         self._phases: ProcedurePhases | None = None
         self._clock = TrialClock(0.0)
         self._task: Task | None = None
         self._head = PlacedHead.nominal(scenario)
         self.trial_seed = 0
-        self.state = TrainingState(instruction=self._texts.say("idle"))
+        self.state = TrainingState(instruction=say("idle"))
         self._kept = KeptStates()
         self._kept.begin(self.state)
         # Until when (simulated s) a refusal is shown, and the instruction that it stands for.
@@ -137,7 +135,7 @@ class Training:
 
     def handle(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         """Carry out a command, or refuse it with a sentence about what would be right."""
-        sentence = refusal(command, self.state, self._texts, self._count)
+        sentence = refusal(command, self.state, self._count)
         if sentence is not None:
             return TrainingReply(False, sentence)
         left = self.state.revision
@@ -226,9 +224,7 @@ class Training:
         label, task = state.next_point, self._task
         assert label is not None
         assert task is not None, "the phase allows no touch before a task is chosen"
-        sentence = refused_touch(
-            now, label, self._head.fiducials, self._settings, self._texts, state.method
-        )
+        sentence = refused_touch(now, label, self._head.fiducials, self._settings, state.method)
         place = {
             "label": label,
             **tracing.tip_data(now, measured := self._head.measured(now.tip)),
@@ -278,7 +274,7 @@ class Training:
         if state.trace is not None and state.trace.strokes:
             return self._taken(tracing.stroke(tracing.undone(state), undone=True), now)
         if not state.touches:
-            return TrainingReply(False, self._texts.say("nothing to undo", point=state.next_point))
+            return TrainingReply(False, say("nothing to undo", point=state.next_point))
         label = state.touches[-1].label
         data = {"label": label, "kept": len(state.touches) - 1, "nextPoint": label}
         undone = replace(
@@ -319,11 +315,11 @@ class Training:
         return self._entered(resumed(self.state), now)
 
     def _take_registration(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
-        taken = take_registration(command.arguments, self.state, self.truth, self._texts)
+        taken = take_registration(command.arguments, self.state, self.truth)
         return self._taken(taken, now) if isinstance(taken, TrialStep) else taken
 
     def _scored(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
-        scored = take_score(command.arguments, self.state, self.truth, self._texts)
+        scored = take_score(command.arguments, self.state, self.truth)
         if not isinstance(scored, TrialStep):
             return scored
         return replace(self._entered(scored, now), data=scored.answered)
@@ -337,8 +333,8 @@ class Training:
         if found is None:
             return TrainingReply(True)
         kept, feed = found[0], found[1] or now.feed
-        sentence = self._texts.say("not recorded", reason=command.arguments["reason"])
-        if kept.phase in (Phase.RUNNING, *PROCEDURE_PHASES):
+        sentence = say("not recorded", reason=command.arguments["reason"])
+        if kept.is_running:
             self._clock.pause(now.sim_time)
             kept = paused(kept)
         if kept.phase is Phase.IDLE:
@@ -376,7 +372,7 @@ class Training:
             **values,
         }
         revision = state.revision + 1
-        instruction = self._texts.say(key, **words)
+        instruction = say(key, **words)
         self._refused_over = None
         self.state = replace(state, revision=revision, instruction=instruction)
         self._kept.keep(self.state)

@@ -16,7 +16,6 @@ from rastrainer.json_records import record_from_json
 from rastrainer.protocol import TRACED_METHODS, Phase
 from rastrainer.scenario.scenario import method_of, task_by_method
 from rastrainer_simulator.state import TrainingState
-from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.feed import ProcedureSettings
 from rastrainer_simulator.training.head_pose import PlacedHead
 from rastrainer_simulator.training.procedure_phases import ProcedurePhases
@@ -81,13 +80,11 @@ class TrialStarter:
         seed: int,
         settings: TrainingSettings,
         procedure: ProcedureSettings,
-        texts: Texts,
     ) -> None:
         self._scenario = scenario
         self._seed = seed
         self._settings = settings
         self._procedure_settings = procedure
-        self._texts = texts
         self._number = 0
 
     def start(self, arguments: Mapping[str, Any], revision: int) -> StartedTrial:
@@ -121,7 +118,7 @@ class TrialStarter:
     def _phases(self, procedure: str, task: Task) -> ProcedurePhases:
         plan = self._scenario.procedure(procedure)
         settings = self._procedure_settings
-        return ProcedurePhases(plan, task.labels, self._settings, settings, self._texts)
+        return ProcedurePhases(plan, task.labels, self._settings, settings)
 
 
 class TrialClock:

@@ -47,7 +47,7 @@ FAILED = {
     "isAccurate": False,
     "isUnbiased": False,
     "isSafe": False,
-    "isOwnScore": True,
+    "scoredBySimulator": True,
     "residualsMm": [5.12],
     "regionTreMm": 2.91,
     "commonBiasMm": 1.83,

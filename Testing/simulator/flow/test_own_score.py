@@ -79,7 +79,7 @@ def test_without_slicer_the_trainee_gets_the_simulators_own_score_until_slicers_
     refused = trainee.submit("SubmitRegistration", **other)
     assert (refused.ok, "final" in refused.message) == (False, True)
     assert "trueTreMm" in trainee.submit("SubmitRegistration", **submitted).data
-    details = {key: value for key, value in own["details"].items() if key != "isOwnScore"}
+    details = {key: value for key, value in own["details"].items() if key != "scoredBySimulator"}
     outside.has_slicer = True
     assert trainee.submit("TrialScored", trialId=trial, score=own["score"], details=details).ok
     trainee.until(lambda: not any(OWN in sentence for sentence in trainee.menu.paragraphs))

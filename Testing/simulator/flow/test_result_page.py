@@ -135,6 +135,14 @@ def test_a_failure_says_why_and_leads_to_what_helps(result_of, name):
     assert menu.items[1].label == "Practice point 7"
 
 
+def test_a_passed_trial_leads_to_what_comes_next(result_of):
+    residuals = [0.4] * 6 + [4.1] + [0.4] * 8
+    menu = result_of(**WITHIN, passMark=70.0, residualsMm=residuals)
+    names = [item.name for item in menu.items]
+    assert names == ["next", "errors", "worst", "replay", "again", "menu"]
+    assert menu.focus == "next"
+
+
 def test_a_procedure_beyond_its_limits_is_not_passed(result_of):
     menu = result_of(**WITHIN, procedure={"score": 31.0, "acceptable": False}, passMark=70.0)
     assert menu.title == "P07, Task 1: not passed"

@@ -440,8 +440,8 @@ def test_a_start_that_could_not_be_written_leaves_no_trial(scenario):
 
 def test_sentences_can_be_translated_and_missing_ones_fall_back_to_english(scenario):
     texts = Texts({"start": "{trainee}, berühre Punkt {point}."})
-    trial = Trial(scenario, texts=texts)
+    trial = Trial(scenario)
     trial.start()
-    assert trial.state.instruction == "P01, berühre Punkt 1."
+    assert texts.again(trial.state.instruction) == "P01, berühre Punkt 1."
     trial.touch()
-    assert "is recorded" in trial.state.instruction
+    assert "is recorded" in texts.again(trial.state.instruction)

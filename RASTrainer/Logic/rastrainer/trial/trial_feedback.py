@@ -61,6 +61,18 @@ class PastTrial:
     method: RegistrationMethod = RegistrationMethod.FIDUCIALS
 
     @classmethod
+    def scored(cls, record: TrialRecord, score: float, acceptable: bool) -> PastTrial:
+        return cls(
+            record.trial_id,
+            record.task,
+            record.mode,
+            record.completion_time_s,
+            score,
+            acceptable,
+            method=record.method,
+        )
+
+    @classmethod
     def failed(cls, record: AbortedTrial | TrialRecord) -> PastTrial:
         """Return a trial without a score that counts as not passed."""
         seconds = record.elapsed_s if isinstance(record, AbortedTrial) else record.completion_time_s

@@ -1,6 +1,6 @@
 """The experiment menu: who trains, in which mode, on which head, and which task.
 
-With it the lists that it opens: of heads, and of the assignments of a trainee's curriculum.
+It opens the lists of heads, and of the assignments of a trainee's curriculum.
 """
 
 from __future__ import annotations
@@ -44,25 +44,25 @@ LONGEST_ID = 32
 _TYPES = (SourceKind.KEYBOARD, SourceKind.MOUSE)
 _CLICKS = (SourceKind.MOUSE,)
 _HEAD = "head "
-"""No scenario's name has a space: no head is taken for the way back."""
+"""No scenario's name has a space: no head is mistaken for "back"."""
 _ASSIGNMENT = "assignment "
-"""No assignment's name has a space: none is taken for the way back."""
+"""No assignment's name has a space: none is mistaken for "back"."""
 
 
 class ExperimentPage(SessionPage):
-    """Begins trials; a task waits for the one before it unless the instructor says otherwise."""
+    """Begins trials; each task waits for the previous task unless the instructor says otherwise."""
 
     name = "experiment"
 
     def __init__(self, session: TrainingSession, first: str = "") -> None:
         super().__init__(session)
-        self._usual_id = "" if session.trainee.strip() else usual_id(session)
+        self._usual_id = "" if session.trainee_id else usual_id(session)
         session.trainee = self._usual_id or session.trainee
         self.first = first or self._next_task()
 
     def content(self) -> PageContent:
         session = self.session
-        step = self._step()
+        step = self.session.step
         said = () if step is None else (session.step_sentence(step),)
         trend = self._trend()
         if trend is not None:
@@ -102,7 +102,7 @@ class ExperimentPage(SessionPage):
             yield self.button("clicked", self.open_page(ClickedIdPage, self._write_id))
 
     def _write_id(self, value: str) -> None:
-        """Set the trainee's ID; what is typed at first replaces the usual one."""
+        """Set the trainee's ID; the first typed character replaces the usual ID."""
         if value != self._usual_id:
             typed = value.removeprefix(self._usual_id)
             is_deleted = bool(self._usual_id) and value == self._usual_id[:-1]
@@ -116,16 +116,16 @@ class ExperimentPage(SessionPage):
     def _trend(self) -> ScoreTrend | None:
         """Return the trainee's scores in the chosen mode; a study may have its own pass mark."""
         session = self.session
-        scores = session.history.trend(session.trainee.strip(), session.mode)
+        scores = session.history.trend(session.trainee_id, session.mode)
         if not scores:
             return None
         shown = session.texts.listed(f"{score:.0f}" for score in scores)
-        mark = PASS_MARK if self._step() is None else 0.0
+        mark = PASS_MARK if self.session.step is None else 0.0
         return ScoreTrend(self.say("experiment.scores", scores=shown), scores, mark)
 
     def _method(self) -> Iterator[PageRow]:
-        """Yield the choice of what is registered; none where the head has no landmarks."""
-        session, step = self.session, self._step()
+        """Yield the choice of the method of registration; none if the head has no landmarks."""
+        session, step = self.session, self.session.step
         methods, offered = playable_methods(session.scenario), offered_method(session)
 
         def step_method(direction: int) -> None:
@@ -138,7 +138,7 @@ class ExperimentPage(SessionPage):
 
     def _procedure(self) -> Iterator[PageRow]:
         """Yield the choice of what follows the touches; none where the head has no procedures."""
-        session, step = self.session, self._step()
+        session, step = self.session, self.session.step
         names = ["", *(each.name for each in session.scenario.procedures)]
         chosen = session.procedure if session.procedure in names else ""
 
@@ -169,7 +169,7 @@ class ExperimentPage(SessionPage):
         if tutorial_rule(session) is TutorialRule.SKIPPED:
             return
         reason = tutorial_obstacle(session)
-        is_done = session.tutorials.has_done(session.trainee.strip(), session.operator.learned)
+        is_done = session.tutorials.has_done(session.trainee_id, session.operator.learned)
         value = self.say("experiment.done" if is_done else "experiment.tutorial time")
         yield self.button(
             "tutorial",
@@ -190,8 +190,7 @@ class ExperimentPage(SessionPage):
         self.session.pages.focus(self._next_task())
 
     def _own_trials(self) -> Iterator[PageRow]:
-        """Yield the button of the trainee's own trials; none before the first."""
-        count = len(self.session.history.own(self.session.trainee.strip()))
+        count = len(self.session.history.own(self.session.trainee_id))
         if count:
             yield self.button("trials", self.open_page(OwnTrialsPage), value=str(count))
 
@@ -214,9 +213,9 @@ class ExperimentPage(SessionPage):
 
         One that is not passed is to be done again, outside of a study.
 
-        With the focus there, a stray key does not change the ID of a known trainee.
+        Then a stray key does not change the ID of a known trainee.
         """
-        step = self._step()
+        step = self.session.step
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
             return "answer"
         if needs_tutorial(self.session) and not tutorial_obstacle(self.session):
@@ -226,22 +225,18 @@ class ExperimentPage(SessionPage):
             return "assignments"
         names = [task.name for task in self.session.scenario.tasks]
         to_do = ("", "failed") if step is None else ("",)
-        known = "mode" if self.session.trainee.strip() else ""
+        known = "mode" if self.session.trainee_id else ""
         return next((name for name in names if self._is_to_do(name, to_do)), known)
 
     def _is_to_do(self, name: str, outcomes: tuple[str, ...]) -> bool:
         session = self.session
-        trainee, head = session.trainee.strip(), session.scenario.name
+        trainee, head = session.trainee_id, session.scenario.name
         if name == TRIAL_RUN and session.progress.needs_no_trial_run(trainee, head):
             return False
         return session.outcome_of(name) in outcomes and not obstacle(session, name)
 
-    def _step(self) -> StudyStep | None:
-        return self.session.study.step_of(self.session.trainee.strip())
-
     def _answer(self) -> Iterator[PageRow]:
-        """Yield the button of the questionnaire that the study asks next."""
-        step = self._step()
+        step = self.session.step
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
             yield self.button("answer", partial(self._open_questionnaire, step))
 
@@ -252,8 +247,16 @@ class ExperimentPage(SessionPage):
             self.session.complain(str(error))
 
 
+def open_experiment(
+    session: TrainingSession, first: str = "", ignore_input_briefly: bool = False
+) -> None:
+    """Open the experiment menu over the start page; `first` is the row with the focus."""
+    session.pages.show_start()
+    session.pages.open(ExperimentPage(session, first), ignore_input_briefly)
+
+
 class ScenarioPage(SessionPage):
-    """Lists the scenarios; one that cannot be used says why."""
+    """Lists the scenarios, and why some cannot be used."""
 
     name = "scenario"
 
@@ -300,7 +303,7 @@ class ScenarioPage(SessionPage):
 
 
 class AssignmentsPage(SessionPage):
-    """Lists the assignments, the one to practice next in focus; each begins its trial."""
+    """Lists the assignments; the next to practice has the focus, and each begins its trial."""
 
     name = "assignments"
 
@@ -336,7 +339,6 @@ class AssignmentsPage(SessionPage):
         )
 
     def _begin(self, each: AssignmentMessage) -> None:
-        """Begin a trial of an assignment."""
         session = self.session
         session.mode = each.mode or session.mode
         session.method, session.procedure = method_of(each.method), each.procedure

@@ -1,4 +1,4 @@
-"""Introducing a trainee: sheets of text, the menu over the tutorial, and what comes after it."""
+"""Introducing a trainee: sheets of text, the menu during the tutorial, and the pages after it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from functools import partial
 
 from rastrainer.protocol import TRIAL_RUN, TutorialRule
 from rastrainer_simulator.flow.pages.controls import ControlsPage
-from rastrainer_simulator.flow.pages.experiment import ExperimentPage
+from rastrainer_simulator.flow.pages.experiment import open_experiment
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.trial_review import error_tone
 from rastrainer_simulator.flow.session.chosen_trial import (
@@ -17,7 +17,6 @@ from rastrainer_simulator.flow.session.chosen_trial import (
 )
 from rastrainer_simulator.flow.session.open_pages import PageContent
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.screen import Fact
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 
@@ -36,7 +35,7 @@ class IntroductionPage(SessionPage):
 
     def content(self) -> PageContent:
         key, alone = f"introduction.text.{self._sheet}", ".alone"
-        # 3D Slicer is spoken of only where it is connected.
+        # Mention 3D Slicer only if it is connected.
         if not self.session.is_slicer_connected() and f"{key}{alone}" in self.session.texts:
             key += alone
         place = self.say("introduction.sheet", sheet=self._sheet, sheets=SHEETS)
@@ -49,7 +48,6 @@ class IntroductionPage(SessionPage):
         return PageContent(title, (self.say(key), place), rows=rows)
 
     def back(self) -> None:
-        """Go back a sheet."""
         if self._sheet == 1:
             self.session.pages.close()
         else:
@@ -69,6 +67,7 @@ class TutorialPage(SessionPage):
     """Continues the tutorial, restarts it or leaves it."""
 
     name = "tutorial"
+    pause_goes_back = True
 
     def content(self) -> PageContent:
         session = self.session
@@ -90,16 +89,9 @@ class TutorialPage(SessionPage):
     def _leave(self, is_skipped: bool) -> None:
         session = self.session
         if is_skipped:
-            session.tutorials.skip(session.trainee.strip())
+            session.tutorials.skip(session.trainee_id)
         session.end_tutorial()
-        session.pages.show_start()
-        session.pages.open(ExperimentPage(session))
-
-    def pressed(self, control: ControlName) -> bool:
-        """The control that pauses also resumes."""
-        if control is ControlName.PAUSE:
-            self.back()
-        return control is ControlName.PAUSE
+        open_experiment(session)
 
 
 class TutorialDonePage(SessionPage):

@@ -20,7 +20,7 @@ class OwnTrialsPage(SessionPage):
     name = "own-trials"
 
     def content(self) -> PageContent:
-        trainee = self.session.trainee.strip()
+        trainee = self.session.trainee_id
         trials = reversed(self.session.history.own(trainee)[-MOST_TRIALS:])
         back = self.button("back", label=self.say("experiment.back"))
         title = self.say("own-trials.title", trainee=trainee)

@@ -9,7 +9,6 @@ from functools import partial
 from typing import Any
 
 from rastrainer.commands import CommandName
-from rastrainer.json_checks import is_number
 from rastrainer.procedure.plan import MAX_TRAJECTORIES
 from rastrainer.protocol import Phase
 from rastrainer.trial.procedure_outcome import (
@@ -29,6 +28,7 @@ from rastrainer_simulator.flow.session.plan_marks import (
     placed_line,
 )
 from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.flow.session.verdict import detail_number
 from rastrainer_simulator.presentation.screen import (
     ErrorArrow,
     Fact,
@@ -39,7 +39,7 @@ from rastrainer_simulator.state import TrialResult
 from rastrainer_simulator.trial_state import PlannedLine
 
 STAND_OFF_MM = 30.0
-"""Of the guide's tip before the entry where the robot aligns it: near, and clear of the skin."""
+"""Distance of the guide's tip from the entry when the robot aligns it: near, but off the skin."""
 _COMMANDS: Mapping[str, str] = {
     "accept": CommandName.ACCEPT_REGISTRATION,
     "again": CommandName.REGISTER_AGAIN,
@@ -58,7 +58,7 @@ _ITEMS: Mapping[Phase, tuple[str, ...]] = {
 
 
 class ProcedurePage(SessionPage):
-    """What can be done in the present phase besides moving the tool."""
+    """Actions of the present phase besides moving the tool."""
 
     name = "procedure"
 
@@ -110,7 +110,7 @@ def procedure_details(result: TrialResult | None) -> Mapping[str, Any]:
 def procedure_facts(session: TrainingSession, result: TrialResult) -> list[Fact]:
     """Return the procedure's score and its errors in short; [] in a trial of touches alone."""
     details, say = procedure_details(result), session.texts.say
-    score = _number(details, "score")
+    score = detail_number(details, "score")
     if score is None:
         return []
     is_good = details.get("acceptable") is True
@@ -118,7 +118,7 @@ def procedure_facts(session: TrainingSession, result: TrialResult) -> list[Fact]
     tone = Tone.GOOD if is_good else Tone.WARNING
     facts = [Fact(say("procedure-errors.score"), say(key, score=score), tone)]
     parts = ("targetRmsMm", "targetByRegistrationRmsMm", "targetByHandRmsMm")
-    numbers = [_number(details, name) for name in parts]
+    numbers = [detail_number(details, name) for name in parts]
     if None not in numbers:
         values = dict(zip(("error", "registration", "hand"), numbers, strict=True))
         facts.append(Fact(say("procedure-errors.rms"), say("procedure-errors.split mm", **values)))
@@ -167,7 +167,7 @@ class ProcedureErrorsPage(SessionPage):
     def _facts(self, details: Mapping[str, Any]) -> list[Fact]:
         facts = []
         for name, whole, registration, hand, limit in _SPLIT:
-            numbers = [_number(details, member) for member in (whole, registration, hand)]
+            numbers = [detail_number(details, member) for member in (whole, registration, hand)]
             if None in numbers:
                 continue
             values = dict(zip(("error", "registration", "hand"), numbers, strict=True))
@@ -179,7 +179,7 @@ class ProcedureErrorsPage(SessionPage):
 
     def _drilled(self, details: Mapping[str, Any]) -> list[Fact]:
         """Return how deep the drill plunged, and the distance kept to the nearest structure."""
-        plunge, kept = _number(details, "plungeMm"), _number(details, "keptMm")
+        plunge, kept = detail_number(details, "plungeMm"), detail_number(details, "keptMm")
         facts = []
         label = self.say("procedure-errors.plunge")
         if plunge is None:
@@ -202,7 +202,7 @@ class ProcedureLinesPage(ErrorsPage):
     name = "procedure-lines"
 
     def screen(self) -> Screen:
-        """Return the lines; the score has revealed where the head truly is."""
+        """Return the lines at the true pose of the head, which the score has revealed."""
         session = self.session
         lines = _lines(session) if session.training.result is not None else ()
         return replace(super().screen(), errors=lines, is_head_clear=True)
@@ -233,11 +233,6 @@ def _tone(error: float | None, limit: float) -> Tone:
     if error is None or math.isinf(limit):
         return Tone.PLAIN
     return Tone.WARNING if abs(error) > limit else Tone.GOOD
-
-
-def _number(details: Mapping[str, Any], name: str) -> float | None:
-    value = details.get(name)
-    return float(value) if is_number(value) and math.isfinite(value) else None
 
 
 def _text(value: object) -> str:

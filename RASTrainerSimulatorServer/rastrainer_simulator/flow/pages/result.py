@@ -1,4 +1,4 @@
-"""What comes after the registration: waiting for the score, and the result."""
+"""The pages after the registration: waiting for the score, and the result."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import Any, TypeGuard
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import is_number
-from rastrainer.study.protocol.steps import StudyStep
 from rastrainer.trial.scoring import (
     COMMON_BIAS_LIMIT_MM,
     CONTACT_LIMIT_S,
@@ -18,7 +17,7 @@ from rastrainer.trial.scoring import (
     LIMIT_MM,
 )
 from rastrainer.trial.trial_feedback import MAX_SHORT
-from rastrainer_simulator.flow.pages.experiment import ExperimentPage
+from rastrainer_simulator.flow.pages.experiment import open_experiment
 from rastrainer_simulator.flow.pages.procedure import (
     ProcedureErrorsPage,
     procedure_details,
@@ -26,8 +25,8 @@ from rastrainer_simulator.flow.pages.procedure import (
 )
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.trial_review import ErrorsPage, ReplayPage
+from rastrainer_simulator.flow.session.local_scorer import SCORED_BY_SIMULATOR
 from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
-from rastrainer_simulator.flow.session.own_score import OWN_SCORE
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.session.verdict import (
     beyond_limits,
@@ -49,11 +48,11 @@ _MEASURED = (
     ("result.contact path", "contactPathMm", CONTACT_PATH_LIMIT_MM, "result.millimeters of"),
     ("result.depth", "pressingDepthMm", DEPTH_LIMIT_MM, "result.mm of"),
 )
-"""What is scored: its label, its member of the score's details, its limit, and its text."""
+"""Scored measures: label, member of the score's details, limit, and text."""
 _ONLY_IF_BEYOND = ("contactPathMm",)
 _HELPFUL = ("worst", "practice", "again", "errors", "replay", "procedure", "next", "menu")
 _ONWARD = ("next", "procedure", "errors", "worst", "replay", "again", "menu")
-"""The order of what is offered: first what helps after a failure, else what comes next."""
+"""Orders of the rows: after a failure help comes first, else the next task."""
 
 
 class FinishedPage(SessionPage):
@@ -68,28 +67,20 @@ class FinishedPage(SessionPage):
         again = self.say("result.again", task=session.task_title(task))
         rows = []
         if following or best is not None:
-            leave = partial(self._leave, following)
+            leave = partial(open_experiment, session, following)
             rows.append(self.button("next", leave, self.say("result.next", task=title)))
-        if self._step() is None:
-            rows.append(self.button("again", partial(self._leave, task), again))
-        menu = partial(self._leave, "")
+        if self.session.trial_step is None:
+            rows.append(self.button("again", partial(open_experiment, session, task), again))
+        menu = partial(open_experiment, session)
         return (*rows, self.button("menu", menu, self.say("result.menu")))
 
     def back(self) -> None:
         """Go to the next task."""
-        self._leave(self._following())
-
-    def _leave(self, first: str) -> None:
-        """Go to the experiment menu, where a task has the focus."""
-        self.session.pages.show_start()
-        self.session.pages.open(ExperimentPage(self.session, first=first))
-
-    def _step(self) -> StudyStep | None:
-        return self.session.study.step_of(self.session.training.trainee)
+        open_experiment(self.session, self._following())
 
     def _following(self) -> str:
         """Return the task that comes next; "" for none, or where a curriculum says what does."""
-        step = self._step()
+        step = self.session.trial_step
         if step is not None:
             return step.task if step.is_played else ""
         if self.session.curriculum is not None:
@@ -107,10 +98,10 @@ class WaitingPage(FinishedPage):
 
     def content(self) -> PageContent:
         session = self.session
-        own, is_there = session.own_score, session.is_slicer_connected()
+        own, is_there = session.local_scorer, session.is_slicer_connected()
         key = "waiting.slicer" if is_there else "waiting.nobody"
         problem = "" if own is None else own.problem
-        if not is_there and own is not None and not problem and self._step() is None:
+        if not is_there and own is not None and not problem and self.session.trial_step is None:
             key = "waiting.own"
         waiting = self.say(key, trainee=session.training.trainee)
         why = (self.say("waiting.problem", reason=problem),) if problem else ()
@@ -142,13 +133,13 @@ class ResultPage(FinishedPage):
         training, result, texts = self.session.training, self._result, self.session.texts
         verdict = {True: "passed", False: "failed", None: "title"}[self._is_passed]
         task = self.session.task_title(training.task)
-        step = self._step()
+        step = self.session.trial_step
         said = (
             *self._reasons(),
             *_sentences(texts, result, "feedback", MAX_SHORT),
             *_sentences(texts, result, "warnings", MAX_WARNINGS),
             *(() if step is None else (self.session.step_sentence(step),)),
-            *((self.say("result.own"),) if result.details.get(OWN_SCORE) is True else ()),
+            *((self.say("result.own"),) if result.details.get(SCORED_BY_SIMULATOR) is True else ()),
         )
         title = self.say(f"result.{verdict}", trainee=training.trainee, task=task)
         return PageContent(title, said, self._facts(), self.onward())
@@ -171,17 +162,18 @@ class ResultPage(FinishedPage):
             practice = partial(self.session.begin_practice, self.session.training.task, worst)
             label = self.say("result.practice", point=worst)
             rows.append(self.button("practice", practice, label))
-        is_helped = self._is_passed is False and self._step() is None
+        is_helped = self._is_passed is False and self.session.trial_step is None
+        named = {row.item.name: row for row in rows}
         order = _HELPFUL if is_helped else _ONWARD
-        return tuple(sorted(rows, key=lambda row: order.index(row.item.name)))
+        return tuple(named[name] for name in order if name in named)
 
     def back(self) -> None:
         """Go to the next task, or to this one again where it is not passed."""
         failed = self.session.training.task
-        self._leave(failed if self._is_passed is False else self._following())
+        first = failed if self._is_passed is False else self._following()
+        open_experiment(self.session, first)
 
     def closed(self) -> None:
-        """Stop loading the trial."""
         if self._loading is not None:
             self._loading.cancel()
 
@@ -203,7 +195,12 @@ class ResultPage(FinishedPage):
         training = self.session.training
         residuals = self._result.details.get("residualsMm")
         is_known = isinstance(residuals, list) and len(residuals) == len(training.touches)
-        if self._step() is not None or not training.is_marked or not is_known or not residuals:
+        if (
+            self.session.trial_step is not None
+            or not training.is_marked
+            or not is_known
+            or not residuals
+        ):
             return ""
         if not all(map(is_number, residuals)):
             return ""
@@ -283,12 +280,12 @@ def _sentences(texts: Texts, result: TrialResult, name: str, most: int) -> list[
 
 
 def _worded(texts: Texts, said: Any) -> str:
-    """Return a text as it is, and what has a key here in the trainee's language; "" for others."""
+    """Return a text as it is, a sentence with a known key in the trainee's language, else ""."""
     if not isinstance(said, dict):
         return said if isinstance(said, str) and said.isprintable() else ""
     key, values = f"feedback.{said.get('key')}", said.get("values")
     if key in texts and isinstance(values, dict):
-        # What does not fit the sentence, as that of another version, is said in English.
+        # Values that do not fit the sentence: say it in English.
         with contextlib.suppress(KeyError, ValueError, TypeError):
             return texts.say(key, **{name: _value(texts, value) for name, value in values.items()})
     text = said.get("text")

@@ -27,11 +27,11 @@ class SessionPage(Page):
         return self.session.texts.say(key, **values)
 
     def open_page(self, page: Callable[..., SessionPage], *arguments: object) -> Callable[[], None]:
-        """Return what opens a page of this kind."""
+        """Return a function that opens a page of this kind."""
         return lambda: self.session.pages.open(page(self.session, *arguments))
 
     def command(self, name: str, **arguments: object) -> Callable[[], None]:
-        """Return what has a command carried out."""
+        """Return a function that has a command carried out."""
         return lambda: self.session.do(name, arguments)
 
 

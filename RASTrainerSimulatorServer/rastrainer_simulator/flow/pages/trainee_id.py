@@ -1,4 +1,4 @@
-"""Who trains: an ID entered by buttons or clicks, and the questionnaires that a study asks."""
+"""The trainee's ID, entered by buttons or clicks, and the questionnaires of a study."""
 
 from __future__ import annotations
 
@@ -115,7 +115,6 @@ class QuestionnairePage(SessionPage):
     name = "questionnaire"
 
     def __init__(self, session: TrainingSession, step: StudyStep) -> None:
-        """Show the questionnaire of a step."""
         super().__init__(session)
         self._step = step
         self._questionnaire = find_questionnaire(step.questionnaire)

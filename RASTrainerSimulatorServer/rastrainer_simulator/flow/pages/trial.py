@@ -20,7 +20,6 @@ from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.start import SettingsPage
 from rastrainer_simulator.flow.session.open_pages import PageContent
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.presentation.screen import Fact, Tone
 from rastrainer_simulator.state import TrainingState
@@ -61,7 +60,7 @@ def look_at_match(training: TrainingState, scenario: Scenario) -> Future[MatchRe
 
 
 def match_report(training: TrainingState, scenario: Scenario) -> MatchReport:
-    """Return what is shown of the match of a trial's trace."""
+    """Return the figures of the match of a trial's trace."""
     answer = {"task": training.task, "method": training.method.value, **given(training)}
     registered = register_trial(GivenPoints.of_answer(answer), scenario)
     match, error = registered.match, registered.target_errors[RIGID]
@@ -77,10 +76,10 @@ def match_report(training: TrainingState, scenario: Scenario) -> MatchReport:
 
 
 class MatchPage(SessionPage):
-    """Shows what is known of a match; the trial is registered only when it is accepted."""
+    """Shows the figures of a match; the trial is registered only when it is accepted."""
 
     name = "match"
-    # Someone who presses twice should not accept what they have not read.
+    # A double press must not accept a match that was not read.
     first = "draw"
 
     def __init__(self, session: TrainingSession, looked: Future[MatchReport]) -> None:
@@ -122,6 +121,7 @@ class TrialPage(SessionPage):
     """The menu during a trial, which is paused while it is open."""
 
     name = "trial"
+    pause_goes_back = True
 
     def content(self) -> PageContent:
         training = self.session.training
@@ -160,12 +160,6 @@ class TrialPage(SessionPage):
             looked = look_at_match(session.training, session.scenario)
             session.pages.open(MatchPage(session, looked))
 
-    def pressed(self, control: ControlName) -> bool:
-        """The control that pauses also resumes."""
-        if control is ControlName.PAUSE:
-            self.back()
-        return control is ControlName.PAUSE
-
 
 class PreparingPage(SessionPage):
     """A trial is paused until the trainee's view has drawn its picture; then it goes on."""
@@ -184,7 +178,6 @@ class PreparingPage(SessionPage):
         return PageContent(self.say("preparing.title"), said, rows=rows)
 
     def back(self) -> None:
-        """Open the trial's menu."""
         self.session.pages.replace(TrialPage(self.session))
 
     def advance(self, dt: float) -> None:  # noqa: ARG002
@@ -219,7 +212,7 @@ class PracticePage(SessionPage):
 
     def content(self) -> PageContent:
         trainee = self.session.training.trainee
-        is_led = self.session.study.step_of(trainee) is not None
+        is_led = self.session.trial_step is not None
         text = self.say("practice.study" if is_led else "practice.text", trainee=trainee)
         rows = (self.button("finish", self._finish), self.button("resume"))
         return PageContent(self.say("practice.title"), (text,), rows=rows)

@@ -89,7 +89,6 @@ def error_arrow(fiducial: Vector, touch: Vector) -> ErrorArrow:
 
 
 def error_tone(error_mm: float) -> Tone:
-    """Return how good a touch is."""
     tone = Tone.ERROR if error_mm >= POOR_MM else Tone.WARNING
     return Tone.GOOD if error_mm <= GOOD_MM else tone
 
@@ -102,7 +101,7 @@ class ReplayPage(SessionPage):
     """Waits for the recorded trial, and replays it for the operator.
 
     Attributes:
-        playback: what is played; None while it is being loaded.
+        playback: None while the trial is being loaded.
     """
 
     name = "replay"
@@ -118,11 +117,10 @@ class ReplayPage(SessionPage):
         self._player: Player | None = None
 
     def content(self) -> PageContent:
-        """Return what is read while the trial is being loaded."""
         return PageContent(self.say("replay.loading"), rows=(self.button("back"),))
 
     def screen(self) -> Screen | None:
-        """Return what is read while the trial is played; with the plan, where it was seen."""
+        """Return the screen of the playback, with the plan of a procedure if it was visible."""
         if self._player is None or self.playback is None:
             return None
         session = self.session
@@ -149,7 +147,7 @@ class ReplayPage(SessionPage):
         return True
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """Process what has no function in menus: the worst touch, and the camera as in a trial."""
+        """Process inputs without a function in menus: the worst touch, and the camera."""
         bindings = self.session.bindings
         if self._player is None or bindings.control(device, name, ControlContext.MENU) is not None:
             return False
@@ -181,7 +179,6 @@ class ReplayPage(SessionPage):
             self.session.view.want_best()
 
     def _feel(self, result: StepResult) -> None:
-        """Play the recorded sounds and vibrations again."""
         for event in result.events:
             felt = feedback_event(event, result.state.touch)
             if felt is not None:

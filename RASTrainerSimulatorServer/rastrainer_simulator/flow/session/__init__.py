@@ -1,1 +1,1 @@
-"""What every page shares: the session, who trains, and what is chosen."""
+"""The session that all pages share: the trainee and the choices."""

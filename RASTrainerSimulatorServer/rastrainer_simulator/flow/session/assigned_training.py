@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from rastrainer.protocol import FREE, StepKind
 from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
-from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
 from rastrainer.study.protocol.steps import StepAnswers, StudyStep
 from rastrainer_simulator.texts.texts import Texts
 
@@ -16,7 +15,7 @@ MAX_TRAINEES = 1000
 """Trainees whose steps and curricula are remembered; the oldest is forgotten first."""
 
 PLAYED, ANSWERED = "played", "answered"
-"""In place of a step's kind: it was done here, and Slicer will send what comes next."""
+"""In place of a step's kind: the step is done here, and Slicer will send the next."""
 
 
 class StudySteps:
@@ -33,7 +32,6 @@ class StudySteps:
         self._answers: dict[str, StepAnswers] = {}
 
     def take(self, step: StudyStep) -> None:
-        """Store a step that Slicer has sent."""
         name = step.trainee
         answers = self._answers.get(name)
         if answers is not None and not answers.belong_to(step):
@@ -46,7 +44,6 @@ class StudySteps:
             self._forget(next(iter(self._steps)))
 
     def step_of(self, trainee: str) -> StudyStep | None:
-        """Return what comes next for a trainee; None for one who practices freely."""
         return self._steps.get(trainee)
 
     def break_left_s(self, trainee: str) -> float:
@@ -82,22 +79,6 @@ class StudySteps:
             kept.pop(trainee, None)
 
 
-def step_sentence(texts: Texts, step: StudyStep, task_title: str, left: str) -> str:
-    """Return the sentence about a step; `left` is the time that a break still lasts."""
-    asked = QUESTIONNAIRES.get(step.questionnaire)
-    by = f"study.by {step.method}"
-    return texts.say(
-        f"study.{step.kind}",
-        number=step.number,
-        count=step.count,
-        task=f"{task_title} {texts.say(by)}" if by in texts else task_title,
-        mode=texts.say(f"study.{step.mode}") if step.mode else "",
-        minutes=step.minutes,
-        left=left,
-        questionnaire=step.questionnaire if asked is None else asked.title,
-    )
-
-
 Titles = Callable[[str], str]
 """Maps the name of a task or a procedure to its title."""
 
@@ -113,7 +94,6 @@ class Curricula:
         self._messages: dict[str, CurriculumMessage] = {}
 
     def take(self, curriculum: CurriculumMessage) -> None:
-        """Store the standing of a trainee that Slicer has sent."""
         self._messages.pop(curriculum.trainee, None)
         if curriculum.assignments:
             self._messages[curriculum.trainee] = curriculum
@@ -125,20 +105,7 @@ class Curricula:
         self._messages.clear()
 
     def of(self, trainee: str) -> CurriculumMessage | None:
-        """Return the standing of a trainee; None without a curriculum."""
         return self._messages.get(trainee)
-
-
-def newly_reached(
-    before: CurriculumMessage | None, now: CurriculumMessage | None
-) -> Iterator[AssignmentMessage]:
-    """Yield the assignments that a trainee has reached since Slicer's previous message."""
-    if before is None or now is None or before is now or before.trainee != now.trainee:
-        return
-    for each in now.assignments:
-        earlier = before.find(each.name)
-        if each.is_reached and earlier is not None and not earlier.is_reached:
-            yield each
 
 
 class AssignmentTexts:
@@ -151,7 +118,6 @@ class AssignmentTexts:
         self._procedure_title = procedure_title
 
     def title(self, each: AssignmentMessage) -> str:
-        """Return the title of an assignment."""
         by = f"study.by {each.method}"
         words = [self._task_title(each.task)]
         words += [self._say(by)] if by in self._texts else []
@@ -183,7 +149,6 @@ class AssignmentTexts:
         return self._say(key, done=each.done, needed=each.needed)
 
     def goal(self, each: AssignmentMessage) -> str:
-        """Return when an assignment is reached."""
         if not each.mark:
             return self._say("assignments.no mark")
         if each.is_by_competence:

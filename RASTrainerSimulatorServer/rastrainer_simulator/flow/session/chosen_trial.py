@@ -1,4 +1,4 @@
-"""A trial as the study requires or the trainee has chosen it, and what has to come before it."""
+"""A trial as the study requires or the trainee has chosen it, and what it waits for."""
 
 from __future__ import annotations
 
@@ -23,12 +23,10 @@ FIRST_ID = "trainee-1"
 
 
 def start_task(session: TrainingSession, task: str) -> None:
-    """Start a trial of a task for the trainee, in the chosen mode."""
-    trainee = session.trainee.strip()
-    start = {"task": task, "trainee": trainee, "mode": session.mode}
+    start = {"task": task, "trainee": session.trainee_id, "mode": session.mode}
     method = registration_method(session, task).value
     chosen = {"procedure": procedure_of(session, task), "method": method}
-    step = session.study.step_of(trainee)
+    step = session.step
     skin = {"skin": dict(step.skin)} if step is not None and step.skin else {}
     session.do(CommandName.START_TASK, {**start, **chosen, **skin})
 
@@ -36,9 +34,9 @@ def start_task(session: TrainingSession, task: str) -> None:
 def procedure_of(session: TrainingSession, task: str) -> str:
     """Return the name of the procedure that follows the touches of a task; "" for none.
 
-    A study says which; else it is the one that the trainee has chosen. The trial run has none.
+    A study decides, else the trainee; the trial run has none.
     """
-    step = session.study.step_of(session.trainee.strip())
+    step = session.step
     if step is not None:
         return step.procedure
     names = [each.name for each in session.scenario.procedures]
@@ -48,10 +46,9 @@ def procedure_of(session: TrainingSession, task: str) -> str:
 def registration_method(session: TrainingSession, task: str) -> RegistrationMethod:
     """Return the method by which a trial of a task is registered.
 
-    A study says which; else it is what the trainee has chosen, if the head allows that. In the
-    trial run it is fiducials.
+    A study decides, else the trainee if the head allows it; the trial run is by fiducials.
     """
-    step = session.study.step_of(session.trainee.strip())
+    step = session.step
     if step is not None:
         return method_of(step.method)
     return offered_method(session) if task != TRIAL_RUN else RegistrationMethod.FIDUCIALS
@@ -65,18 +62,18 @@ def offered_method(session: TrainingSession) -> RegistrationMethod:
 
 def guidance_of(session: TrainingSession) -> Guidance:
     """Return how the trainee is guided in the present trial, by the study or the setting."""
-    training, step = session.training, session.study.step_of(session.training.trainee)
+    training, step = session.training, session.trial_step
     choice = step.guidance if step is not None and step.guidance else session.preferences.guidance
     order = [task.name for task in session.scenario.tasks]
     return faded_guidance(choice, training.task, order)
 
 
 def begin_ghost(session: TrainingSession, head_to_world: np.ndarray) -> None:
-    """Begin to load the ghost of the present trial; in a study only where its protocol has one.
+    """Begin to load the ghost of the present trial; in a study only if its protocol has one.
 
-    HeadToWorld is that of the trial, (4, 4) float, mm.
+    HeadToWorld of the trial is (4, 4) float, mm.
     """
-    training, step = session.training, session.study.step_of(session.training.trainee)
+    training, step = session.training, session.trial_step
     choice = session.preferences.ghost if step is None else step.ghost
     # Trial runs are not scored: there is no best one. Elsewhere, a ghost would lead to points.
     is_none = not choice or training.task == TRIAL_RUN or not training.is_marked
@@ -91,7 +88,7 @@ def obstacle(session: TrainingSession, task: str) -> str:
     unready = _unready(session)
     if unready:
         return unready
-    step = session.study.step_of(session.trainee.strip())
+    step = session.step
     if step is not None:
         is_asked = step.is_played and (step.task, step.mode) == (task, session.mode)
         if not is_asked:
@@ -128,7 +125,7 @@ def assignment_obstacle(session: TrainingSession, each: AssignmentMessage) -> st
 
 
 def _missing_before(session: TrainingSession, task: str, is_assigned: bool) -> str:
-    """Return what has to be done first outside of a study; for assignments, their gates decide."""
+    """Return the task to do first, outside of a study; assignments have their own gates."""
     if session.preferences.order == "any":
         return ""
     if task == TRIAL_RUN:
@@ -137,7 +134,7 @@ def _missing_before(session: TrainingSession, task: str, is_assigned: bool) -> s
     order = [
         each.name for each in scenario.tasks if not is_assigned or each.name in (TRIAL_RUN, task)
     ]
-    missing = session.progress.missing_before(session.trainee.strip(), scenario.name, task, order)
+    missing = session.progress.missing_before(session.trainee_id, scenario.name, task, order)
     if not missing:
         return ""
     key = "experiment.trial run first" if missing == TRIAL_RUN else "experiment.order"
@@ -157,28 +154,26 @@ def tutorial_obstacle(session: TrainingSession) -> str:
     unready = _unready(session)
     if unready:
         return unready
-    say = session.texts.say
-    trainee = session.trainee.strip()
-    step = session.study.step_of(trainee)
+    step = session.step
     if step is None:
         return ""
     is_asked = step.kind == StepKind.TRIAL_RUN and step.mode == session.mode
-    has_done = session.tutorials.has_done(trainee, session.operator.learned)
+    has_done = session.tutorials.has_done(session.trainee_id, session.operator.learned)
     if is_asked and not has_done:
         return ""
-    return say("experiment.study", step=session.step_sentence(step))
+    return session.texts.say("experiment.study", step=session.step_sentence(step))
 
 
 def _unready(session: TrainingSession) -> str:
     """Return why nothing can begin yet; "" where trainee and robot are ready."""
-    if not session.trainee.strip():
+    if not session.trainee_id:
         return session.texts.say("experiment.no trainee")
     return session.texts.say("being set up") if session.reload.is_under_way else ""
 
 
 def tutorial_rule(session: TrainingSession) -> TutorialRule:
     """Return whether the tutorial comes before the trial run: by the study, or by the setting."""
-    step = session.study.step_of(session.trainee.strip())
+    step = session.step
     chosen = step.tutorial if step is not None and step.tutorial else session.preferences.tutorial
     return TutorialRule(chosen)
 
@@ -188,13 +183,13 @@ def may_skip(session: TrainingSession) -> bool:
 
     That is not for who is in a study or has a curriculum, nor where an instructor's PIN locks it.
     """
-    is_led = session.study.step_of(session.trainee.strip()) is not None
-    return not is_led and session.curriculum is None and not session.lock.is_locked
+    is_led = session.step is not None or session.curriculum is not None
+    return not is_led and not session.lock.is_locked
 
 
 def skippable(session: TrainingSession) -> str:
     """Return which of "tutorial" and "trial run" comes next and may be skipped; "" for neither."""
-    trainee, head = session.trainee.strip(), session.scenario.name
+    trainee, head = session.trainee_id, session.scenario.name
     order = [task.name for task in session.scenario.tasks]
     if _unready(session) or not may_skip(session) or session.preferences.order == "any":
         return ""
@@ -204,8 +199,7 @@ def skippable(session: TrainingSession) -> str:
 
 
 def skip(session: TrainingSession) -> None:
-    """Skip the tutorial or, after that, the trial run."""
-    trainee, what = session.trainee.strip(), skippable(session)
+    trainee, what = session.trainee_id, skippable(session)
     if what == "tutorial":
         session.tutorials.skip(trainee)
     elif what:
@@ -225,7 +219,7 @@ def usual_id(session: TrainingSession) -> str:
 
 def needs_tutorial(session: TrainingSession) -> bool:
     """Return whether the trial run waits for the tutorial with the device in use."""
-    is_skipped = may_skip(session) and session.tutorials.has_skipped(session.trainee.strip())
+    is_skipped = may_skip(session) and session.tutorials.has_skipped(session.trainee_id)
     if is_skipped or tutorial_rule(session) is not TutorialRule.REQUIRED:
         return False
-    return not session.tutorials.has_done(session.trainee.strip(), session.operator.learned)
+    return not session.tutorials.has_done(session.trainee_id, session.operator.learned)

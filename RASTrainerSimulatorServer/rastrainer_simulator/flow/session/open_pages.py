@@ -1,4 +1,4 @@
-"""What a page is, which pages are open one over the other, and which row has the focus."""
+"""Pages of rows, the stack of open pages, and the row that has the focus."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ _MOVES = {ControlName.UP: -1, ControlName.DOWN: 1}
 
 @dataclass(frozen=True)
 class PageRow:
-    """One line of a page, and what it does.
+    """A line of a page with its actions.
 
     Attributes:
-        item: what is shown of it.
+        item: as views show it.
         accept: is called when a button is pressed, a text is chosen, or a choice accepted.
         step: moves a choice to its next (1) or previous (−1) option.
         write: is called with the new value of a text.
@@ -41,7 +41,7 @@ class PageRow:
 
 @dataclass(frozen=True)
 class PageContent:
-    """What a page shows, in the order of `Menu`."""
+    """The content of a page, in the order of `Menu`."""
 
     title: str
     paragraphs: Sequence[str] = ()
@@ -52,17 +52,19 @@ class PageContent:
 
 
 class Page:
-    """What is shown, and what its rows do.
+    """A page of text, facts and rows.
 
     Attributes:
         name: of the menu.
         first: name of the row that has the focus at first; "" is the first that can be chosen.
         is_private: whether its rows are only for the views of who operates.
+        pause_goes_back: whether the control that pauses, which opened the page, also closes it.
     """
 
     name: ClassVar[str] = ""
     first: str = ""
     is_private: ClassVar[bool] = False
+    pause_goes_back: ClassVar[bool] = False
 
     def content(self) -> PageContent:
         raise NotImplementedError
@@ -76,7 +78,7 @@ class Page:
         raise NotImplementedError
 
     def menu(self) -> Menu:
-        """Return what is shown, without a focus."""
+        """Return the menu without a focus."""
         shown = self.content()
         return Menu(
             self.name,
@@ -103,7 +105,7 @@ class Page:
         return dataclasses.replace(row, step=step)
 
     def screen(self) -> Screen | None:
-        """Return what is read in place of a menu; None where the menu is."""
+        """Return a screen without a menu; None if the page has a menu."""
         return None
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:  # noqa: ARG002
@@ -152,7 +154,6 @@ class OpenPages:
             self.open(page, ignore_input_briefly)
 
     def advance(self, dt: float) -> None:
-        """Advance the page that is shown by `dt` seconds."""
         self._grace_s -= dt
         if self.top is not None:
             self.top.advance(dt)
@@ -173,12 +174,10 @@ class OpenPages:
             self._open.pop().closed()
 
     def replace(self, page: Page) -> None:
-        """Show a page in place of the one that is shown."""
         self.close()
         self.open(page)
 
     def menu(self) -> Menu | None:
-        """Return what is shown, with the focus."""
         page = self.top
         if page is None:
             return None
@@ -186,7 +185,6 @@ class OpenPages:
         return dataclasses.replace(menu, focus=self._focused(menu))
 
     def pressed(self, control: ControlName) -> None:
-        """Process a control of the menus."""
         page = self.top
         if page is None or self._grace_s > 0.0 or page.pressed(control):
             return
@@ -196,6 +194,8 @@ class OpenPages:
             self._step(_STEPS[control])
         elif control is ControlName.ACCEPT:
             self.choose(self._focused(page.menu()))
+        elif control is ControlName.PAUSE and page.pause_goes_back:
+            page.back()
         elif control in (ControlName.BACK, ControlName.MENU):
             self._happened(FeedbackEvent.ACCEPT)
             page.back()
@@ -226,7 +226,6 @@ class OpenPages:
                 row.accept()
 
     def write(self, name: str, value: str) -> None:
-        """Put a value into a text."""
         row = self._row(name)
         if row is not None and row.item.kind is ItemKind.TEXT:
             self._focus[-1] = name

@@ -17,9 +17,9 @@ from rastrainer_simulator.texts.texts import NO_NAMES, Texts, input_label, pair_
 
 _OWN_LABELS = {SourceKind.XR: "headset", SourceKind.TOUCH_SCREEN: "touch screen"}
 _BY_MOUSE = "mouse"
-"""Whose inputs have other names than those of a gamepad, and how the keys of their texts begin."""
+"""Devices with their own names of inputs, and the prefix of the keys of these texts."""
 SHOW, TILT = "sticks", "tilt"
-"""What is clicked to show or hide the sticks, and to have the right one tilt the tool."""
+"""Names of the hints that show or hide the sticks, and have the right stick tilt the tool."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class OperatorDevice:
         texts: name the inputs in the chosen language.
         mode: "desktop" or "hmd".
         has_screen_sticks: whether views draw sticks for a mouse.
-        layouts: what is written on the keys of each view, by their W3C codes.
+        layouts: labels of the keys of each view, by their W3C codes.
     """
 
     controls: Controls
@@ -85,7 +85,7 @@ class OperatorDevice:
         if own in self.texts:
             return self.texts.say(own)
         if self.steers_by_mouse:
-            # They are where a gamepad has them, whatever its bindings are now.
+            # The sticks of a gamepad with its default bindings.
             name = DEFAULT_BINDINGS.gamepad[control][0]
             return self.input_label(InputDevice.GAMEPAD, name)
         return self.input_label(self.kind, self.controls.bindings.table(self.kind)[control][0])
@@ -117,7 +117,7 @@ class OperatorDevice:
 
 
 class ScreenSticks:
-    """Whether the sticks are shown, and what one click has changed of what they do.
+    """Whether the sticks are shown, and their functions that a click switches.
 
     A mouse pushes one stick at a time and cannot hold a button meanwhile: what other devices hold
     is switched on and off here.

@@ -17,7 +17,7 @@ from rastrainer_simulator.vectors import Vector, add, dot, scale, subtract
 BEFORE_ENTRY_M = 0.05
 """The current line begins this far outside of the head: the guide is brought onto it there."""
 PLANNED, SHOWN, PLACED = Tone.GOOD, Tone.WARNING, Tone.PLAIN
-"""Colors of the lines after the score: of the plan, as it was shown, and of what was placed."""
+"""Colors of the lines after the score: planned, shown by the registration, and placed."""
 
 
 def plan_marks(

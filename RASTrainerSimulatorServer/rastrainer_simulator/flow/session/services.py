@@ -1,4 +1,4 @@
-"""What the flow needs of the process that it runs in, and how it awaits another simulation."""
+"""Services of the process for the flow, and the reload of the simulation between two trials."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SET_UP_AFTER_S = 1.0
 
 @dataclass(frozen=True)
 class FlowServices:
-    """What the flow needs of the process that it runs in.
+    """Services of the process for the flow.
 
     Attributes:
         config: folder of the settings files.
@@ -28,13 +28,10 @@ class FlowServices:
         use_settings: has the simulation continue with other settings, between two trials.
         list_scenarios: lists the scenarios that `use_scenario` takes by their names.
         use_scenario: has the simulation continue with another scenario, between two trials.
-        is_slicer_connected: says whether a client that registers and scores is connected.
-        quit: ends the process.
-        study: knows what a study that Slicer leads asks of the trainees.
-        curricula: knows where trainees stand in their curricula.
+        is_slicer_connected: whether a client that registers and scores is connected.
         scores_alone: whether a trial outside of a study is scored here where no Slicer is
             connected.
-        pin: the instructor's; None where there is never one.
+        pin: the instructor's; None if there can be none.
     """
 
     config: Path
@@ -75,7 +72,7 @@ class SimulationReload:
         return is_ours or self._control_loop.is_being_replaced
 
     def request(self, present: SimulationSettings, wanted: SimulationSettings) -> None:
-        """Continue with settings other than the present ones, once they have stayed unchanged."""
+        """Continue with other settings, once they have stayed unchanged for a while."""
         is_needed = wanted != present or self._answer is not None
         self._wanted = wanted if is_needed else None
         self._begins_in_s = SET_UP_AFTER_S

@@ -1,4 +1,4 @@
-"""What all pages share: who trains, what is chosen, and what the simulator can do for them."""
+"""The state that all pages share: the trainee, the choices, and the simulator's services."""
 
 from __future__ import annotations
 
@@ -15,16 +15,15 @@ from rastrainer.procedure.geometry import BoneAhead
 from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Mode, RegistrationMethod
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
+from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
 from rastrainer.study.protocol.steps import StudyStep
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.flow.session.assigned_training import (
     AssignmentTexts,
-    newly_reached,
-    step_sentence,
 )
+from rastrainer_simulator.flow.session.local_scorer import LocalScorer
 from rastrainer_simulator.flow.session.open_pages import OpenPages
 from rastrainer_simulator.flow.session.operator_device import OperatorDevice, ScreenSticks
-from rastrainer_simulator.flow.session.own_score import OwnScore
 from rastrainer_simulator.flow.session.preferences import (
     PREFERENCES_FILE,
     InstructorLock,
@@ -56,36 +55,20 @@ from rastrainer_simulator.viewpoint.view_control import Orbit
 REACHED_S = 20.0
 """How long a reached assignment is shown: it comes while the result is read."""
 TUTORIAL_VIEW = Orbit(zoom=1.7)
-"""From farther away than a trial: the tip is seen where it starts, above the head."""
+"""Farther away than in a trial: the tip starts above the head and must be visible."""
 
 
 class TrainingSession:
     """The trainee's choices and the services behind the pages.
 
     Attributes:
-        trainee: what was typed as the trainee's ID.
+        trainee: ID as typed.
         mode: "desktop" or "hmd".
-        procedure: name of the one that is to follow the touches; "" for the touches alone.
-        method: by which the trial is registered, where the head allows it.
+        procedure: name of the procedure after the touches; "" for none.
         has_read_introduction: whether the pages before the experiment menu can be skipped.
-        preferences: what is chosen in the settings.
-        texts: say everything in the chosen language.
-        progress: which tasks each trainee has done.
-        history: each trainee's earlier scores.
-        own_score: scores a trial where no Slicer does; None where only Slicer may.
-        pages: which are open.
+        local_scorer: scores a trial if no Slicer does; None if only Slicer may.
         happened: gives feedback by sound and vibration.
-        list_scenarios: lists the heads to train on.
-        quit: ends the simulator.
-        study: knows what a study asks of each trainee next.
-        view: where the pictures of the trial are looked from.
-        ghost: an earlier trial that moves beside the arm.
-        tutorial: the one that is open; else None.
-        tutorials: who has finished one, and with which device.
-        screen_sticks: those that views draw for a mouse.
-        layouts: what is written on the keys of each view, by their W3C codes.
-        lock: what needs the instructor's PIN.
-        notices: what is said beside the instruction.
+        layouts: labels of the keys of each view, by their W3C codes.
         picture_share: how much of its picture the trainee's view has, 0 to 1, while it is awaited;
             else None.
         goes_on_blind: the trial that the trainee wants to go on without its picture; "" for none.
@@ -109,8 +92,8 @@ class TrainingSession:
         self.texts = Texts(LANGUAGES[preferences.language])
         self.progress = DoneTasks(services.records)
         self.history = ScoreHistory(services.records, self.progress.journals)
-        self.own_score = (
-            OwnScore(
+        self.local_scorer = (
+            LocalScorer(
                 control_loop.submit, services.records, services.is_slicer_connected, self.history.of
             )
             if services.scores_alone
@@ -147,6 +130,21 @@ class TrainingSession:
         return self.state.training
 
     @property
+    def trainee_id(self) -> str:
+        """The trainee's ID without the spaces that may have been typed around it."""
+        return self.trainee.strip()
+
+    @property
+    def step(self) -> StudyStep | None:
+        """The next step of the trainee's study; None without a study."""
+        return self.study.step_of(self.trainee_id)
+
+    @property
+    def trial_step(self) -> StudyStep | None:
+        """The same for the trainee of the present trial."""
+        return self.study.step_of(self.training.trainee)
+
+    @property
     def has_open_trial(self) -> bool:
         """Whether a trial can still be changed."""
         return self.training.phase in OPEN_PHASES
@@ -157,27 +155,22 @@ class TrainingSession:
 
     @property
     def setup(self) -> SimulationSetup:
-        """What the present simulation was made from."""
         return self._control_loop.setup
 
     @property
     def scenario(self) -> Scenario:
-        """The head and the tasks."""
         return self.setup.scenario
 
     @property
     def bindings(self) -> Bindings:
-        """Which input does what."""
         return self._controls.bindings
 
     @property
     def held(self) -> OperatorInput:
-        """The deflection of the operator's sticks."""
         return self._controls.held
 
     @property
     def operator(self) -> OperatorDevice:
-        """The operator's device, and the names of its inputs."""
         has_sticks = self.screen_sticks.is_shown
         return OperatorDevice(self._controls, self.texts, self.mode, has_sticks, self.layouts)
 
@@ -187,20 +180,18 @@ class TrainingSession:
 
         None without one, in a study, which comes before it, and while no Slicer is connected.
         """
-        trainee = self.trainee.strip()
-        if self.study.step_of(trainee) is not None or not self.is_slicer_connected():
+        if self.step is not None or not self.is_slicer_connected():
             return None
-        return self._services.curricula.of(trainee)
+        return self._services.curricula.of(self.trainee_id)
 
     @property
     def next_assignment(self) -> AssignmentMessage | None:
-        """The assignment to practice next; None where no open one is left, or no curriculum."""
+        """The assignment to practice next; None if all are reached, or without a curriculum."""
         curriculum = self.curriculum
         return None if curriculum is None else curriculum.find(curriculum.next)
 
     @property
     def assignment_texts(self) -> AssignmentTexts:
-        """Describes assignments for trainees."""
         return AssignmentTexts(self.texts, self.task_title, self.procedure_title)
 
     def advance(self, dt: float, state: SimulationState) -> None:
@@ -209,16 +200,15 @@ class TrainingSession:
         self.state = state
         self.places.advance(dt, state)
         trial_id = self.training.trial_id
-        self.lock.follow(self.trainee.strip(), trial_id, self.tutorial is not None)
-        if self.own_score is not None:
-            is_in_study = self.study.step_of(self.training.trainee) is not None
-            self.own_score.advance(dt, self.training, self.scenario, is_in_study)
+        self.lock.follow(self.trainee_id, trial_id, self.tutorial is not None)
+        if self.local_scorer is not None:
+            is_in_study = self.trial_step is not None
+            self.local_scorer.advance(dt, self.training, self.scenario, is_in_study)
         self._take_answers()
         self._note_reached()
         self.reload.advance(dt, self.has_open_trial)
 
     def do(self, command: str, arguments: Mapping[str, Any] | None = None) -> None:
-        """Have a command carried out."""
         holder = self._controls.holder
         sender = "" if holder is None else holder.kind.value
         try:
@@ -237,13 +227,13 @@ class TrainingSession:
         if self.reload.is_under_way:
             self.complain(self.texts.say("being set up"))
             return
-        wanted = {"task": task, "trainee": self.trainee.strip(), "mode": self.mode}
+        wanted = {"task": task, "trainee": self.trainee_id, "mode": self.mode}
         try:
             arguments = check_arguments(CommandName.START_TASK, wanted)
         except InputError as error:
             self.complain(str(error))
             return
-        self.tutorial = Tutorial(self.setup, self.state, arguments, self.texts, point)
+        self.tutorial = Tutorial(self.setup, self.state, arguments, point)
         self._practiced = task, point
         practice = self.tutorial.practice
         self.view.begin(self.setup, practice.truth, practice.shown(self.state))
@@ -251,7 +241,6 @@ class TrainingSession:
         self.pages.show(None)
 
     def restart_practice(self) -> None:
-        """Begin the latest practice or tutorial again."""
         self.begin_practice(*self._practiced)
 
     def end_tutorial(self) -> TutorialOutcome | None:
@@ -268,7 +257,6 @@ class TrainingSession:
         return outcome
 
     def prefer(self, preferences: Preferences) -> None:
-        """Adopt other preferences and save them."""
         before = self._control_loop.setup.settings
         self.preferences = preferences
         self.texts = Texts(LANGUAGES[preferences.language])
@@ -288,19 +276,17 @@ class TrainingSession:
         return self._control_loop.planned_bone.get(procedure, ())
 
     def load_trial(self, trial_id: str) -> TrialLoading:
-        """Begin to load a trial from its journal."""
         found = journals_of(self._services.records, trial_id)
         if not found:
             raise InputError(self.texts.say("replay.no journal"))
         return load_trial(found[0], self._control_loop.setup)
 
     def note_done(self) -> None:
-        """Count the present trial's task as done."""
         self.progress.note(self.training.trainee, self.scenario.name, self.training.task)
 
     def outcome_of(self, task: str) -> str:
         """Return "passed", "failed" or "done" of the trainee's trials of a task; "" of none."""
-        trainee, scenario = self.trainee.strip(), self.scenario.name
+        trainee, scenario = self.trainee_id, self.scenario.name
         trials = [
             each
             for each in self.history.own(trainee)
@@ -317,12 +303,10 @@ class TrainingSession:
         self._save(lambda: write_bindings(self._services.config / BINDINGS_FILE, bindings))
 
     def complain(self, text: str) -> None:
-        """Report a failure."""
         self.notices.add(self.texts.again(text), Tone.ERROR)
         self.happened(FeedbackEvent.ERROR)
 
     def task_title(self, name: str) -> str:
-        """Return the title of a task."""
         key = f"task.{name}"
         if key in self.texts:
             return self.texts.say(key)
@@ -348,8 +332,18 @@ class TrainingSession:
         return self.texts.say(key, share=100.0 * share)
 
     def step_sentence(self, step: StudyStep) -> str:
-        left = self.study.break_left_s(step.trainee)
-        return step_sentence(self.texts, step, self.task_title(step.task), self.duration(left))
+        asked = QUESTIONNAIRES.get(step.questionnaire)
+        task, by = self.task_title(step.task), f"study.by {step.method}"
+        return self.texts.say(
+            f"study.{step.kind}",
+            number=step.number,
+            count=step.count,
+            task=f"{task} {self.texts.say(by)}" if by in self.texts else task,
+            mode=self.texts.say(f"study.{step.mode}") if step.mode else "",
+            minutes=step.minutes,
+            left=self.duration(self.study.break_left_s(step.trainee)),
+            questionnaire=step.questionnaire if asked is None else asked.title,
+        )
 
     def duration(self, seconds: float) -> str:
         """Return minutes and seconds, such as 03:21."""
@@ -358,11 +352,16 @@ class TrainingSession:
 
     def _note_reached(self) -> None:
         """Announce the assignment that the trainee has reached since Slicer's last message."""
-        before, self._noted = self._noted, self.curriculum
-        for each in newly_reached(before, self._noted):
-            title = self.assignment_texts.title(each)
-            said = self.texts.say("assignments.just reached", assignment=title)
-            self.notices.add(said, Tone.GOOD, REACHED_S)
+        before, now = self._noted, self.curriculum
+        self._noted = now
+        if before is None or now is None or before.trainee != now.trainee:
+            return
+        for each in now.assignments:
+            earlier = before.find(each.name)
+            if each.is_reached and earlier is not None and not earlier.is_reached:
+                title = self.assignment_texts.title(each)
+                said = self.texts.say("assignments.just reached", assignment=title)
+                self.notices.add(said, Tone.GOOD, REACHED_S)
 
     def _save(self, write: Callable[[], None]) -> None:
         try:

@@ -23,7 +23,7 @@ from rastrainer_simulator.trial_state import TraceState
 from rastrainer_simulator.vectors import Vector, add, in_meters, scale, subtract, unit, vector
 
 LOOK_S = 0.25
-"""Between two searches; one takes about 10 ms."""
+"""Time between two searches; a search takes about 10 ms."""
 EYE_M = 0.45
 """Distance of the viewpoint from the next place."""
 
@@ -48,16 +48,13 @@ class TracePlaces:
         self._since_s = 0.0
 
     def begin(self, trial_id: str, setup: SimulationSetup, truth: Truth) -> None:
-        """Guide through a trial from now on."""
         self.forget()
         self._trial = trial_id, setup, truth
 
     def forget(self) -> None:
-        """Stop guiding."""
         self._trial = self._asked = self._found = self._place = None
 
     def close(self) -> None:
-        """End the thread."""
         self.forget()
         self._worker.shutdown(wait=False)
 
@@ -78,7 +75,6 @@ class TracePlaces:
         self._found = self._worker.submit(self._find, *self._trial[1:], trace)
 
     def guidance(self, state: SimulationState) -> TraceGuidance:
-        """Return how a trainee is guided in a state."""
         training = state.training
         is_traced = training.trace is not None and training.next_point is None
         if self._trial is None or training.trial_id != self._trial[0] or not is_traced:
@@ -86,14 +82,14 @@ class TracePlaces:
         return TraceGuidance(COVERED_MM, self._place)
 
     def in_world(self) -> Vector | None:
-        """Return the next place in World, m; None where there is none."""
+        """Return the next place in World, m; None if there is none."""
         if self._trial is None or self._place is None:
             return None
         place = self._trial[2].in_world(np.array(self._place.position))
         return in_meters(place)
 
     def eye(self, camera: Camera) -> Vector | None:
-        """Return from where the next place is seen well, World, m; None where there is none.
+        """Return a viewpoint on the next place, World, m; None if there is no next place.
 
         It is between the skin's normal, along which the tool hides the tip, and the camera.
         """

@@ -1,4 +1,4 @@
-"""What is known of each trainee by the simulator's own files: tasks, tutorials, scores."""
+"""Tasks, tutorials and scores of each trainee, as the simulator's own files have them."""
 
 from __future__ import annotations
 
@@ -82,13 +82,13 @@ class DoneTasks:
     def missing_before(
         self, trainee: str, scenario: str, task: str, order: Sequence[str]
     ) -> str | None:
-        """Return the first task that has to be done before another; None where none is missing."""
+        """Return the first task that has to be done before another; None if all are done."""
         done = {*self._done.get((trainee, scenario), ())}
         done |= {TRIAL_RUN} if self.needs_no_trial_run(trainee, scenario) else set()
         return next((name for name in order[: order.index(task)] if name not in done), None)
 
     def _take(self, path: Path) -> None:
-        """Add a journal; one that cannot be read counts for nothing."""
+        """Add a journal; ignore it if it cannot be read."""
         try:
             with path.open("rb") as file:
                 header = decode_line(file.readline(MAX_LINE_BYTES).rstrip(b"\n"), 1, NO_LINE)
@@ -119,7 +119,7 @@ class FinishedTutorials:
     """Knows the devices that each trainee has finished the tutorial with."""
 
     def __init__(self, records: Path) -> None:
-        """Look through the folder; a file that cannot be used counts for nothing."""
+        """Read the files of the folder; ignore unusable files."""
         self._records = records
         self._devices: dict[str, set[str]] = defaultdict(set)
         self._latest: dict[str, TutorialOutcome] = {}
@@ -136,7 +136,7 @@ class FinishedTutorials:
         return trainee in self._skipped
 
     def has_done(self, trainee: str, device: SourceKind) -> bool:
-        """Return whether a trainee has learned what they now use."""
+        """Return whether a trainee has finished the tutorial with a device."""
         return device.value in self._devices.get(trainee, ())
 
     def latest(self, trainee: str) -> TutorialOutcome | None:
@@ -161,7 +161,7 @@ class FinishedTutorials:
 
 
 MAX_SHOWN = 20
-"""Scores of a trend: those of the newest trials."""
+"""Number of trials in a trend."""
 _TAIL_BYTES = 1 << 17
 _START = re.compile(
     rb'\{"n":(\d+),"previous":"([0-9a-f]{64})","kind":"(registered|scored|attempt)"'
@@ -176,7 +176,7 @@ class OwnTrial:
         past: what progress is computed from.
         scenario: name of the head.
         started_utc: ISO 8601.
-        is_passed: None where no mark says so.
+        is_passed: None without a pass mark.
     """
 
     past: PastTrial
@@ -186,7 +186,7 @@ class OwnTrial:
 
 
 class ScoreHistory:
-    """Reads a trainee's journals when first asked for them, and one that has grown again."""
+    """Reads a trainee's journals when first asked for, and a journal again when it has grown."""
 
     def __init__(self, records: Path, journals: Mapping[str, list[Path]]) -> None:
         """Prepare; `journals` are those of each trainee that are there already, oldest first."""
@@ -240,7 +240,7 @@ class ScoreHistory:
 
 
 def _own_trial(journal: Path) -> OwnTrial | None:
-    """Return the scored or failed trial of a journal; None for others and damaged ones."""
+    """Return the scored or failed trial of a journal; None for other and damaged journals."""
     try:
         last = {entry["kind"]: entry for entry in _last_entries(journal)}
         if "attempt" in last:
@@ -256,15 +256,8 @@ def _own_trial(journal: Path) -> OwnTrial | None:
         if record.task == TRIAL_RUN:
             return None
         score = float(scored["score"])
-        past = PastTrial(
-            record.trial_id,
-            record.task,
-            record.mode,
-            record.completion_time_s,
-            score,
-            details["isAccurate"] is True and not beyond_limits(details),
-            method=record.method,
-        )
+        acceptable = details["isAccurate"] is True and not beyond_limits(details)
+        past = PastTrial.scored(record, score, acceptable)
         verdict = is_passed(record.task, score, details)
         return OwnTrial(past, record.scenario, record.started_utc, verdict)
     except (OSError, DamagedLineError, InputError, KeyError, TypeError, ValueError):

@@ -106,7 +106,6 @@ class TrialView:
         self.control.advance(dt, camera, motion, is_still)
 
     def pictures(self, now: SimulationState, cameras: Mapping[str, Camera]) -> Pictures:
-        """Return the viewpoint of the pictures of a state."""
         self.control.use(now.camera)
         main = self.control.pose(cameras[now.camera])
         tip = vector(now.tool_tip_to_world[:3, 3].tolist())

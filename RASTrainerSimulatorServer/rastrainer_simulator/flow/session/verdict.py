@@ -36,7 +36,7 @@ def beyond_limits(details: Mapping[str, Any]) -> list[str]:
 
 
 def is_passed(task: str, score: float, details: Mapping[str, Any]) -> bool | None:
-    """Return whether a trial is passed, with its procedure; None where no mark says so."""
+    """Return whether a trial is passed, with its procedure; None without a pass mark."""
     procedure = details.get("procedure")
     is_placed = not isinstance(procedure, dict) or procedure.get("acceptable") is not False
     is_acceptable = is_placed and not beyond_limits(details)

@@ -1,1 +1,1 @@
-"""The tutorial: what is learned in which order, and what a trainee has learned."""
+"""The tutorial: its steps, and a trainee's progress."""

@@ -1,4 +1,4 @@
-"""The steps of the tutorial: one control each, and what has to happen for a step to be done."""
+"""The steps of the tutorial, each about one control, and how much of a step is done."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ OF_PRACTICE = (TutorialStep.AGAIN,)
 
 
 def steps_for(device: SourceKind, mode: str) -> tuple[TutorialStep, ...]:
-    """Return the steps for what is held, in the display mode of that name, in order.
+    """Return the steps for a device in a display mode, in order.
 
     In a headset the trainee looks around by turning the head, and only the controllers' sticks
     follow the eyes.
@@ -99,127 +99,80 @@ class TutorialObservation:
     has_paused: bool = False
 
 
+@dataclass(frozen=True)
 class StepMeasure:
-    """How much of a step is done.
+    """How much there is to do in a step, and how much of it is done.
 
     Attributes:
-        goal: how much is to be done; 1 where it is done or not.
-        done: how much is.
+        goal: 1 for a condition.
+        done: returns the amount after an observation; it is given the amount before, and the first,
+            the previous and the newest observation of the step.
     """
 
-    def __init__(self, goal: float = 1.0) -> None:
-        self.goal = goal
-        self.done = 0.0
-
-    @property
-    def is_complete(self) -> bool:
-        return self.done >= self.goal
-
-    def take(self, before: TutorialObservation, now: TutorialObservation) -> None:
-        """Process what has happened between two observations."""
-        raise NotImplementedError
+    goal: float
+    done: Callable[[float, TutorialObservation, TutorialObservation, TutorialObservation], float]
 
 
-class TipMoved(StepMeasure):
-    """Distance that the tip has moved in one direction, mm, since it last moved the other way."""
+def _moved(right: float = 0.0, forward: float = 0.0, up: float = 0.0) -> StepMeasure:
+    """Measure how far the tip has moved in one direction, mm, since it last moved the other way."""
 
-    def __init__(self, right: float = 0.0, forward: float = 0.0, up: float = 0.0) -> None:
-        super().__init__(MOVE_MM)
-        self._way = right, forward, up
+    def along(before: TutorialObservation, now: TutorialObservation) -> float:
+        way = now.axes.to_world((right, forward, up))
+        return MM_PER_M * dot(subtract(now.tip, before.tip), way)
 
-    def take(self, before: TutorialObservation, now: TutorialObservation) -> None:
-        """Add the distance between two observations, in the present directions of the sticks."""
-        moved = subtract(now.tip, before.tip)
-        self.done = max(0.0, self.done + MM_PER_M * dot(moved, now.axes.to_world(self._way)))
-
-
-class TipMovedSlowly(StepMeasure):
-    """Distance that the tip has moved while the control for slow motion was held, mm."""
-
-    def __init__(self) -> None:
-        super().__init__(SLOW_MM)
-
-    def take(self, before: TutorialObservation, now: TutorialObservation) -> None:
-        """Add the distance between two observations."""
-        if before.is_slow and now.is_slow:
-            self.done += MM_PER_M * distance(before.tip, now.tip)
+    return StepMeasure(
+        MOVE_MM, lambda done, _first, before, now: max(0.0, done + along(before, now))
+    )
 
 
-class ViewTurned(StepMeasure):
-    """Angle by which the view was turned, to any side, degrees."""
-
-    def __init__(self) -> None:
-        super().__init__(TURN_DEG)
-        self._start: Orbit | None = None
-
-    def take(self, before: TutorialObservation, now: TutorialObservation) -> None:
-        """Compare the view with that at the beginning."""
-        self._start = self._start or before.orbit
-        turn = math.remainder(now.orbit.azimuth_deg - self._start.azimuth_deg, 360.0)
-        rise = now.orbit.elevation_deg - self._start.elevation_deg
-        self.done = max(self.done, math.hypot(turn, rise))
+def _moved_slowly(
+    done: float, _first: TutorialObservation, before: TutorialObservation, now: TutorialObservation
+) -> float:
+    """Return how far the tip has moved while the control for slow motion was held, mm."""
+    is_slow = before.is_slow and now.is_slow
+    return done + MM_PER_M * distance(before.tip, now.tip) if is_slow else done
 
 
-class LookedAround(StepMeasure):
-    """Angle by which the eyes were turned while the sticks were pushed, degrees."""
-
-    def __init__(self) -> None:
-        super().__init__(LOOK_DEG)
-        self._start: float | None = None
-
-    def take(self, before: TutorialObservation, now: TutorialObservation) -> None:
-        """Compare where the eyes look with that at the beginning."""
-        if self._start is None:
-            self._start = before.yaw_deg
-        if self._start is not None and now.yaw_deg is not None:
-            turn = math.remainder(now.yaw_deg - self._start, 360.0)
-            self.done = max(self.done, abs(turn))
+def _view_turned(
+    done: float, first: TutorialObservation, _before: TutorialObservation, now: TutorialObservation
+) -> float:
+    """Return by how much the view was turned, to any side, degrees."""
+    turn = math.remainder(now.orbit.azimuth_deg - first.orbit.azimuth_deg, 360.0)
+    return max(done, math.hypot(turn, now.orbit.elevation_deg - first.orbit.elevation_deg))
 
 
-class BecameTrue(StepMeasure):
-    """Whether a condition has become true."""
-
-    def __init__(self, condition: Callable[[TutorialObservation], bool]) -> None:
-        super().__init__()
-        self._condition = condition
-
-    def take(self, before: TutorialObservation, now: TutorialObservation) -> None:  # noqa: ARG002
-        """Check the latest observation."""
-        if self._condition(now):
-            self.done = self.goal
+def _looked_around(
+    done: float, first: TutorialObservation, _before: TutorialObservation, now: TutorialObservation
+) -> float:
+    """Return by how much the eyes were turned while the sticks were pushed, degrees."""
+    if first.yaw_deg is None or now.yaw_deg is None:
+        return done
+    return max(done, abs(math.remainder(now.yaw_deg - first.yaw_deg, 360.0)))
 
 
-class PointsTouched(StepMeasure):
-    """Number of touched points."""
-
-    def __init__(self, goal: int) -> None:
-        super().__init__(goal)
-
-    def take(self, before: TutorialObservation, now: TutorialObservation) -> None:  # noqa: ARG002
-        """Count them."""
-        self.done = now.touched
+def _until(condition: Callable[[TutorialObservation], bool]) -> StepMeasure:
+    return StepMeasure(1.0, lambda done, _first, _before, now: 1.0 if condition(now) else done)
 
 
-def _is_lowered(now: TutorialObservation) -> bool:
-    return now.touch is TouchStage.ON_SKIN or now.touched > 0
+def _touched(goal: int) -> StepMeasure:
+    return StepMeasure(goal, lambda _done, _first, _before, now: now.touched)
 
 
-MEASURES: Mapping[TutorialStep, Callable[[], StepMeasure]] = {
-    TutorialStep.RIGHT: lambda: TipMoved(right=1.0),
-    TutorialStep.LEFT: lambda: TipMoved(right=-1.0),
-    TutorialStep.FORWARD: lambda: TipMoved(forward=1.0),
-    TutorialStep.BACK: lambda: TipMoved(forward=-1.0),
-    TutorialStep.UP: lambda: TipMoved(up=1.0),
-    TutorialStep.DOWN: lambda: TipMoved(up=-1.0),
-    TutorialStep.SLOW: TipMovedSlowly,
-    TutorialStep.TURN_VIEW: ViewTurned,
-    TutorialStep.LOOK_AROUND: LookedAround,
-    TutorialStep.BEST_VIEW: lambda: BecameTrue(lambda now: now.has_best_view),
-    TutorialStep.LOWER: lambda: BecameTrue(_is_lowered),
-    TutorialStep.TOUCH: lambda: PointsTouched(1),
-    TutorialStep.UNDO: lambda: BecameTrue(lambda now: now.undone > 0),
-    TutorialStep.PAUSE: lambda: BecameTrue(lambda now: now.has_paused),
-    TutorialStep.GUIDED: lambda: PointsTouched(GUIDED_TOUCHES),
-    TutorialStep.AGAIN: lambda: PointsTouched(1),
+MEASURES: Mapping[TutorialStep, StepMeasure] = {
+    TutorialStep.RIGHT: _moved(right=1.0),
+    TutorialStep.LEFT: _moved(right=-1.0),
+    TutorialStep.FORWARD: _moved(forward=1.0),
+    TutorialStep.BACK: _moved(forward=-1.0),
+    TutorialStep.UP: _moved(up=1.0),
+    TutorialStep.DOWN: _moved(up=-1.0),
+    TutorialStep.SLOW: StepMeasure(SLOW_MM, _moved_slowly),
+    TutorialStep.TURN_VIEW: StepMeasure(TURN_DEG, _view_turned),
+    TutorialStep.LOOK_AROUND: StepMeasure(LOOK_DEG, _looked_around),
+    TutorialStep.BEST_VIEW: _until(lambda now: now.has_best_view),
+    TutorialStep.LOWER: _until(lambda now: now.touch is TouchStage.ON_SKIN or now.touched > 0),
+    TutorialStep.TOUCH: _touched(1),
+    TutorialStep.UNDO: _until(lambda now: now.undone > 0),
+    TutorialStep.PAUSE: _until(lambda now: now.has_paused),
+    TutorialStep.GUIDED: _touched(GUIDED_TOUCHES),
+    TutorialStep.AGAIN: _touched(1),
 }
-"""For each step its measure, newly made when the step begins."""

@@ -21,7 +21,6 @@ from rastrainer_simulator.flow.tutorial.steps import (
     MEASURES,
     OF_PRACTICE,
     WITH_POINTS,
-    StepMeasure,
     TutorialObservation,
     TutorialStep,
     steps_for,
@@ -29,7 +28,6 @@ from rastrainer_simulator.flow.tutorial.steps import (
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.record.trial_context import GUIDED_TOUCHES, TutorialOutcome
 from rastrainer_simulator.state import OperatorCommand, SimulationState, TouchStage, TrainingState
-from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.training.rules import TouchMoment, touch_stage
 from rastrainer_simulator.training.training import Training, TrainingReply
@@ -61,7 +59,6 @@ class TouchPractice:
         state: SimulationState,
         arguments: dict[str, str],
         points: slice,
-        texts: Texts,
         rest: Vector | None = None,
         task: str = TRIAL_RUN,
     ) -> None:
@@ -72,7 +69,6 @@ class TouchPractice:
             state: in which it is.
             arguments: checked ones of StartTask, with `trialId`.
             points: which are touched.
-            texts: the sentences.
             rest: where the tip may still be on the skin from a touch before, World, m.
             task: of the points.
         """
@@ -80,7 +76,7 @@ class TouchPractice:
         self._settings = replace(setup.settings.training, acceptance_radius=CENTERED_M)
         self._of_trials = setup.settings.training
         scenario = _short_scenario(setup.scenario, task, state.head_to_world, points)
-        self._training = Training(scenario, 0, self._settings, texts)
+        self._training = Training(scenario, 0, self._settings)
         start = {**arguments, "task": scenario.tasks[0].name}
         self._training.handle(OperatorCommand(CommandName.START_TASK, start), _moment(state))
         self.has_points = False
@@ -88,7 +84,6 @@ class TouchPractice:
 
     @property
     def truth(self) -> Truth:
-        """Where the head and the points are."""
         return self._training.truth
 
     @property
@@ -106,7 +101,6 @@ class TouchPractice:
         self._shown = self._present()
 
     def touch(self, state: SimulationState) -> TrainingReply:
-        """Record a touch, or refuse it."""
         return self._handle(CommandName.CAPTURE, state)
 
     def undo(self, state: SimulationState) -> TrainingReply:
@@ -125,7 +119,7 @@ class TouchPractice:
     def shown(self, state: SimulationState) -> SimulationState:
         """Return a state of the simulation as the views show it; called in any thread."""
         training, goal = self._shown
-        # What stops the arm is not in the state; that it is stopped is.
+        # The state says that the arm is stopped, but not by which obstacle.
         obstacle = state.touch.value if state.touch is TouchStage.ARM else ""
         stage = touch_stage(
             _moment(state), state.proximity, obstacle, training, goal, self._of_trials
@@ -137,7 +131,7 @@ class TouchPractice:
         return replace(state, training=training, touch=stage)
 
     def off_center_mm(self, state: SimulationState) -> float | None:
-        """Return how far from the next point a tip is on the skin beside its center, else None."""
+        """Return how far from a point's center the tip is on the skin, mm; None elsewhere."""
         goal, tip = self._training.goal, _tip(state)
         if goal is None or state.tip_clearance > self._settings.skin_tolerance:
             return None
@@ -195,34 +189,34 @@ class Tutorial:
         setup: SimulationSetup,
         state: SimulationState,
         arguments: dict[str, str],
-        texts: Texts,
         practiced: str = "",
     ) -> None:
         """Begin; `arguments` are checked ones of StartTask; `practiced` is a point of its task."""
         self.trainee, self.mode = arguments["trainee"], arguments["mode"]
         self.setup = setup
         trial = {**arguments, "trialId": str(uuid.uuid4())}
-        self._first = TouchPractice(setup, state, trial, slice(1), texts)
+        self._first = TouchPractice(setup, state, trial, slice(1))
         guided, rest, task = slice(1, 1 + GUIDED_TOUCHES), self._first.goal, TRIAL_RUN
         self.practiced = practiced
         if practiced:
             task, rest = arguments["task"], None
             place = setup.scenario.task(task).labels.index(practiced)
             guided = slice(place, place + 1)
-        self._guided = TouchPractice(setup, state, trial, guided, texts, rest, task)
+        self._guided = TouchPractice(setup, state, trial, guided, rest, task)
         self._guided.show_points()
         self.praised: TutorialStep | None = None
         self._praise_s = 0.0
         self.use(SourceKind.KEYBOARD)
         self._done: list[TutorialStep] = []
-        self._measure: StepMeasure | None = None
+        self._amount = 0.0
+        self._first_seen: TutorialObservation | None = None
         self._before: TutorialObservation | None = None
         self._seconds: dict[str, float] = {}
         self._first_error_mm = 0.0
 
     @property
     def practice(self) -> TouchPractice:
-        """The touches: one to begin with, then the guided ones at other points."""
+        """The present practice: first a single point, then the guided points."""
         is_guided = self.step in (TutorialStep.GUIDED, *OF_PRACTICE, None)
         return self._guided if is_guided else self._first
 
@@ -253,9 +247,10 @@ class Tutorial:
     @property
     def amount(self) -> tuple[float, float]:
         """How much of the step is done, and how much there is to do."""
-        if self._measure is None:
+        if self.step is None or self._first_seen is None:
             return 0.0, 1.0
-        return min(self._measure.done, self._measure.goal), self._measure.goal
+        goal = MEASURES[self.step].goal
+        return min(self._amount, goal), goal
 
     @property
     def has_learned_view(self) -> bool:
@@ -287,25 +282,28 @@ class Tutorial:
             return None
         if step in WITH_POINTS and not self._first.has_points:
             self._first.show_points()
-        self._measure = self._measure or MEASURES[step]()
+        first = self._first_seen or before
+        if first.yaw_deg is None and before.yaw_deg is not None:
+            # The headset's controllers have only now been used.
+            first = before
+        self._first_seen = first
         self._seconds[step.value] = self._seconds.get(step.value, 0.0) + dt
-        self._measure.take(before, now)
-        if not self._measure.is_complete:
+        measure = MEASURES[step]
+        self._amount = measure.done(self._amount, first, before, now)
+        if self._amount < measure.goal:
             return None
         self._done.append(step)
-        self._measure = None
+        self._amount, self._first_seen = 0.0, None
         self.praised, self._praise_s = step, PRAISE_S
         return step
 
     def touch(self, state: SimulationState) -> TrainingReply:
-        """Record a touch, or refuse it."""
         reply = self.practice.touch(state)
         if reply.ok and self.practice is self._first and TutorialStep.TOUCH not in self._done:
             (self._first_error_mm,) = self._first.errors_mm()
         return reply
 
     def outcome(self, device: SourceKind) -> TutorialOutcome:
-        """Return the outcome, once all steps are done."""
         return TutorialOutcome(
             trainee=self.trainee,
             device=device.value,

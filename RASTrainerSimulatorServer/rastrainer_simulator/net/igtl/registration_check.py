@@ -21,7 +21,6 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer_simulator.state import Answer, OperatorCommand, SimulationState
-from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.rules import REFUSALS, refusal
 
 SubmitCommand = Callable[[str, Mapping[str, Any], str], "Future[Answer]"]
@@ -75,7 +74,7 @@ class RegistrationCheck:
     def _refusal(self, name: str, arguments: Mapping[str, Any]) -> str:
         """Return why a registration is not due; the state may have changed meanwhile."""
         command = OperatorCommand(name, arguments)
-        sentence = refusal(command, self._latest().training, Texts())
+        sentence = refusal(command, self._latest().training)
         return sentence or f"{name} is not due in this trial."
 
     def _fit(self, data: Mapping[str, Any], arguments: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,8 +1,8 @@
 """The simulator's own registration and score of a trial where no Slicer is connected.
 
 It is computed as Slicer computes it and submitted as Slicer submits it: the registration first,
-which makes it final; then the truth is known; then the score. Whoever registers the trial later
-finds the same registration, or is refused.
+which makes it final; then the truth is known; then the score. A client that registers the
+trial later finds the same registration, or is refused.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.state import Answer, TrainingState
 
 SENDER = "simulator"
-OWN_SCORE = "isOwnScore"
+SCORED_BY_SIMULATOR = "scoredBySimulator"
 """The entry of a score's details that names its source."""
 RETURN_S = 5.0
 """A Slicer whose connection was lost is back after less, unless it has ended."""
@@ -59,7 +59,7 @@ class _Job(NamedTuple):
 
 
 def _job(training: TrainingState, is_in_study: bool) -> _Job | None:
-    """Return what has to be done for a trial, or None if nothing is to be done here."""
+    """Return the job for a trial, or None if there is nothing to do."""
     procedure = training.procedure
     if training.phase is Phase.REGISTERED and not is_in_study:
         return _Job(training.trial_id, training.phase, 0)
@@ -70,7 +70,7 @@ def _job(training: TrainingState, is_in_study: bool) -> _Job | None:
     return _Job(training.trial_id, training.phase, len(procedure.attempts))
 
 
-class OwnScore:
+class LocalScorer:
     """Watches for a trial that no Slicer registers or scores, and does it in a thread.
 
     Attributes:
@@ -190,7 +190,7 @@ def score_alone(
     truth = record_from_json(RevealedTruth, answer, "The simulator's answer")
     scored = scored_with_journal(analysis, truth, scenario, records=records, pause=_rest)
     arguments = score_arguments(_with_progress(scored, earlier))
-    arguments["details"][OWN_SCORE] = True
+    arguments["details"][SCORED_BY_SIMULATOR] = True
     _asked(ask, CommandName.TRIAL_SCORED, arguments)
 
 
@@ -200,19 +200,11 @@ def _asked(ask: Ask, command: str, arguments: Mapping[str, Any]) -> Mapping[str,
 
 
 def _with_progress(analysis: TrialAnalysis, earlier: Sequence[PastTrial]) -> TrialAnalysis:
-    """Return the analysis of a scored trial with its place after the trainee's earlier ones."""
+    """Return the analysis of a scored trial with the trainee's progress."""
     record, score = analysis.record, analysis.score
     if score is None or record.task == TRIAL_RUN:
         return analysis
-    this = PastTrial(
-        record.trial_id,
-        record.task,
-        record.mode,
-        record.completion_time_s,
-        score.score,
-        score.acceptable,
-        method=record.method,
-    )
+    this = PastTrial.scored(record, score.score, score.acceptable)
     return with_progress_among(analysis, (*earlier, this), PASS_MARK)
 
 
