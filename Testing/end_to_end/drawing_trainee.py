@@ -49,7 +49,7 @@ class DrawingTrainee(StreamTrainee):
 
     def place_of(self, label: str) -> np.ndarray:
         """Return where a landmark is, (3,) float, World, m."""
-        (place,) = [each.position for each in LANDMARKS if each.name == label]
+        (place,) = [each.position_ras for each in LANDMARKS if each.name == label]
         return self._in_world(place / MM_PER_M)
 
     @property

@@ -118,7 +118,7 @@ def perform(surgeon: Surgeon) -> dict:
     registered = register_trial(GivenPoints.of_answer(answer), scenario)
     seen["UseRegistration"] = surgeon.player.do("UseRegistration", **registered.arguments(trial_id))
     head_to_world = transforms.inverse(registered.rigid.matrix)
-    check = transforms.apply(head_to_world, scenario.procedures[0].checkpoints[0].position)
+    check = transforms.apply(head_to_world, scenario.procedures[0].checkpoints[0].position_ras)
     seen["checked"] = touch_checkpoint(surgeon, check, head_to_world, scenario)
     surgeon.kill_and_resume()
     surgeon.player.do("AcceptRegistration")

@@ -68,7 +68,7 @@ def test_a_procedure_is_edited_checked_and_saved_in_a_copy_of_its_scenario(host,
     dbs = saved.procedure("dbs")
     assert [each.name for each in dbs.trajectories] == ["Left subthalamic nucleus", "Right STN"]
     assert dbs.trajectories[1].diameter_mm == 2.0
-    np.testing.assert_allclose(dbs.trajectories[1].target, good[1], atol=1e-3)
+    np.testing.assert_allclose(dbs.trajectories[1].target_ras, good[1], atol=1e-3)
     assert len(dbs.checkpoints) == 6
     meshes = read_procedure_meshes(dbs, saved.skull_mesh).no_go
     assert list(meshes) == [node.GetName() for node in noGoNodes(host.scene)]

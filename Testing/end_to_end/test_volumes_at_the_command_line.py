@@ -183,7 +183,7 @@ def test_an_unusual_volume_becomes_a_scenario_with_the_right_skin(place, capfd, 
     away = scanned[np.linalg.norm(scanned - SIZE * NOSE, axis=1) > 20.0]
     assert np.abs(depth_mm(away, SIZE)).mean() < most_mm
     images = read_head_volume(scenario.volume)
-    check_place(images, mesh, scenario.volume.path)
+    check_place(images, mesh, scenario.volume.file)
     brain = transforms.apply(transforms.inverse(images.ijk_to_ras), [0.0, 10.0, 30.0])
     shown = images.values[tuple(np.rint(brain).astype(int))] - images.level
     assert abs(shown) < 0.5 * images.window

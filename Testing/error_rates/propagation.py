@@ -130,7 +130,7 @@ class Bench:
         """
         random = np.random.default_rng(seed)
         truth = self.scenario.perturbed_head_to_world(int(random.integers(2**31)))
-        points = [checkpoint.position for checkpoint in self.procedure.checkpoints]
+        points = [checkpoint.position_ras for checkpoint in self.procedure.checkpoints]
         places = np.concatenate([self.fiducials, points])
         touches = transforms.apply(truth, places) + bias
         touches += random.normal(0.0, fle_mm / np.sqrt(3), touches.shape)
@@ -150,7 +150,7 @@ class Bench:
     ) -> PropagatedError:
         """Return the figures of many procedures, carried out exactly as they were shown."""
         inside, true, expected, fre, checks = [], [], [], [], []
-        aims = np.array([trajectory.target for trajectory in self.procedure.trajectories])
+        aims = np.array([trajectory.target_ras for trajectory in self.procedure.trajectories])
         for number in range(sets):
             truth, registration, shown = self.registered(fle_mm, bias, (*seed, number))
             done = recorded(self.procedure, transforms.inverse(registration.matrix))
@@ -160,7 +160,7 @@ class Bench:
             for errors in analysis.trajectories:
                 true.append(errors.target.length_mm)
                 interval = target_error(
-                    registration, errors.trajectory.target, common_bias_sd_mm=0.0
+                    registration, errors.trajectory.target_ras, common_bias_sd_mm=0.0
                 ).interval_mm
                 inside.append(interval[0] <= true[-1] <= interval[1])
             fre.append(registration.fre_mm)

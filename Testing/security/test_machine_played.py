@@ -100,6 +100,4 @@ def test_slow_motion_by_pausing_or_by_holding_the_simulator_up_does_not_count():
 
 
 def vars_of(played: HowPlayed) -> dict:
-    from rastrainer.files.json_fields import json_object
-
-    return json_object(played)
+    return record_to_json(played, with_defaults=True)

@@ -33,7 +33,7 @@ def with_landmarks(scenario):
     return replace(scenario, landmarks=LANDMARKS)
 
 
-PLACES = [{"name": each.name, "positionRas": each.position.tolist()} for each in LANDMARKS]
+PLACES = [{"name": each.name, "positionRas": each.position_ras.tolist()} for each in LANDMARKS]
 
 
 def write_landmarked(folder: Path, places: list[dict] = PLACES) -> Path:

@@ -41,7 +41,7 @@ def test_landmarks_are_placed_by_clicks_and_each_change_is_undone(host):
         host.press("undoLandmarkButton")
         assert names(host) == left
     (nasion,) = LandmarkPoints(host.scene).landmarks
-    assert nasion.position.tolist() == pytest.approx([1.0, 84.0, -40.0])
+    assert nasion.position_ras.tolist() == pytest.approx([1.0, 84.0, -40.0])
     host.press("undoLandmarkButton")
     assert names(host) == []
     assert not host.find("undoLandmarkButton").enabled

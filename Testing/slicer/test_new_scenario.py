@@ -267,9 +267,9 @@ def test_the_default_setup_is_shown_until_it_is_changed(host):
     host.type("turn0SpinBox", "180")
     host.type("base1SpinBox", "-40")
     changed = panel._setUp.setUp()
-    assert changed.head_center == (500.0, 0.0, 220.0)
+    assert changed.head.center_mm == (500.0, 0.0, 220.0)
     assert changed.perturbation == Perturbation(3.0, 180.0, 3.0)
-    assert changed.robot_base == (0.0, -40.0)
+    assert changed.robot_base_mm == (0.0, -40.0)
 
 
 def test_a_plan_in_the_scene_is_included_in_the_scenario(host, tmp_path):

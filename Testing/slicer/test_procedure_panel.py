@@ -157,6 +157,6 @@ def test_the_errors_are_shown_with_the_shares_of_registration_and_hand(host):
     assert host.text("procedureScoreText").startswith("Score of the procedure: ")
     host.choose("procedureErrorsTable", 1)
     red = host.scene.GetNodeByID("vtkMRMLSliceNodeRed").GetSliceToRAS()
-    assert red.GetElement(2, 3) == pytest.approx(procedure.trajectories[1].target[2])
+    assert red.GetElement(2, 3) == pytest.approx(procedure.trajectories[1].target_ras[2])
     host.check("slicesAlongCheckBox", False)
     assert not session.slices.liesAlong

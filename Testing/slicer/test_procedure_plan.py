@@ -63,10 +63,10 @@ def test_a_displayed_plan_is_read_back_unchanged(scene, logic):
     read, meshes = logic.read(replace(PLAN, name="dbs-1", checkpoints=node))
     assert [each.name for each in read.trajectories] == ["Left", "Right"]
     for one, other in zip(read.trajectories, procedure.trajectories, strict=True):
-        np.testing.assert_allclose(one.entry, other.entry)
+        np.testing.assert_allclose(one.entry_ras, other.entry_ras)
         assert (one.diameter_mm, one.safety_mm) == (other.diameter_mm, other.safety_mm)
     assert (read.name, read.title, read.kind.value) == ("dbs-1", "Two leads", "dbs")
-    assert [(each.name, each.mesh.name) for each in read.no_go] == [("Vessel", "structure-1.ply")]
+    assert [(each.name, each.file.name) for each in read.no_go] == [("Vessel", "structure-1.ply")]
     assert meshes["structure-1.ply"].is_closed
     assert read.checkpoints[0].name == "Vertex"
 

@@ -144,7 +144,7 @@ def test_displayed_images_are_not_read_again_and_a_users_changes_stay(scene, loa
 def test_rebuilt_images_are_read_again(scene, loading, imaged):
     showScenario(scene, imaged)
     loading.finish()
-    write_head_volume(imaged.volume.path, ball_volume(60.0))
+    write_head_volume(imaged.volume.file, ball_volume(60.0))
     showScenario(scene, imaged)
     loading.finish()
     assert np.array_equal(slicer.util.arrayFromVolume(loading.node).T, ball_volume(60.0).values)
@@ -173,9 +173,9 @@ def test_of_two_scenarios_shown_at_once_the_last_ones_images_are_shown(scene, lo
 
 @pytest.mark.parametrize("content", [None, b"no image"])
 def test_unusable_images_are_reported_and_the_head_is_shown(scene, loading, imaged, content):
-    imaged.volume.path.unlink()
+    imaged.volume.file.unlink()
     if content is not None:
-        imaged.volume.path.write_bytes(content)
+        imaged.volume.file.write_bytes(content)
     showScenario(scene, imaged)
     loading.finish()
     assert loading.node is None
@@ -207,7 +207,7 @@ def test_a_saved_scene_carries_the_images_and_shows_them(imaged, tmp_path):
     showScenario(headless.scene, imaged)
     saved.finish()
     headless.save(tmp_path / "trial.mrb")
-    imaged.volume.path.unlink()
+    imaged.volume.file.unlink()
     opened = HeadlessScene()
     opened.load(tmp_path / "trial.mrb")
     node = findNode(opened.scene, VOLUME, Role.HEAD_VOLUME)

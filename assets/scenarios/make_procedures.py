@@ -209,13 +209,17 @@ class Planner:
         no_go: dict[str, HeadMesh],
         others: list[ProcedureTrajectory],
     ) -> bool:
-        radius, entry, target = trajectory.diameter_mm / 2, trajectory.entry, trajectory.target
+        radius, entry, target = (
+            trajectory.diameter_mm / 2,
+            trajectory.entry_ras,
+            trajectory.target_ras,
+        )
         is_clear = all(
             axis_distance_mm(mesh, entry, target) - radius > trajectory.safety_mm + 0.5
             for mesh in no_go.values()
         )
         return is_clear and all(
-            segment_distances_mm(entry, target, other.entry[None], other.target[None])[0]
+            segment_distances_mm(entry, target, other.entry_ras[None], other.target_ras[None])[0]
             > 2 * radius + APART_MM
             for other in others
         )
@@ -359,11 +363,11 @@ def table_of(procedures: list[Procedure]) -> str:
         for one in procedure.trajectories:
             bone = planned_bone(one, meshes.skull)
             assert bone is not None
-            point = one.entry + bone.outer_mm * one.direction
+            point = one.entry_ras + bone.outer_mm * one.direction
             distance, name = min(
                 (distance, name) for name, distance in distances_to_no_go(one, meshes).items()
             )
-            target = ", ".join(f"{value:g}" for value in one.target)
+            target = ", ".join(f"{value:g}" for value in one.target_ras)
             rows.append(
                 f"| {procedure.title} | {one.name} | {target} | {one.length_mm:.0f} | "
                 f"{skull_angle_deg(meshes.skull, point, one.direction):.0f} | "

@@ -17,6 +17,7 @@ from rastrainer.errors import InputError
 from rastrainer.json_checks import (
     MAX_RECORD_VALUES,
     decode_message_object,
+    list_of,
     number,
     numbers,
     one_of,
@@ -27,7 +28,7 @@ from rastrainer.json_checks import (
     trial_id,
     whole_number,
 )
-from rastrainer.json_records import record_from_json, record_to_json
+from rastrainer.json_records import record_fields, record_from_json
 from rastrainer.protocol import (
     ALL_DONE,
     COMMANDED_ABORTS,
@@ -63,11 +64,11 @@ _Position = Annotated[_Numbers, numbers(3, WORLD_LIMIT_MM, "mm")]
 _TrialId = Annotated[str, trial_id]
 _Mode = Annotated[str, one_of(*(mode.value for mode in Mode))]
 _Name = Annotated[str, text(40, 0)]
-"""Of a procedure, a method or an assignment; empty for none."""
+"""Name of a procedure, a method or an assignment; empty for none."""
 
 
 def skin_amounts(value: Any) -> dict[str, float]:
-    """Accept how far the skin shifts (RMS) and is indented, mm; what is left out is 0.
+    """Accept how far the skin shifts (RMS) and is indented, mm; a missing amount is 0.
 
     Raises:
         ValueError: anything else; the words follow "must be".
@@ -84,15 +85,9 @@ def skin_amounts(value: Any) -> dict[str, float]:
 _Skin = Annotated[Mapping[str, float], skin_amounts]
 
 
-def _up_to_all_assignments(value: Any) -> Any:
-    if not isinstance(value, (list, tuple)) or len(value) > MAX_ASSIGNMENTS:
-        raise ValueError(f"a list of up to {MAX_ASSIGNMENTS} assignments")
-    return value
-
-
 @dataclass(frozen=True)
 class NoArguments:
-    """Of a command without arguments."""
+    """The record of a command without arguments."""
 
 
 @dataclass(frozen=True)
@@ -126,7 +121,7 @@ class StartTutorialArguments:
     """
 
     trainee: Annotated[str, pseudonym()]
-    mode: Mode = Mode.DESKTOP
+    mode: _Mode = Mode.DESKTOP.value
 
 
 @dataclass(frozen=True)
@@ -135,7 +130,7 @@ class StartTaskArguments:
 
     task: str
     trainee: Annotated[str, pseudonym()]
-    mode: Mode = Mode.DESKTOP
+    mode: _Mode = Mode.DESKTOP.value
     seed: Annotated[
         int | None,
         whole_number(0, 2**63 - 1),
@@ -302,7 +297,7 @@ class CurriculumArguments:
     next: Annotated[_Name, "name of the assignment to practice next"] = ""
     assignments: Annotated[
         tuple[AssignmentArguments, ...],
-        _up_to_all_assignments,
+        list_of(0, MAX_ASSIGNMENTS, "assignments"),
         "each with `name`, `task`, `goal` (`score`, `competent`), `state` (`locked`, `open`, "
         "`reached`), `needed`, *`scenario`*, *`mode`*, *`method`*, *`procedure`*, *`done`*, "
         "*`mark`*, *`played`*, *`missing`* (names of what a locked one waits for), *`weakest`* "
@@ -336,7 +331,7 @@ class CommandEntry(str):
     """A command that clients may send: its name, and all that both sides have to know about it.
 
     Attributes:
-        effect: what it does, for docs/openigtlink.md.
+        effect: sentences for docs/openigtlink.md.
         answer: data of the answer, for docs/openigtlink.md.
         arguments: record of the arguments. Texts in its annotations are for docs/openigtlink.md.
         refused: code of the refusal in each phase in which the command is wrong; None for a
@@ -614,7 +609,7 @@ def check_arguments(command: str, arguments: Mapping[str, Any]) -> dict[str, Any
     if arguments and not fields(kind):
         raise InputError(f"{command} takes no arguments.")
     record = record_from_json(kind, arguments, command, only_known=True)
-    return record_to_json(record, with_defaults=True)
+    return {each.key: getattr(record, each.name) for each in record_fields(kind)}
 
 
 def decode_json_object(body: str) -> dict[str, Any]:
@@ -628,7 +623,7 @@ def decode_answer_object(body: str) -> dict[str, Any]:
 
 
 def deflection(value: float) -> float:
-    """Return how far something is pushed, limited to −1…1; 0 for what is no finite number.
+    """Return the push of a stick or key, limited to −1…1; 0 for a number that is not finite.
 
     `max(-1, min(1, value))` would make full speed of a value that is not a number.
     """

@@ -154,6 +154,13 @@ def is_identifier(name: str) -> bool:
     return len(name) <= 40 and _IDENTIFIER.fullmatch(name) is not None
 
 
+def identifier(value: Any) -> str:
+    """Accept a name for commands and files."""
+    if not isinstance(value, str) or not is_identifier(value):
+        raise ValueError(IDENTIFIER_WORDS)
+    return value
+
+
 def identifier_of(text: str) -> str:
     """Return the identifier made of a text; empty if it has no Latin letter or digit."""
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")[:40].strip("-")

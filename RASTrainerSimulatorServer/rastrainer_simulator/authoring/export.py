@@ -77,7 +77,7 @@ class Grid:
         vertices = transforms.apply(transforms.inverse(self.ijk_to_ras), mesh.vertices)
         stencil = vtkPolyDataToImageStencil()
         stencil.SetInputData(surface(vertices, mesh.triangles))
-        stencil.SetOutputWholeExtent(*_extent(self.shape))
+        stencil.SetOutputWholeExtent(*(end for size in self.shape for end in (0, size - 1)))
         image = vtkImageStencilToImage()
         image.SetInputConnection(stencil.GetOutputPort())
         image.SetOutputScalarTypeToUnsignedChar()
@@ -103,10 +103,6 @@ class Grid:
         squared.SetInputData(image)
         squared.Update()
         return np.sqrt(_array(squared.GetOutput()))
-
-
-def _extent(shape: tuple[int, int, int]) -> list[int]:
-    return [end for size in shape for end in (0, size - 1)]
 
 
 def _array(image: vtkImageData) -> np.ndarray:

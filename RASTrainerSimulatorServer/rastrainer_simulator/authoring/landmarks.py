@@ -95,7 +95,7 @@ def unreachable(planning: PlanningSetup, landmarks: Sequence[Landmark]) -> list[
     It reaches one if it can touch a place within 6 mm of it: a landmark is not an exact point.
     """
     poses = planning.poses(range(POSES_TRIED))
-    return [each.name for each in landmarks if not _is_reached(planning, each.position, poses)]
+    return [each.name for each in landmarks if not _is_reached(planning, each.position_ras, poses)]
 
 
 def _is_reached(planning: PlanningSetup, place: np.ndarray, poses: list[np.ndarray]) -> bool:
@@ -114,7 +114,7 @@ def _is_reached(planning: PlanningSetup, place: np.ndarray, poses: list[np.ndarr
 
 def landmarks_on(mesh: HeadMesh) -> tuple[Landmark, ...]:
     """Return the reference's landmarks on another head, RAS mm, in the order of their names."""
-    reference = _reference()
+    reference = read_head_mesh(asset_path("scenarios", "colin27") / "head.ply")
     onto = _whole(reference, mesh)
     places = {
         name: _local(reference, np.array(place), onto, mesh) for name, place in REFERENCE.items()
@@ -132,10 +132,6 @@ def landmarks_on(mesh: HeadMesh) -> tuple[Landmark, ...]:
 
 
 @cache
-def _reference() -> HeadMesh:
-    return read_head_mesh(asset_path("scenarios", "colin27") / "head.ply")
-
-
 def _whole(reference: HeadMesh, mesh: HeadMesh) -> np.ndarray:
     """Return the transform (4, 4) that lays the reference on the head: rigid after a scaling.
 
@@ -258,7 +254,9 @@ def write_proposal(folder: Path, path: Path) -> list[str]:
     """Write landmarks for the head of a scenario to a markups file; return sentences about them."""
     proposed = _propose_landmarks(load_scenario(folder))
     names = tuple(landmark.name for landmark in proposed.landmarks)
-    places = np.array([each.position for each in proposed.landmarks], dtype=float).reshape(-1, 3)
+    places = np.array([each.position_ras for each in proposed.landmarks], dtype=float).reshape(
+        -1, 3
+    )
     write_markups(path, PointList(names, places))
     said = f"{len(names)} landmarks are proposed: look at each, and move it where it is wrong."
     return [said, *proposed.left_out]

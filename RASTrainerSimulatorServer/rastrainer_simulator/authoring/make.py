@@ -169,7 +169,7 @@ def _with_main_target(scenario: Scenario, head: HeadMesh, warn: Warn) -> Scenari
     aimed = replace(
         scenario,
         target_name=first.name,
-        target_position=np.asarray(first.position, dtype=float),
+        target_position=np.asarray(first.position_ras, dtype=float),
         targets=tuple(others),
     )
     if start_clearance_mm(aimed, head) >= LEAST_START_CLEARANCE_MM:

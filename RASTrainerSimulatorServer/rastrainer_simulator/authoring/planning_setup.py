@@ -85,7 +85,7 @@ class PlanningSetup:
     def eye(self) -> np.ndarray:
         """(3,) float, RAS mm: the default view's position, with the head in its nominal pose."""
         to_head = transforms.inverse(self.scenario.head_to_world)
-        return transforms.apply(to_head, self.scenario.cameras["close-up"].position)
+        return transforms.apply(to_head, self.scenario.cameras["close-up"].position_mm)
 
     @cached_property
     def views(self) -> TouchViews:

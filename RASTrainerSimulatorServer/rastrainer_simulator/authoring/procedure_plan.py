@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import count
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -14,7 +13,12 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.number_text import fixed
-from rastrainer.procedure.checks import LineMeasures, check_procedure, measure_lines
+from rastrainer.procedure.checks import (
+    LineMeasures,
+    MeasuredProcedure,
+    check_procedure,
+    measure_lines,
+)
 from rastrainer.procedure.plan import (
     NO_GO_FOLDER,
     Procedure,
@@ -54,7 +58,7 @@ class GuideReach:
         pose = np.array(head_to_world, dtype=float)
         pose[:3, 3] /= MM_PER_M
         self._collision.set_head_pose(pose)
-        entry = transforms.apply(pose, trajectory.entry / MM_PER_M)
+        entry = transforms.apply(pose, trajectory.entry_ras / MM_PER_M)
         direction = pose[:3, :3] @ trajectory.direction
         return self._reach.judge_guide(entry.tolist(), direction.tolist(), STAND_OFFS_M).reachable
 
@@ -119,36 +123,6 @@ def _lines_held(
     return held, wrong
 
 
-@dataclass(frozen=True)
-class MeasuredProcedure:
-    """A procedure as it would be on a head.
-
-    Attributes:
-        procedure: the plan.
-        lines: measured, in its order.
-        is_held: whether the robot can hold the guide on each line; None where the plan is wrong
-            apart from that, and the reach was not tried.
-        wrong: a sentence for each error.
-    """
-
-    procedure: Procedure
-    lines: tuple[LineMeasures, ...]
-    is_held: tuple[bool | None, ...]
-    wrong: tuple[str, ...]
-
-    def to_json(self) -> dict[str, Any]:
-        """Return everything, ready for JSON."""
-        return {
-            "procedure": self.procedure.name,
-            "title": self.procedure.title,
-            "lines": [
-                {**line.to_json(), "isHeld": is_held}
-                for line, is_held in zip(self.lines, self.is_held, strict=True)
-            ],
-            "wrong": list(self.wrong),
-        }
-
-
 def measure_procedures(
     folder: Path, procedure: Procedure | None = None
 ) -> tuple[MeasuredProcedure, ...]:
@@ -167,16 +141,11 @@ def measure_procedures(
 
 def _measured(planning: PlanningSetup, procedure: Procedure, skull: Path) -> MeasuredProcedure:
     wrong = _check_on_head(planning, procedure)
-    held: list[bool | None] = [None] * len(procedure.trajectories)
-    unreachable: list[str] = []
+    lines = measure_lines(procedure, read_procedure_meshes(procedure, skull))
     if not wrong:
-        held[:], unreachable = _lines_held(planning, procedure)
-    return MeasuredProcedure(
-        procedure,
-        tuple(measure_lines(procedure, read_procedure_meshes(procedure, skull))),
-        tuple(held),
-        (*wrong, *unreachable),
-    )
+        held, wrong = _lines_held(planning, procedure)
+        lines = [replace(line, is_held=each) for line, each in zip(lines, held, strict=True)]
+    return MeasuredProcedure(procedure.name, procedure.title, tuple(lines), tuple(wrong))
 
 
 def with_procedure(
@@ -193,13 +162,13 @@ def with_procedure(
     kept = read_all_no_go(others)
     structures = []
     for structure in procedure.no_go:
-        name, mesh = structure.mesh.name, read_head_mesh(structure.mesh)
-        stem = structure.mesh.stem
+        name, mesh = structure.file.name, read_head_mesh(structure.file)
+        stem = structure.file.stem
         numbers = count(2)
-        while name in kept and not _same(kept[name], mesh):
+        while name in kept and not _are_same(kept[name], mesh):
             name = f"{stem[:36]}-{next(numbers)}.ply"
         kept[name] = mesh
-        structures.append(replace(structure, mesh=Path(NO_GO_FOLDER, name)))
+        structures.append(replace(structure, file=Path(NO_GO_FOLDER, name)))
     placed = replace(procedure, no_go=tuple(structures))
     names = [each.name for each in scenario.procedures]
     procedures = list(scenario.procedures)
@@ -210,9 +179,9 @@ def with_procedure(
     return replace(scenario, procedures=tuple(procedures)), kept
 
 
-def _same(one: HeadMesh, other: HeadMesh) -> bool:
-    pairs = ((one.vertices, other.vertices), (one.triangles, other.triangles))
-    return all(a.shape == b.shape and bool((a == b).all()) for a, b in pairs)
+def _are_same(one: HeadMesh, other: HeadMesh) -> bool:
+    are_alike = np.array_equal(one.vertices, other.vertices)
+    return are_alike and np.array_equal(one.triangles, other.triangles)
 
 
 def _skull(scenario: Scenario) -> Path:
@@ -236,10 +205,9 @@ def line_table(procedures: Iterable[MeasuredProcedure]) -> list[str]:
     text = []
     for measured in procedures:
         rows = [HEADER]
-        for line, is_held in zip(measured.lines, measured.is_held, strict=True):
-            rows.append((*_cells(line), REACH[is_held]))
+        rows += [(*_cells(line), REACH[line.is_held]) for line in measured.lines]
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-        text.append(f"{measured.procedure.title} ({measured.procedure.name})")
+        text.append(f"{measured.title} ({measured.procedure})")
         for row in rows:
             cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
             text.append("  ".join(cells).rstrip())

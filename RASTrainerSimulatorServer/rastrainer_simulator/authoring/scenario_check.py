@@ -35,8 +35,8 @@ ROBOT_FOOT_MM = 110.0
 def check_standing(scenario: Scenario, head: HeadMesh) -> list[str]:
     """Return a sentence for everything that is not on the table."""
     table, wrong = scenario.furniture, []
-    half = table.table_size[:2] / 2.0
-    low, high = table.table_center - half, table.table_center + half
+    half = np.array(table.table.size_mm[:2]) / 2.0
+    low, high = table.table.center_mm - half, table.table.center_mm + half
     extent = f"The table reaches from {_place(low)} to {_place(high)} mm (x, y, from the robot)"
     if (low > -ROBOT_FOOT_MM).any() or (high < ROBOT_FOOT_MM).any():
         wrong.append(
@@ -44,7 +44,7 @@ def check_standing(scenario: Scenario, head: HeadMesh) -> list[str]:
             "would not stand on it; move the robot or the table."
         )
     foot = transforms.apply(scenario.head_to_world, head.base)[:2]
-    around = table.stand_diameter / 2.0 + scenario.perturbation.translation_mm
+    around = table.stand.diameter_mm / 2.0 + scenario.perturbation.translation_mm
     if (foot - around < low).any() or (foot + around > high).any():
         wrong.append(
             f"{extent}: the head's stand at {_place(foot)} mm, which needs {around:.0f} mm around "
@@ -92,9 +92,9 @@ def check_plan(planning: PlanningSetup) -> list[str]:
         wrong.append(str(error))
     _pose_head(planning)
     targets = [(scenario.target_name, scenario.target_position)]
-    targets += [(target.name, target.position) for target in scenario.targets]
+    targets += [(target.name, target.position_ras) for target in scenario.targets]
     if scenario.trajectory is not None:
-        targets.append((scenario.trajectory.name, scenario.trajectory.target))
+        targets.append((scenario.trajectory.name, scenario.trajectory.target_ras))
     for name, position in targets:
         depth = -_distance_mm(planning, position)
         if depth < 0.0:
@@ -113,7 +113,7 @@ def _wrong_trajectory(planning: PlanningSetup) -> list[str]:
     trajectory = planning.scenario.trajectory
     if trajectory is None:
         return []
-    off_skin = _distance_mm(planning, trajectory.entry)
+    off_skin = _distance_mm(planning, trajectory.entry_ras)
     if abs(off_skin) > ENTRY_OFF_SKIN_MM:
         side = "above the skin" if off_skin > 0.0 else "below the skin, within the head"
         return [
@@ -123,7 +123,7 @@ def _wrong_trajectory(planning: PlanningSetup) -> list[str]:
     to_world = planning.scenario.head_to_world
     entry, target = (
         transforms.apply(to_world, point) / MM_PER_M
-        for point in (trajectory.entry, trajectory.target)
+        for point in (trajectory.entry_ras, trajectory.target_ras)
     )
     reach = PlanReach(planning.setup.robot, planning.kinematics, planning.collision)
     answer = reach.judge(target.tolist(), entry.tolist())

@@ -230,5 +230,5 @@ class Collision:
 
 def head_collision(shape: RobotShape, head: HeadMesh, furniture: Furniture) -> Collision:
     """Return what measures a robot against a head, RAS mm, and the table and stand around it."""
-    surroundings = Surroundings(stand_radius=furniture.stand_diameter / 2.0 / MM_PER_M)
+    surroundings = Surroundings(stand_radius=furniture.stand.diameter_mm / 2.0 / MM_PER_M)
     return Collision(shape, head.vertices / MM_PER_M, head.triangles, surroundings)

@@ -264,7 +264,7 @@ def landmarks_sha256(scenario: Scenario) -> str:
     whole = hashlib.sha256()
     for landmark in scenario.landmarks:
         name = json.dumps(landmark.name).encode()
-        whole.update(name + np.asarray(landmark.position, dtype="<f8").tobytes())
+        whole.update(name + np.asarray(landmark.position_ras, dtype="<f8").tobytes())
     return whole.hexdigest()
 
 

@@ -158,7 +158,7 @@ class ArmScreen:
         if session.preferences.axes == AxesChoice.ROBOT:
             return ROBOT_AXES
         view = session.scenario.cameras[session.state.camera]
-        line = tuple((view.focal_point - view.position).tolist())
+        line = tuple((view.focal_point_mm - view.position_mm).tolist())
         axes = camera_axes(line, tuple(view.view_up.tolist()))
         return axes.turned(math.radians(session.view.stick_turn_deg))
 

@@ -143,7 +143,7 @@ class ProcedureScreen(ArmScreen):
         session, procedure = self._session, self._procedure
         if procedure.stage is Phase.VERIFYING:
             checkpoints = session.scenario.procedure(procedure.name).checkpoints
-            places = {each.name: session.truly_in_world(each.position) for each in checkpoints}
+            places = {each.name: session.truly_in_world(each.position_ras) for each in checkpoints}
             return checkpoint_marks(procedure, places)
         return plan_marks(procedure, session.planned_bone(procedure.name))
 

@@ -301,8 +301,8 @@ def _instrument(
     assert done.instrument_depth is not None, "it was released"
     return PlacedInstrument(
         trajectory=planned.name,
-        entry_ras=vector(planned.entry.tolist()),
-        target_ras=vector(planned.target.tolist()),
+        entry_ras=vector(planned.entry_ras.tolist()),
+        target_ras=vector(planned.target_ras.tolist()),
         diameter_mm=planned.diameter_mm,
         guide_tip_mm=in_millimeters(done.guide.tip),
         guide_direction=done.guide.direction,

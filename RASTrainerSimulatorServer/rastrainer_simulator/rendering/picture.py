@@ -51,8 +51,8 @@ from rastrainer_simulator.scene.surfaces import surface, vtk_matrix
 def _look_through(camera: Camera, renderer: vtkRenderer) -> None:
     """Set a renderer's camera; the scenario's is in mm, what is rendered in meters."""
     view = renderer.GetActiveCamera()
-    view.SetPosition(*(camera.position / MM_PER_M))
-    view.SetFocalPoint(*(camera.focal_point / MM_PER_M))
+    view.SetPosition(*(camera.position_mm / MM_PER_M))
+    view.SetFocalPoint(*(camera.focal_point_mm / MM_PER_M))
     view.SetViewUp(*camera.view_up)
     view.SetViewAngle(camera.view_angle_deg)
     renderer.ResetCameraClippingRange()

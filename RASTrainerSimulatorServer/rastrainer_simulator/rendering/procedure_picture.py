@@ -131,7 +131,7 @@ def procedure_lines(
     shown_to_ras = to_ras @ transforms.inverse(record.accepted.world_to_head)
     lines = []
     for plan, one in zip(procedure.trajectories, record.instruments, strict=True):
-        planned = np.array([plan.entry, plan.target])
+        planned = np.array([plan.entry_ras, plan.target_ras])
         ends = np.array([one.guide_tip_mm, one.at_depth(one.instrument_depth_mm)])
         shown, placed = transforms.apply(shown_to_ras, planned), transforms.apply(to_ras, ends)
         lines.append(((planned[0], planned[1]), (shown[0], shown[1]), (placed[0], placed[1])))

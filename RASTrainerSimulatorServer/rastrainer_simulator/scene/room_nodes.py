@@ -202,8 +202,8 @@ def table_node(furniture: Furniture, head_base: np.ndarray) -> Node:
     `head_base` (3,) float, World, m, is the middle of the head's base in the nominal pose: below
     it are a mat and the collar of the stand.
     """
-    width, depth, thickness = furniture.table_size / MM_PER_M
-    x, y = furniture.table_center / MM_PER_M
+    width, depth, thickness = np.array(furniture.table.size_mm) / MM_PER_M
+    x, y = np.array(furniture.table.center_mm) / MM_PER_M
     left, right, near, far = x - width / 2, x + width / 2, y - depth / 2, y + depth / 2
     made = [soft_box((left, right), (near, far), (-thickness, 0.0), TABLE_TOP, 0.04, 0.008)]
     legs_x, legs_y = (left + LEG_INSET, right - LEG_INSET), (near + LEG_INSET, far - LEG_INSET)
@@ -221,7 +221,7 @@ def table_node(furniture: Furniture, head_base: np.ndarray) -> Node:
 
 def stand_node(furniture: Furniture, head_base: np.ndarray) -> Node:
     """Return the post under the head; its origin, in the middle of its top, is moved."""
-    radius = furniture.stand_diameter / 2.0 / MM_PER_M
+    radius = furniture.stand.diameter_mm / 2.0 / MM_PER_M
     bottom = -float(head_base[2]) - INTO_TABLE
     profile = [(radius, bottom), (radius, -0.012), (radius - 0.004, -0.002)]
     return Node("stand", merged([turned(0.0, 0.0, profile, STEEL)]))
@@ -229,7 +229,7 @@ def stand_node(furniture: Furniture, head_base: np.ndarray) -> Node:
 
 def _under_stand(furniture: Furniture, head_base: np.ndarray) -> list[Surface]:
     x, y, _ = head_base
-    radius = COLLAR * furniture.stand_diameter / 2.0 / MM_PER_M
+    radius = COLLAR * furniture.stand.diameter_mm / 2.0 / MM_PER_M
     profile = [(radius, 0.0), (radius, 0.008), (radius - 0.006, 0.014)]
     return [
         turned(x, y, profile, STEEL),

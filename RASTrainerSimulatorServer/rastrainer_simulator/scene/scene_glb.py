@@ -130,7 +130,7 @@ def plan_node(procedures: Sequence[Procedure]) -> Node:
 
     Its children are the no-go structures of all procedures, one for each file.
     """
-    files = sorted({each.mesh for procedure in procedures for each in procedure.no_go})
+    files = sorted({each.file for procedure in procedures for each in procedure.no_go})
     return Node(PLAN, children=tuple(_no_go_node(path) for path in files))
 
 

@@ -227,7 +227,8 @@ def arrow_shape(skin: Skin, arrow: Arrow) -> Shape:
     along = np.concatenate([shaft, head])
     widths = np.concatenate([np.full(len(shaft), SHAFT_WIDTH / 2.0), arrow.half_width(head)])
     middle, outward = _at(arrow.path, along), _unit(_at(arrow.outward, along))
-    to_left = _unit(np.cross(outward, _tangents(arrow.path, along)))
+    tangents = _at(arrow.path, along + STEP / 2.0) - _at(arrow.path, along - STEP / 2.0)
+    to_left = _unit(np.cross(outward, tangents))
     sides = np.array(_ACROSS)[:, None] * (widths[:, None] * to_left)[:, None]
     rows = [
         skin.onto(row, normal) for row, normal in zip(middle[:, None] + sides, outward, strict=True)
@@ -339,10 +340,6 @@ def _at(values: np.ndarray, along: np.ndarray) -> np.ndarray:
     """Interpolate (n, 3) values, a step apart, at lengths of the path (k,)."""
     steps = STEP * np.arange(len(values))
     return np.column_stack([np.interp(along, steps, values[:, axis]) for axis in range(3)])
-
-
-def _tangents(path: np.ndarray, along: np.ndarray) -> np.ndarray:
-    return _at(path, along + STEP / 2.0) - _at(path, along - STEP / 2.0)
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:

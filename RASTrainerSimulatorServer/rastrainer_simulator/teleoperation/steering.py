@@ -82,7 +82,8 @@ class ChosenAxes:
         self._choice = choice
         self._axes_of_cameras = {
             name: camera_axes(
-                tuple((view.focal_point - view.position).tolist()), tuple(view.view_up.tolist())
+                tuple((view.focal_point_mm - view.position_mm).tolist()),
+                tuple(view.view_up.tolist()),
             )
             for name, view in cameras.items()
         }

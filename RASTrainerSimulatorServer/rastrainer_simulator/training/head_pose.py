@@ -182,7 +182,7 @@ class RegisteredPlan:
         )
 
     def line(self, trajectory: ProcedureTrajectory) -> PlannedLine:
-        entry, target = trajectory.entry.tolist(), trajectory.target.tolist()
+        entry, target = trajectory.entry_ras.tolist(), trajectory.target_ras.tolist()
         return PlannedLine(trajectory.name, self.in_world(entry), self.in_world(target))
 
     def nearest_checkpoint(
@@ -191,6 +191,7 @@ class RegisteredPlan:
         """Return the checkpoint nearest to a tip (World, m), and its distance, m."""
         here = self.in_head(tip)
         distance, name = min(
-            (math.dist(here, each.position.tolist()) / MM_PER_M, each.name) for each in checkpoints
+            (math.dist(here, each.position_ras.tolist()) / MM_PER_M, each.name)
+            for each in checkpoints
         )
         return name, distance

@@ -298,7 +298,7 @@ class TouchViews:
             held = None if planned is None else self._held(planned.q)
             sight = self._held(self._robot.home).sight
             camera = self._scenario.cameras["close-up"]
-            front = unit(subtract(_vector(camera.position), _vector(camera.focal_point)))
+            front = unit(subtract(_vector(camera.position_mm), _vector(camera.focal_point_mm)))
             eyes = [
                 eye
                 for eye in _eyes(point, front)

@@ -94,7 +94,7 @@ class _Place:
 def camera_pose(camera: Camera, orbit: Orbit = FRONT) -> CameraPose:
     """Return where a scenario's camera stands once it is turned."""
     if orbit == FRONT:
-        position, focal_point = in_meters(camera.position), in_meters(camera.focal_point)
+        position, focal_point = in_meters(camera.position_mm), in_meters(camera.focal_point_mm)
         up = vector(camera.view_up.tolist())
         return CameraPose(position, focal_point, up, camera.view_angle_deg)
     place = _place(camera)
@@ -145,7 +145,7 @@ def heading_deg(camera: Camera) -> float:
 
 
 def _place(camera: Camera) -> _Place:
-    position, focal_point = in_meters(camera.position), in_meters(camera.focal_point)
+    position, focal_point = in_meters(camera.position_mm), in_meters(camera.focal_point_mm)
     line = subtract(position, focal_point)
     away = length(line)
     forward = camera_axes(scale(line, -1.0), vector(camera.view_up.tolist())).forward

@@ -206,7 +206,7 @@ class MethodStudy:
     @cached_property
     def landmarks(self) -> np.ndarray:
         """(l, 3) float, RAS mm; none where the scenario has too few."""
-        places = [landmark.position for landmark in self.scenario.landmarks]
+        places = [landmark.position_ras for landmark in self.scenario.landmarks]
         return np.array(places, dtype=float).reshape(-1, 3)
 
     @cached_property
@@ -222,7 +222,7 @@ class MethodStudy:
     def camera(self) -> RangeCamera:
         """The range camera, where the close-up view is."""
         to_head = transforms.inverse(self.scenario.head_to_world)
-        eye = transforms.apply(to_head, self.scenario.cameras["close-up"].position)
+        eye = transforms.apply(to_head, self.scenario.cameras["close-up"].position_mm)
         return RangeCamera(eye, self.noise[RegistrationMethod.SCAN])
 
     @cached_property

@@ -121,7 +121,9 @@ def _placed(
     random: np.random.Generator,
 ) -> PlacedInstrument:
     to_world = transforms.inverse(used.world_to_head)
-    entry, target = (transforms.apply(to_world, point) for point in (plan.entry, plan.target))
+    entry, target = (
+        transforms.apply(to_world, point) for point in (plan.entry_ras, plan.target_ras)
+    )
     line = (target - entry) / np.linalg.norm(target - entry)
     across = transforms.frame_along(line)[:2]
     tilt = np.tan(np.radians(hands.angle_sd_deg * random.normal(size=2)))
@@ -147,8 +149,8 @@ def _placed(
     }
     return PlacedInstrument(
         trajectory=plan.name,
-        entry_ras=_triple(plan.entry),
-        target_ras=_triple(plan.target),
+        entry_ras=_triple(plan.entry_ras),
+        target_ras=_triple(plan.target_ras),
         diameter_mm=plan.diameter_mm,
         guide_tip_mm=_triple(tip),
         guide_direction=_triple(direction),
@@ -169,9 +171,11 @@ def _checked(
     """Return the touches of the first checkpoints, a few seconds apart."""
     touched = []
     for number, checkpoint in enumerate(setting.procedure.checkpoints[:MAX_CHECKPOINTS], start=1):
-        place = transforms.apply(setting.head_to_world, checkpoint.position)
+        place = transforms.apply(setting.head_to_world, checkpoint.position_ras)
         place = place + hands.check_sd_mm * random.normal(size=3)
-        error = np.linalg.norm(transforms.apply(used.world_to_head, place) - checkpoint.position)
+        error = np.linalg.norm(
+            transforms.apply(used.world_to_head, place) - checkpoint.position_ras
+        )
         time_s = touching_s + 4.0 * number
         touched.append(TouchedCheckpoint(checkpoint.name, _triple(place), float(error), time_s))
     return tuple(touched)

@@ -27,14 +27,15 @@ def rotation(random, degrees):
 def placed(trajectory, head_to_world, depth=None, drill=25.0, alignments=1):
     """An instrument placed along a planned line, in a head at a pose."""
     entry, target = (
-        transforms.apply(head_to_world, point) for point in (trajectory.entry, trajectory.target)
+        transforms.apply(head_to_world, point)
+        for point in (trajectory.entry_ras, trajectory.target_ras)
     )
     direction = (target - entry) / np.linalg.norm(target - entry)
     tip = entry - STAND_OFF_MM * direction
     return PlacedInstrument(
         trajectory=trajectory.name,
-        entry_ras=tuple(trajectory.entry.tolist()),
-        target_ras=tuple(trajectory.target.tolist()),
+        entry_ras=tuple(trajectory.entry_ras.tolist()),
+        target_ras=tuple(trajectory.target_ras.tolist()),
         diameter_mm=trajectory.diameter_mm,
         guide_tip_mm=tuple(tip.tolist()),
         guide_direction=tuple(direction.tolist()),

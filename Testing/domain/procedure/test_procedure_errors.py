@@ -49,7 +49,7 @@ def test_steady_hands_and_an_exact_registration_make_no_error():
     for length in (errors.entry.length_mm, errors.target.length_mm, errors.radial.length_mm):
         assert length == pytest.approx(0.0, abs=1e-9)
     assert errors.angle_deg == pytest.approx(0.0, abs=1e-9)
-    assert errors.tip == pytest.approx(DOWN.target, abs=1e-9)
+    assert errors.tip == pytest.approx(DOWN.target_ras, abs=1e-9)
 
 
 def test_a_sideways_registration_error_is_attributed_to_the_registration_and_not_to_the_hand():
@@ -103,10 +103,10 @@ def test_the_shares_of_registration_and_hand_add_up_exactly(seed):
     )
     there = transforms.apply(transforms.inverse(TRUTH), tip)
     assert not np.allclose(errors.axis_start, there)
-    whole = errors.tip - DOWN.target
+    whole = errors.tip - DOWN.target_ras
     assert errors.target.whole == pytest.approx(whole, abs=1e-9)
-    shown = transforms.apply(off, DOWN.target)
-    assert errors.target.by_registration == pytest.approx(shown - DOWN.target, abs=1e-9)
+    shown = transforms.apply(off, DOWN.target_ras)
+    assert errors.target.by_registration == pytest.approx(shown - DOWN.target_ras, abs=1e-9)
     depth, registration, hand = errors.depth
     assert depth == pytest.approx(registration + hand)
     assert errors.target.length_mm == pytest.approx(np.hypot(errors.radial.length_mm, depth))

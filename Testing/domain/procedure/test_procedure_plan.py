@@ -48,7 +48,7 @@ def test_a_written_procedure_is_read_again(folder):
     left = procedure.trajectory("Left")
     assert left.length_mm == 70.0
     assert left.direction.tolist() == [0.0, 0.0, -1.0]
-    assert not left.entry.flags.writeable
+    assert not left.entry_ras.flags.writeable
     meshes = read_procedure_meshes(procedure, scenario.skull_mesh)
     assert len(meshes.skull.triangles) == len(shell().triangles)
     assert np.allclose(meshes.no_go["Vessel"].vertices, vessel().vertices, atol=1e-4)
@@ -133,7 +133,7 @@ LINE = (0, "trajectories", 0)
         (set_in(0, "title", ""), "title must be printable text"),
         (set_in(0, "trajectories", []), "trajectories must be a list of 1 to 20 objects"),
         (many_lines, "trajectories must be a list of 1 to 20 objects"),
-        (many_structures, "noGo must be a list of 0 to 10 objects"),
+        (many_structures, "noGo must be a list of at most 10 objects"),
         (many_files, "at most 30 files of no-go meshes"),
         (same_name, "procedures must be a list in which each name occurs once"),
         (same_trajectory, "trajectories must be a list in which each name occurs once"),
@@ -216,4 +216,4 @@ def test_the_hash_of_a_procedure_is_the_same_after_moving_its_folder(folder, tmp
 def test_coordinates_are_read_from_the_file_to_a_ten_thousandth(tmp_path):
     third = trajectory(entry=(1 / 3, 0.0, 89.99))
     folder = write_planned(tmp_path / "third", made_up_procedure(third))
-    assert load_scenario(folder).procedures[0].trajectories[0].entry[0] == 0.3333
+    assert load_scenario(folder).procedures[0].trajectories[0].entry_ras[0] == 0.3333

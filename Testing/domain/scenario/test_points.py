@@ -151,9 +151,13 @@ def test_journals_of_fiducial_trials_stay_valid_when_landmarks_are_placed_later(
 @pytest.mark.parametrize(
     ("landmarks", "said"),
     [
-        pytest.param([PLACES[0], PLACES[0]], "name must be another name", id="same name"),
+        pytest.param(
+            [PLACES[0], PLACES[0]],
+            "each name occurs once",
+            id="same name",
+        ),
         pytest.param([{"name": "Nasion"}], "positionRas", id="no place"),
-        pytest.param(PLACES * 4, "list of 0 to 15", id="too many"),
+        pytest.param(PLACES * 4, "list of at most 15", id="too many"),
     ],
 )
 def test_unusable_landmarks_are_named(load, landmarks, said):
@@ -173,7 +177,7 @@ def mesh(scenario):
 
 def placed(scenario, **moved):
     """Return the scenario's landmarks, some of them somewhere else; names have _ for spaces."""
-    places = {each.name: each.position for each in scenario.landmarks}
+    places = {each.name: each.position_ras for each in scenario.landmarks}
     places |= {name.replace("_", " "): np.array(place) for name, place in moved.items()}
     return [Landmark(name, place) for name, place in places.items()]
 
@@ -192,7 +196,7 @@ def test_too_few_and_too_many_landmarks_are_reported(scenario, mesh):
 
 
 def test_a_landmark_off_the_skin_is_named_and_one_near_it_is_moved_onto_it(scenario, mesh):
-    nasion = scenario.landmarks[0].position
+    nasion = scenario.landmarks[0].position_ras
     off = placed(scenario, Nasion=nasion + np.array([0.0, 9.0, 0.0]))
     (sentence,) = check_landmarks(mesh, off)
     assert sentence.startswith("Nasion is ")
@@ -200,12 +204,12 @@ def test_a_landmark_off_the_skin_is_named_and_one_near_it_is_moved_onto_it(scena
     near = placed(scenario, Nasion=nasion + np.array([0.0, 3.0, 0.0]))
     assert check_landmarks(mesh, near) == []
     moved = on_skin(mesh, near)
-    assert np.linalg.norm(moved[0].position - nasion) < 2.0
-    assert on_skin(mesh, off)[0].position.tolist() == off[0].position.tolist()
+    assert np.linalg.norm(moved[0].position_ras - nasion) < 2.0
+    assert on_skin(mesh, off)[0].position_ras.tolist() == off[0].position_ras.tolist()
 
 
 def test_swapped_sides_are_named_once_for_both(scenario, mesh):
-    own = {each.name: each.position for each in scenario.landmarks}
+    own = {each.name: each.position_ras for each in scenario.landmarks}
     swapped = placed(
         scenario,
         Right_inner_canthus=own["Left inner canthus"],
@@ -222,7 +226,7 @@ def test_swapped_sides_are_named_once_for_both(scenario, mesh):
 
 
 def test_coincident_duplicate_or_collinear_landmarks_are_named(scenario, mesh):
-    own = {each.name: each.position for each in scenario.landmarks}
+    own = {each.name: each.position_ras for each in scenario.landmarks}
     close = placed(scenario, Brow=own["Nasion"] + [0.0, 0.0, 4.0])
     assert any("are 4.0 mm apart" in sentence for sentence in check_landmarks(mesh, close))
     twice = [*scenario.landmarks, Landmark("Nasion", own["Left inner canthus"] + [0, 0, 12.0])]

@@ -79,8 +79,8 @@ def test_a_scenario_is_read_completely(folder):
     assert [task.shortest_path_mm for task in scenario.tasks] == [None, 612.5]
     assert np.array_equal(scenario.task("trial-run").fiducials, POINTS)
     assert scenario.cameras["close-up"].view_up.tolist() == [0, 0, 1]
-    assert scenario.cameras["far"].position.tolist() == [240, -2000, 1000]
-    assert scenario.furniture.stand_diameter == 80
+    assert scenario.cameras["far"].position_mm.tolist() == [240, -2000, 1000]
+    assert scenario.furniture.stand.diameter_mm == 80
     assert scenario.provenance.license == "none needed"
 
 
@@ -128,7 +128,7 @@ MIRRORED = [1, 0, 0, 480, 0, -1, 0, -17, 0, 0, 1, 218, 0, 0, 0, 1]
     ("path", "value", "sentence"),
     [
         ("formatVersion", 2, "formatVersion must be 1"),
-        ("formatVersion", "1", "formatVersion must be a number"),
+        ("formatVersion", "1", "formatVersion must be 1"),
         ("name", "Sphere!", "name must be lower-case letters"),
         ("title", "", "title must be printable text"),
         ("title", "line\nbreak", "title must be printable text"),
@@ -138,7 +138,7 @@ MIRRORED = [1, 0, 0, 480, 0, -1, 0, -17, 0, 0, 1, 218, 0, 0, 0, 1]
         ("head", "..\\head.ply", "head must be the path of a file inside"),
         ("head", ".", "head must be the path of a file inside"),
         ("head", "a\0b", "head must be printable text"),
-        ("target", [1, 2, 3], "target must be an object"),
+        ("target", [1, 2, 3], "target must be a JSON object"),
         ("target.positionRas", [1, 2], "target.positionRas must be a list of 3 numbers"),
         ("target.positionRas", [1, 2, True], "target.positionRas must be a list of 3 numbers"),
         ("target.positionRas", [1, 2, 10**400], "target.positionRas must be a list of 3 numbers"),
@@ -149,20 +149,20 @@ MIRRORED = [1, 0, 0, 480, 0, -1, 0, -17, 0, 0, 1, 218, 0, 0, 0, 1]
         ("perturbation.yawDeg", True, "perturbation.yawDeg must be a number"),
         ("tasks", [], "tasks must be a list of 1 to 20 objects"),
         ("tasks", {"name": "task-1"}, "tasks must be a list"),
-        ("tasks", ["task-1"], "tasks must be a list"),
-        ("tasks.1.name", "trial-run", r"tasks\[1\].name must be .* each name once"),
+        ("tasks", ["task-1"], r"tasks\[0\] must be a JSON object"),
+        ("tasks.1.name", "trial-run", "tasks must be a list in which each name occurs once"),
         ("tasks.1.file", "../../b.mrk.json", r"tasks\[1\].file must be the path of a file inside"),
         ("tasks.1.file", "tasks/none.mrk.json", "none.mrk.json"),
         ("tasks.1.complexity", None, r"tasks\[1\].complexity must be a number"),
         ("tasks.1.shortestPathMm", 0, r"tasks\[1\].shortestPathMm must be a number from 1"),
-        ("cameras.far", None, "cameras.far must be an object"),
+        ("cameras.far", None, "cameras.far must be a JSON object"),
         ("cameras.far.viewUp", [0, 0, 0], "cameras.far.viewUp must be a direction across"),
         ("cameras.close-up.viewAngleDeg", 0, "cameras.close-up.viewAngleDeg must be a number"),
         ("stand.diameterMm", 0, "stand.diameterMm must be a number from 1"),
         ("provenance.license", 5, "provenance.license must be printable text"),
-        ("skin", 2, "skin must be an object"),
-        ("skin", {"shiftMm": -1}, "skin.shiftMm must be a number from 0 to 20"),
-        ("skin", {"shift": 1}, "skin.shift must be left out; a skin has shiftMm, indentationMm"),
+        ("skin", 2, "skin must be an object of shiftMm"),
+        ("skin", {"shiftMm": -1}, "skin.shiftMm must be a number from 0 to 20 mm"),
+        ("skin", {"shift": 1}, "skin must be an object of shiftMm and indentationMm"),
     ],
 )
 def test_an_invalid_field_is_named_with_what_it_must_be(folder, path, value, sentence):

@@ -12,8 +12,8 @@ from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.trial_head import UNMOVED, Perturbation, SkinShift
 from rastrainer.head.volume import read_head_volume
 from rastrainer.scenario.library import list_scenarios
-from rastrainer.scenario.scenario import load_scenario
-from rastrainer.scenario.setup import SetUp, read_setup, write_setup
+from rastrainer.scenario.scenario import OperatingTable, Stand, load_scenario
+from rastrainer.scenario.setup import HeadPlace, SetUp, read_setup, write_setup
 from rastrainer.scenario.writer import (
     HeadDraft,
     new_folder,
@@ -48,8 +48,8 @@ def test_a_scenario_is_read_back_with_targets_and_trajectory(tmp_path):
     assert [task.shortest_path_mm for task in scenario.tasks] == [500.0, None]
     assert np.array_equal(scenario.tasks[1].fiducials, wanted.tasks[1].fiducials)
     assert scenario.targets[0].name == "Cyst"
-    assert scenario.targets[0].position.tolist() == [10, 20, 30]
-    assert scenario.trajectory.entry.tolist() == [0, 0, 90]
+    assert scenario.targets[0].position_ras.tolist() == [10, 20, 30]
+    assert scenario.trajectory.entry_ras.tolist() == [0, 0, 90]
     assert scenario.provenance == wanted.provenance
     assert read_head_mesh(scenario.skull_mesh).vertices.max() == pytest.approx(80, abs=1e-3)
     assert not scenario.is_skull_approximate
@@ -89,7 +89,7 @@ def test_a_failure_leaves_no_folder_behind(tmp_path):
     [
         ("targets", [{"name": "x", "positionRas": [1, 2]}], r"targets\[0\].positionRas must be"),
         ("targets", {}, "targets must be a list"),
-        ("trajectory", [], "trajectory must be an object"),
+        ("trajectory", [], "trajectory must be a JSON object"),
         (
             "trajectory",
             {"name": "x", "entryRas": [1, 2, 3], "targetRas": [1, 2, 3]},
@@ -97,7 +97,7 @@ def test_a_failure_leaves_no_folder_behind(tmp_path):
         ),
         ("skull", {"file": "../x.ply", "kind": "bone"}, "skull.file must be the path"),
         ("skull", {"file": "skull.ply", "kind": "gum"}, "skull.kind must be one of bone"),
-        ("volume", "volume.nrrd", "volume must be an object"),
+        ("volume", "volume.nrrd", "volume must be a JSON object"),
         (
             "volume",
             {"file": "../volume.nrrd", "window": 100, "level": 50},
@@ -155,7 +155,13 @@ def test_the_default_setup_is_that_of_the_default_scenario(tmp_path):
 
 def test_a_setup_is_written_and_read_back(tmp_path):
     limits = Perturbation(1.0, 2.0, 3.0)
-    setup = SetUp((1.0, 2, 3), 4.5, limits, (5.0, 6), (700.0, 800, 9), 90.0, (10.0, -11))
+    setup = SetUp(
+        HeadPlace((1.0, 2, 3), 4.5),
+        limits,
+        OperatingTable((5.0, 6), (700.0, 800, 9)),
+        Stand(90.0),
+        (10.0, -11),
+    )
     write_setup(tmp_path / "setup.json", setup)
     assert read_setup(tmp_path / "setup.json") == setup
 
@@ -168,22 +174,22 @@ def test_a_title_becomes_a_name_or_is_refused():
 
 
 def test_moving_the_robot_base_moves_everything_else_the_opposite_way():
-    usual, moved = SetUp(), SetUp(robot_base=(100.0, -50.0))
+    usual, moved = SetUp(), SetUp(robot_base_mm=(100.0, -50.0))
     shift = [-100, 50, 0]
     middle = np.zeros(3)
     assert np.allclose(
         moved.head_to_world(middle)[:3, 3] - usual.head_to_world(middle)[:3, 3], shift
     )
     for name, camera in moved.cameras().items():
-        assert np.allclose(camera.position - usual.cameras()[name].position, shift)
-    away = moved.furniture().table_center - usual.furniture().table_center
+        assert np.allclose(camera.position_mm - usual.cameras()[name].position_mm, shift)
+    away = np.subtract(moved.furniture().table.center_mm, usual.furniture().table.center_mm)
     assert np.allclose(away, shift[:2])
 
 
 @pytest.mark.parametrize(
     ("content", "sentence"),
     [
-        ({"chair": {}}, "a set-up has no 'chair'"),
+        ({"chair": {}}, 'there is no "chair"; use head, perturbation'),
         ({"head": {"centerMm": [1, 2]}}, "head.centerMm must be a list of 3"),
         ({"head": {"yawDeg": 999}}, "head.yawDeg must be a number"),
         ({"perturbation": {"tiltDeg": 90}}, "perturbation.tiltDeg must be a number"),

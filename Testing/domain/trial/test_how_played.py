@@ -5,8 +5,7 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.files.json_fields import json_object
-from rastrainer.json_records import record_from_json
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.trial.how_played import HowPlayed, PlayRecording
 
 
@@ -86,6 +85,6 @@ def test_pauses_and_views_are_counted():
 
 def test_it_is_read_as_it_was_written_and_invalid_values_are_refused():
     found = played(session(speed=None), start(seed=1), sample(0, ""), sample(1, "alignment"))
-    assert record_from_json(HowPlayed, json_object(found)) == found
+    assert record_from_json(HowPlayed, record_to_json(found)) == found
     with pytest.raises(InputError, match="seedSource"):
-        record_from_json(HowPlayed, json_object(replace(found, seed_source="dice")))
+        record_from_json(HowPlayed, record_to_json(replace(found, seed_source="dice")))

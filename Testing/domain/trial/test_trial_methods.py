@@ -36,7 +36,7 @@ def traced(scenario):
     head, pose = read_head_mesh(scenario.head_mesh), scenario.perturbed_head_to_world(8)
     trace = np.concatenate([on_skin(head, corners, 2.0) for corners in OVER_THE_FACE])
     missed = np.random.default_rng(4).normal(0.0, SLIP_MM / np.sqrt(3), (3, 3))
-    places = np.array([landmark.position for landmark in LANDMARKS[:3]]) + missed
+    places = np.array([landmark.position_ras for landmark in LANDMARKS[:3]]) + missed
     touches = PointList(
         tuple(landmark.name for landmark in LANDMARKS[:3]), transforms.apply(pose, places)
     )

@@ -128,7 +128,7 @@ class Tutorial:
         said = "procedurePlanText"
         self._wait_until(lambda: "can be carried out" in host.text(said), "it is measured")
         line = load_scenario(asset_path("scenarios", "colin27")).procedure("biopsy").trajectories[0]
-        jumpTo(host.scene, line.target)
+        jumpTo(host.scene, line.target_ras)
         host.look_at(HEAD, FROM_THE_RIGHT, ELEVATION, DISTANCE_MM)
 
     def _reset_scene(self) -> None:

@@ -33,7 +33,7 @@ TASK_NAMES = ["trial-run", "task-1", "task-2", "task-3", "task-4", "task-5"]
 def computed():
     """The complexity of each task, computed again."""
     eye = transforms.apply(
-        transforms.inverse(SCENARIO.head_to_world), SCENARIO.cameras["close-up"].position
+        transforms.inverse(SCENARIO.head_to_world), SCENARIO.cameras["close-up"].position_mm
     )
     return [complexity(task.fiducials, MESH, GRAPH, eye) for task in SCENARIO.tasks]
 

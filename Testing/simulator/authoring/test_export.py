@@ -92,7 +92,7 @@ def test_face_and_names_are_kept_where_requested(folder, tmp_path, capsys):
     given = load_scenario(unpack(tmp_path / "out.zip", tmp_path / "library"))
     assert given.head_mesh.read_bytes() == (folder / "head.ply").read_bytes()
     assert given.skull_mesh is not None
-    assert given.volume.path.read_bytes() == (folder / "volume.nrrd").read_bytes()
+    assert given.volume.file.read_bytes() == (folder / "volume.nrrd").read_bytes()
     assert given.preview.read_bytes() == png()
     before = load_scenario(folder)
     assert (given.name, given.title) == (before.name, before.title)
@@ -353,6 +353,6 @@ def test_procedures_are_kept_with_the_face_but_their_sources_are_not(folder, tmp
     words = ["scenario", "pack", str(with_procedure(folder)), str(package), "--keep-face"]
     assert main(words) == 0
     (procedure,) = load_scenario(unpack(package, tmp_path / "library")).procedures
-    assert procedure.trajectories[0].target.tolist() == [0.0, 0.0, 20.0]
-    assert procedure.no_go[0].mesh.is_file()
+    assert procedure.trajectories[0].target_ras.tolist() == [0.0, 0.0, 20.0]
+    assert procedure.no_go[0].file.is_file()
     assert "Mustermann" not in procedure.source

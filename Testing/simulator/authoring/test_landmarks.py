@@ -51,7 +51,7 @@ def other_head(seed):
 def test_landmarks_are_proposed_where_another_head_has_them(seed):
     mesh, moved = colin27(), other_head(seed)
     head = HeadMesh(moved(mesh.vertices.astype(float)).astype(np.float32), mesh.triangles)
-    found = {each.name: each.position for each in landmarks_on(head)}
+    found = {each.name: each.position_ras for each in landmarks_on(head)}
     assert set(REFERENCE) <= set(found)
     true = moved(np.array([*REFERENCE.values()]))
     away = [
@@ -71,8 +71,8 @@ def test_only_landmarks_within_the_robots_reach_are_proposed_and_the_others_are_
     assert said.startswith("6 landmarks are proposed: look at each")
     assert "Right tragus is left out: the robot does not reach it" in said
     assert "Tip of the nose is not on the head" in said
-    proposed = {each.name: each.position for each in read_placed_landmarks(path)}
-    own = {each.name: each.position for each in load_scenario(COLIN27).landmarks}
+    proposed = {each.name: each.position_ras for each in read_placed_landmarks(path)}
+    own = {each.name: each.position_ras for each in load_scenario(COLIN27).landmarks}
     assert proposed.keys() == {*own, "Left outer canthus"}
     for name, place in own.items():
         assert np.linalg.norm(proposed[name] - place) < 1.0
@@ -82,7 +82,7 @@ def test_only_landmarks_within_the_robots_reach_are_proposed_and_the_others_are_
 
 def placed_file(path, **moved):
     """Write the default head's landmarks, some somewhere else, and return the file."""
-    places = {each.name: each.position for each in load_scenario(COLIN27).landmarks}
+    places = {each.name: each.position_ras for each in load_scenario(COLIN27).landmarks}
     places |= {name.replace("_", " "): np.array(place) for name, place in moved.items()}
     write_markups(path, PointList(tuple(places), np.array([*places.values()])))
     return path
@@ -90,7 +90,7 @@ def placed_file(path, **moved):
 
 @pytest.mark.soak
 def test_a_copy_of_a_scenario_has_the_placed_landmarks_on_its_skin(tmp_path):
-    nasion = load_scenario(COLIN27).landmarks[0].position
+    nasion = load_scenario(COLIN27).landmarks[0].position_ras
     path = placed_file(tmp_path / "own.mrk.json", Nasion=nasion + np.array([0.0, 3.0, 0.0]))
     source = write_landmarked(tmp_path / "source")
     words = ["scenario", "plan", str(source), "--title", "Own landmarks"]

@@ -66,8 +66,8 @@ def test_the_default_head_has_one_feasible_procedure_of_each_kind(planning):
 
 def test_the_targets_of_the_default_head_are_the_cited_ones():
     left, right = SCENARIO.procedure("dbs").trajectories
-    assert right.target.tolist() == STN.tolist()
-    assert left.target.tolist() == (STN * [-1.0, 1.0, 1.0]).tolist()
+    assert right.target_ras.tolist() == STN.tolist()
+    assert left.target_ras.tolist() == (STN * [-1.0, 1.0, 1.0]).tolist()
     for procedure in SCENARIO.procedures:
         assert "schematic" in procedure.source
     for name in ("dbs", "seeg"):
@@ -162,7 +162,7 @@ def test_a_procedure_of_the_same_name_is_replaced(copy, own_procedure):
     changed = replace(read_procedure(own_procedure), name="dbs", title="Again")
     scenario, meshes = with_procedure(load_scenario(copy), changed)
     assert [(each.name, each.title) for each in scenario.procedures] == [("dbs", "Again")]
-    assert list(meshes) == [changed.no_go[0].mesh.name]
+    assert list(meshes) == [changed.no_go[0].file.name]
 
 
 def test_an_infeasible_procedure_is_not_saved(copy, own_procedure, tmp_path, capsys):

@@ -7,8 +7,8 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.head.trial_head import Perturbation
-from rastrainer.scenario.scenario import load_scenario
-from rastrainer.scenario.setup import SetUp
+from rastrainer.scenario.scenario import OperatingTable, load_scenario
+from rastrainer.scenario.setup import USUAL_TABLE, HeadPlace, SetUp
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
@@ -35,21 +35,25 @@ def scenario_of(setup):
 @pytest.mark.parametrize(
     ("setup", "sentence"),
     [
-        pytest.param(SetUp(table_center=(800.0, 0.0)), "robot's foot", id="robot beside it"),
-        pytest.param(SetUp(robot_base=(-300.0, 0.0)), "robot's foot", id="robot over its edge"),
-        pytest.param(SetUp(head_center=(480.0, 700.0, 220.0)), "head's stand", id="head beside it"),
         pytest.param(
-            SetUp(table_center=(0.0, 0.0), table_size=(1050.0, 1000.0, 40.0)),
+            SetUp(table=replace(USUAL_TABLE, center_mm=(800.0, 0.0))),
+            "robot's foot",
+            id="robot beside it",
+        ),
+        pytest.param(SetUp(robot_base_mm=(-300.0, 0.0)), "robot's foot", id="robot over its edge"),
+        pytest.param(SetUp(HeadPlace((480.0, 700.0, 220.0))), "head's stand", id="head beside it"),
+        pytest.param(
+            SetUp(table=OperatingTable((0.0, 0.0), (1050.0, 1000.0, 40.0))),
             "head's stand",
             id="a trial's head over its edge",
         ),
         pytest.param(
-            SetUp(head_center=(480.0, 0.0, 120.0), perturbation=Perturbation(60.0, 0.0, 0.0)),
+            SetUp(HeadPlace((480.0, 0.0, 120.0)), Perturbation(60.0, 0.0, 0.0)),
             "mm into the table",
             id="head moved into it",
         ),
         pytest.param(
-            SetUp(head_center=(480.0, 0.0, 110.0), perturbation=Perturbation(0.0, 0.0, 40.0)),
+            SetUp(HeadPlace((480.0, 0.0, 110.0)), Perturbation(0.0, 0.0, 40.0)),
             "mm into the table",
             id="head tilted into it",
         ),
@@ -68,7 +72,9 @@ def test_the_default_setup_and_the_bundled_scenario_stand_on_the_table():
 
 
 def test_the_plan_check_reports_the_table():
-    planning = PlanningSetup(scenario_of(SetUp(table_center=(800.0, 0.0))), egg())
+    planning = PlanningSetup(
+        scenario_of(SetUp(table=replace(USUAL_TABLE, center_mm=(800.0, 0.0)))), egg()
+    )
     assert "robot's foot" in check_plan(planning)[0]
 
 

@@ -11,7 +11,7 @@ from rastrainer.files.point_files import write_markups
 from rastrainer.files.point_list import PointList
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, read_head_mesh
 from rastrainer.scenario.points import LABELS, PlannedTarget, PlannedTrajectory, read_task
-from rastrainer.scenario.setup import SetUp
+from rastrainer.scenario.setup import HeadPlace, SetUp
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer_simulator.authoring.face_removal import face_vertices
 from rastrainer_simulator.authoring.make import ScenarioOptions, make_scenario, without_tasks
@@ -130,7 +130,7 @@ def test_a_first_target_too_deep_to_start_above_becomes_an_additional_one_and_th
 )
 def test_a_trajectory_enters_through_the_skin(planning, height, sentence):
     entry = np.array([10.0, 20.0, height])
-    trajectory = replace(WISHES.trajectory, entry=entry)
+    trajectory = replace(WISHES.trajectory, entry_ras=entry)
     wrong = check_plan(
         PlanningSetup(replace(planning.scenario, trajectory=trajectory), planning.mesh)
     )
@@ -138,7 +138,7 @@ def test_a_trajectory_enters_through_the_skin(planning, height, sentence):
 
 
 def test_a_head_that_stands_too_far_away_is_refused_and_leaves_nothing(tmp_path):
-    far = ScenarioOptions("Far", "made up", "none", setup=SetUp(head_center=(1500.0, 0.0, 220.0)))
+    far = ScenarioOptions("Far", "made up", "none", setup=SetUp(HeadPlace((1500.0, 0.0, 220.0))))
     with pytest.raises(InputError, match="robot") as caught:
         make_scenario(HeadDraft(egg(), "made up"), far, tmp_path / "far")
     assert "\n" not in str(caught.value)

@@ -31,7 +31,7 @@ def traced(landmarked):
     scenario = load_scenario(landmarked)
     head, pose = read_head_mesh(scenario.head_mesh), scenario.perturbed_head_to_world(3)
     trace = np.concatenate([on_skin(head, corners, 3.0) for corners in OVER_THE_FACE])
-    fixed = np.array([landmark.position for landmark in LANDMARKS])
+    fixed = np.array([landmark.position_ras for landmark in LANDMARKS])
     missed = fixed + np.random.default_rng(2).normal(0.0, 1.5, fixed.shape)
     moving = transforms.apply(pose, missed)
     return moving, fixed, transforms.apply(pose, trace), pose

@@ -21,7 +21,7 @@ def test_omitted_options_have_their_defaults(tmp_path):
     wishes = wished("-o", str(tmp_path / "my-head"))
     assert (wishes.title, wishes.source, wishes.seed) == ("my-head", "the volume", 1)
     assert (wishes.targets, wishes.trajectory, wishes.task_files) == ((), None, ())
-    assert wishes.setup.head_center == (480.0, 0.0, 220.0)
+    assert wishes.setup.head.center_mm == (480.0, 0.0, 220.0)
     assert "its license is unknown" in wishes.license
 
 
@@ -37,11 +37,11 @@ def test_every_given_option_is_used(tmp_path):
     )
     assert (wishes.title, wishes.source, wishes.license) == ("Ms X", "clinic", "CC0")
     assert [target.name for target in wishes.targets] == ["Tumor", "Cyst"]
-    assert np.array_equal(wishes.targets[0].position, [1.0, -2.0, 3.5])
+    assert np.array_equal(wishes.targets[0].position_ras, [1.0, -2.0, 3.5])
     assert wishes.trajectory.name == "Biopsy"
-    assert np.array_equal(wishes.trajectory.entry, [0.0, 0.0, 90.0])
-    assert np.array_equal(wishes.trajectory.target, [1.0, 2.0, 3.0])
-    assert wishes.setup.head_yaw_deg == 20.0
+    assert np.array_equal(wishes.trajectory.entry_ras, [0.0, 0.0, 90.0])
+    assert np.array_equal(wishes.trajectory.target_ras, [1.0, 2.0, 3.0])
+    assert wishes.setup.head.yaw_deg == 20.0
     assert wishes.setup.perturbation == Perturbation(15.0, 8.0, 1.0)
     assert [path.name for path in wishes.task_files] == ["a.mrk.json", "b.mrk.json"]
     assert wishes.seed == 7
@@ -62,7 +62,7 @@ def test_every_given_option_is_used(tmp_path):
         (["--trajectory", "B", "0", "0", "1e9", "1", "2", "3"], "--trajectory must be within"),
         (["--seed", "-1"], "--seed must be from 0"),
         (["--setup", "{}/none.json"], "none.json"),
-        (["--setup", "{}/bad.json"], "a set-up has no 'haed'"),
+        (["--setup", "{}/bad.json"], 'there is no "haed"; use head'),
         (["--setup", "{}/wrong.json"], "yawDeg"),
     ],
 )
@@ -94,9 +94,9 @@ def test_a_copy_with_a_trajectory_keeps_head_tasks_target_and_provenance(tmp_pat
     assert copied(tmp_path / "copy", *words) == 0
     before, copy = load_scenario(COLIN27), load_scenario(tmp_path / "copy")
     assert (copy.name, copy.title) == ("with-a-biopsy", "With a biopsy")
-    assert (copy.trajectory.name, copy.trajectory.entry.tolist()) == ("Biopsy", [0, -20, 100])
+    assert (copy.trajectory.name, copy.trajectory.entry_ras.tolist()) == ("Biopsy", [0, -20, 100])
     assert copy.head_mesh.read_bytes() == before.head_mesh.read_bytes()
-    assert copy.volume.path.read_bytes() == before.volume.path.read_bytes()
+    assert copy.volume.file.read_bytes() == before.volume.file.read_bytes()
     assert (copy.volume.window, copy.volume.level) == (before.volume.window, before.volume.level)
     assert copy.target_position.tolist() == before.target_position.tolist()
     assert copy.provenance == before.provenance

@@ -139,7 +139,7 @@ def test_the_robot_aligns_the_guide_with_the_plan_as_registered(surgeon, shift_m
     assert MM_PER_M * shown.stand_off == pytest.approx(20.0, abs=0.05)
     # The error of the registration goes into the patient.
     axis = surgeon.state.guide_axis
-    planned = surgeon.simulation.setup.scenario.procedure("dbs").trajectories[0].entry
+    planned = surgeon.simulation.setup.scenario.procedure("dbs").trajectories[0].entry_ras
     true_entry = surgeon.simulation.truth.in_world(planned) / MM_PER_M
     to_entry = true_entry - axis.tip
     aside = to_entry - np.dot(to_entry, axis.direction) * np.array(axis.direction)

@@ -93,6 +93,6 @@ def test_a_simulation_starts_without_the_volume_and_the_check_names_it(tmp_path,
     shutil.copytree(asset_path("scenarios", "colin27"), folder)
     broken(folder / "volume.nrrd")
     simulation = Simulation(load_setup(folder), seed=1)
-    assert simulation.setup.scenario.volume.path == (folder / "volume.nrrd").resolve()
+    assert simulation.setup.scenario.volume.file == (folder / "volume.nrrd").resolve()
     assert main(["scenario", "check", str(folder)]) == 2
     assert "volume.nrrd" in capsys.readouterr().err

@@ -167,7 +167,7 @@ def test_the_tip_goes_where_the_stick_points_and_no_joint_is_ever_too_fast(trial
 
 def axes_of_the_camera(scenario):
     view = scenario.cameras["close-up"]
-    return camera_axes(tuple(view.focal_point - view.position), tuple(view.view_up))
+    return camera_axes(tuple(view.focal_point_mm - view.position_mm), tuple(view.view_up))
 
 
 def test_the_tip_moves_right_when_the_stick_is_pushed_right(trial, scenario):

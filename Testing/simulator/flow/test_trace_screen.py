@@ -217,7 +217,9 @@ def drawn(scenario, where):
     mesh, random = traces.colin27(), np.random.default_rng(5)
     places = traces.places(mesh, where)
     trace = traces.traced(mesh, places, random, scenario.head_to_world, 0.1, 60) / 1000.0
-    touched = [transforms.apply(scenario.head_to_world, each.position) for each in LANDMARKS[:3]]
+    touched = [
+        transforms.apply(scenario.head_to_world, each.position_ras) for each in LANDMARKS[:3]
+    ]
     return TrainingState(
         phase=Phase.COMPLETE,
         task="task-1",

@@ -105,8 +105,8 @@ def test_the_tools_origin_is_its_tip(glb):
 
 def test_the_table_top_is_the_plane_on_which_the_robot_stands(glb, scenario):
     center, size = (
-        scenario.furniture.table_center / MM_PER_M,
-        scenario.furniture.table_size / MM_PER_M,
+        np.array(scenario.furniture.table.center_mm) / MM_PER_M,
+        np.array(scenario.furniture.table.size_mm) / MM_PER_M,
     )
     table = glb.vertices("table")
     assert table[:, :2].min(axis=0) == pytest.approx(center - size[:2] / 2, abs=1e-6)
@@ -201,7 +201,7 @@ def test_the_tools_of_a_procedure_lie_on_the_axis_and_end_or_begin_at_the_tip(gl
 
 
 def test_the_no_go_structures_are_placed_as_planned_and_transparent(glb, scenario):
-    paths = {each.mesh for procedure in scenario.procedures for each in procedure.no_go}
+    paths = {each.file for procedure in scenario.procedures for each in procedure.no_go}
     assert set(glb.children("plan")) == {f"no_go_{path.stem}" for path in paths}
     for path in paths:
         vertices = glb.vertices(f"no_go_{path.stem}")

@@ -147,8 +147,8 @@ def test_the_plan_is_shown_where_the_registration_places_it(scenario):
     for line, planned in zip(trial.procedure.trajectories, PROCEDURE.trajectories, strict=True):
         # A registration that maps everything by the shift too far shows the plan so much short.
         assert line.line.name == planned.name
-        assert line.line.entry == pytest.approx(trial.place(planned.entry - shift), abs=1e-12)
-        assert line.line.target == pytest.approx(trial.place(planned.target - shift), abs=1e-12)
+        assert line.line.entry == pytest.approx(trial.place(planned.entry_ras - shift), abs=1e-12)
+        assert line.line.target == pytest.approx(trial.place(planned.target_ras - shift), abs=1e-12)
 
 
 @pytest.mark.parametrize("shift_mm", [0.0, 4.0])

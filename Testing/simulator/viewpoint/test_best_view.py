@@ -122,7 +122,7 @@ def test_the_default_camera_alone_leaves_many_touches_hidden(setup):
         normals = outward_normals(mesh, task.fiducials)
         for point, normal in zip(task.fiducials, normals, strict=True):
             eyes = [
-                seen_in_ras(scenario.head_to_world, camera.position / MM_PER_M)
+                seen_in_ras(scenario.head_to_world, camera.position_mm / MM_PER_M)
                 for camera in scenario.cameras.values()
             ]
             hidden += all(hides(mesh, eye, point + 2.0 * normal, 0.0) for eye in eyes)

@@ -23,7 +23,7 @@ COVERED_MM = ((-88.0, 88.0), (-123.0, 89.0), (-69.0, 107.0))
 @pytest.fixture(scope="module")
 def volume():
     """The volume as Slicer's own reader has it."""
-    return readVolume(SCENARIO.volume.path)
+    return readVolume(SCENARIO.volume.file)
 
 
 @pytest.fixture(scope="module")
@@ -79,13 +79,13 @@ def test_across_the_heads_surface_the_mri_goes_from_dark_to_bright(volume, skin)
 def test_the_wheel_includes_the_default_volume(built_wheel):
     with zipfile.ZipFile(built_wheel) as wheel:
         packed = wheel.read("rastrainer_simulator/assets/scenarios/colin27/volume.nrrd")
-    assert packed == SCENARIO.volume.path.read_bytes()
+    assert packed == SCENARIO.volume.file.read_bytes()
 
 
 def test_the_default_volume_is_small_with_1_mm_voxels_and_a_window_from_air_to_bright_tissue(
     volume,
 ):
-    assert SCENARIO.volume.path.stat().st_size < 6_000_000
+    assert SCENARIO.volume.file.stat().st_size < 6_000_000
     assert np.array_equal(volume.ijkToRas[:3, :3], np.eye(3))
     white = SCENARIO.volume.level + SCENARIO.volume.window / 2
     assert SCENARIO.volume.level == SCENARIO.volume.window / 2

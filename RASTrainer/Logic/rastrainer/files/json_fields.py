@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import fields, is_dataclass
-from enum import Enum
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar
 
 import numpy as np
 
 from rastrainer import json_checks
 from rastrainer.errors import InputError
-from rastrainer.files.reading import printable_name, read_json
+from rastrainer.files.reading import read_json
 
 MAX_BYTES = 2**20
 T = TypeVar("T")
@@ -150,54 +148,3 @@ def fields_of(value: Any, what: str) -> Fields:
     if not isinstance(value, dict):
         raise InputError(f"A {what} must be one JSON object.")
     return Fields(value, Path(what))
-
-
-def known_keys(value: Any, keys: Mapping[str, json_checks.Argument], what: str) -> dict[str, Any]:
-    """Return an object's values as `json_checks.checked_keys` does, where it has no other keys.
-
-    One that is misspelled must not be silently without effect.
-    """
-    checked = json_checks.checked_keys(value, keys, what)
-    unknown = sorted(set(value) - set(keys))
-    if unknown:
-        raise InputError(
-            f"{what}: there is no {printable_name(unknown[0])}; use {', '.join(keys)}."
-        )
-    return checked
-
-
-def json_object(record: Any) -> dict[str, Any]:
-    return {_camel_case(each.name): _plain(getattr(record, each.name)) for each in fields(record)}
-
-
-def from_json_object(
-    kind: type[T], value: object, checks: Mapping[str, json_checks.Argument], what: str
-) -> T:
-    """Return the dataclass that a decoded JSON object holds; unknown keys are ignored.
-
-    Args:
-        kind: the dataclass.
-        value: the object, as of `json_object`.
-        checks: how each key is checked.
-        what: begins the sentence of an error.
-    """
-    names = {_camel_case(each.name): each.name for each in fields(cast("Any", kind))}
-    checked = json_checks.checked_keys(value, {key: checks[key] for key in names}, what)
-    return kind(**{names[key]: item for key, item in checked.items()})
-
-
-def _camel_case(name: str) -> str:
-    first, *others = name.split("_")
-    return first + "".join(word.capitalize() for word in others)
-
-
-def _plain(value: Any) -> Any:
-    if hasattr(value, "to_json"):
-        return value.to_json()
-    if is_dataclass(value):
-        return json_object(value)
-    if isinstance(value, Enum):
-        return value.value
-    if isinstance(value, Mapping):
-        return dict(value)
-    return [_plain(item) for item in value] if isinstance(value, (tuple, list)) else value

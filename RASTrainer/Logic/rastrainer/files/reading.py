@@ -5,11 +5,16 @@ from __future__ import annotations
 import os
 import re
 import stat
-from typing import Any
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
 from xml.parsers import expat
 
 from rastrainer.errors import InputError
-from rastrainer.json_checks import decode_finite_json
+from rastrainer.json_checks import decode_finite_json, text
+from rastrainer.json_records import record_from_json
+
+T = TypeVar("T")
 
 
 def read_bytes(path: str | os.PathLike[str], limit_bytes: int) -> bytes:
@@ -43,21 +48,60 @@ def read_text(path: str | os.PathLike[str], limit_bytes: int) -> str:
 def decode_text(content: bytes, what: str) -> str:
     """Return UTF-8 text without its byte order mark; `what` starts the error message."""
     try:
-        text = content.decode("utf-8-sig")
+        decoded = content.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise InputError(f"{what} is not UTF-8 text; save it as UTF-8.") from None
-    if "\0" in text:
+    if "\0" in decoded:
         raise InputError(f"{what} is not a text file in UTF-8: it has bytes that are zero.")
-    return text
+    return decoded
 
 
 def read_json(path: str | os.PathLike[str], limit_bytes: int) -> Any:
     """Return the decoded JSON of a file; its numbers are finite."""
-    text = read_text(path, limit_bytes)
+    content = read_text(path, limit_bytes)
     try:
-        return decode_finite_json(text)
+        return decode_finite_json(content)
     except ValueError:
         raise InputError(f"The file {path} is not JSON with finite numbers.") from None
+
+
+MAX_RECORD_BYTES = 2**20
+
+
+def read_record(kind: type[T], path: Path, only_known: bool = False) -> T:
+    """Return the record of a dataclass `kind` in a JSON file; errors begin with the file's path."""
+    return record_from_json(kind, read_json(path, MAX_RECORD_BYTES), str(path), only_known)
+
+
+def format_version(version: int) -> Callable[[Any], int]:
+    """Accept the version of a file's format that is read."""
+
+    def check(value: Any) -> int:
+        if isinstance(value, bool) or value != version:
+            raise ValueError(f"{version}, which this version reads")
+        return version
+
+    return check
+
+
+_OUTSIDE = "the path of a file inside the scenario's folder"
+
+
+def relative_path(value: Any) -> Path:
+    """Accept the path of a file within the folder of the file that names it."""
+    path = Path(text(200)(value))
+    if "\\" in value or path.is_absolute() or ".." in path.parts or not path.name:
+        raise ValueError(_OUTSIDE)
+    return path
+
+
+def path_beside(file: Path, relative: Path, key: str) -> Path:
+    """Return the path that a file names by a key, symbolic links followed; it need not exist."""
+    folder = file.parent.resolve()
+    path = (folder / relative).resolve()
+    if not path.is_relative_to(folder):
+        raise InputError(f"{file}: {key} must be {_OUTSIDE}.")
+    return path
 
 
 def _check_kind(path: object, status: os.stat_result, limit_bytes: int) -> None:
@@ -100,9 +144,9 @@ def plain_xml(content: bytes, what: str) -> str:
     The declaration could name an encoding in which the rest reads differently. `what` starts the
     error message, such as "The URDF robot.urdf".
     """
-    text = decode_text(content, what)
-    declaration = _DECLARATION.match(text)
-    body = text[declaration.end() :] if declaration else text
+    decoded = decode_text(content, what)
+    declaration = _DECLARATION.match(decoded)
+    body = decoded[declaration.end() :] if declaration else decoded
     try:
         _Check(what).parse(body.encode())
     except expat.ExpatError as error:

@@ -12,7 +12,9 @@ import os
 import shutil
 import stat
 import uuid
-from pathlib import Path
+from collections.abc import Mapping
+from pathlib import Path, PurePath
+from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import failure_reason, printable_name
@@ -58,8 +60,21 @@ def write_bytes(path: str | os.PathLike[str], content: bytes, is_private: bool =
 
 
 def write_json(path: str | os.PathLike[str], value: object, is_private: bool = False) -> None:
-    text = json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    """Write JSON; paths are written with slashes."""
+    text = json.dumps(
+        value, indent=2, ensure_ascii=False, allow_nan=False, default=PurePath.as_posix
+    )
+    text += "\n"
     write_text(path, text, is_private)
+
+
+def rounded(value: Any, decimals: Mapping[str, int], key: str = "") -> Any:
+    """Return JSON with the numbers of some keys, and of lists there, rounded to `decimals`."""
+    if isinstance(value, dict):
+        return {name: rounded(item, decimals, name) for name, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [rounded(item, decimals, key) for item in value]
+    return round(float(value), decimals[key]) + 0.0 if key in decimals else value
 
 
 def make_folder(folder: Path, is_private: bool = False) -> None:

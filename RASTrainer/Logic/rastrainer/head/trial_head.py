@@ -34,13 +34,12 @@ class Perturbation:
         tilt_deg: about a horizontal axis of any direction.
     """
 
-    translation_mm: float
-    yaw_deg: float
-    tilt_deg: float
+    translation_mm: Annotated[float, number(0, 200, "mm")]
+    yaw_deg: Annotated[float, number(0, 180, "°")]
+    tilt_deg: Annotated[float, number(0, 45, "°")]
 
 
 MAX_PERTURBATION = Perturbation(200.0, 180.0, 45.0)
-"""Limits for scenarios and set-ups."""
 
 
 def perturbed_pose(

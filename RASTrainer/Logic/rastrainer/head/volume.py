@@ -12,17 +12,18 @@ import io
 import math
 import re
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.files.json_fields import Fields
-from rastrainer.files.reading import read_bytes
+from rastrainer.files.reading import path_beside, read_bytes, relative_path
 from rastrainer.files.writing import write_bytes
 from rastrainer.head.mesh import HeadMesh
+from rastrainer.json_checks import number
 
 MAX_GRAY_LEVEL = 32768.0
 """Of window and level: as far as the values of a volume go."""
@@ -36,16 +37,18 @@ MIN_COVERED_SHARE = 0.5
 
 @dataclass(frozen=True)
 class VolumeFile:
-    """A scenario's volume, not read yet.
+    """A scenario's volume, not read yet: an NRRD file.
 
-    Attributes:
-        path: of the NRRD file.
-        window, level: values displayed from black to white.
+    Values from `level` − `window` / 2 to `level` + `window` / 2 are shown from black to white.
     """
 
-    path: Path
-    window: float
-    level: float
+    file: Annotated[Path, relative_path]
+    window: Annotated[float, number(1, 2 * MAX_GRAY_LEVEL)]
+    level: Annotated[float, number(-MAX_GRAY_LEVEL, MAX_GRAY_LEVEL)]
+
+    def located(self, scenario_file: Path) -> VolumeFile:
+        """Return the volume with its whole path; `scenario_file` names it by `volume`."""
+        return replace(self, file=path_beside(scenario_file, self.file, "volume.file"))
 
 
 @dataclass(frozen=True)
@@ -64,20 +67,9 @@ class HeadVolume:
     level: float
 
 
-def read_volume_file(fields: Fields) -> VolumeFile | None:
-    """Return the field `volume`, or None."""
-    if "volume" not in fields.names():
-        return None
-    volume = fields.fields("volume")
-    window = volume.number("window", 1, 2 * MAX_GRAY_LEVEL)
-    return VolumeFile(
-        volume.file("file"), window, volume.number("level", -MAX_GRAY_LEVEL, MAX_GRAY_LEVEL)
-    )
-
-
 def read_head_volume(file: VolumeFile) -> HeadVolume:
     """Read the volume of a scenario."""
-    return HeadVolume(*read_nrrd(file.path), file.window, file.level)
+    return HeadVolume(*read_nrrd(file.file), file.window, file.level)
 
 
 def write_head_volume(path: Path, volume: HeadVolume) -> None:

@@ -159,4 +159,4 @@ class LandmarksPanel:
 
 def _row(landmark: Landmark) -> tuple[str, ...]:
     name = NAMES.get(landmark.name, landmark.name)
-    return (name, *(fixed(float(value), 1) for value in landmark.position))
+    return (name, *(fixed(float(value), 1) for value in landmark.position_ras))

@@ -12,8 +12,8 @@ from rastrainer.panels.application import downloadSample, fitThreeDViews
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import CancelableWork, setText, setUsable
 from rastrainer.protocol import WORLD_LIMIT_MM
-from rastrainer.scenario.scenario import STAND_DIAMETERS_MM, Scenario
-from rastrainer.scenario.setup import SetUp
+from rastrainer.scenario.scenario import STAND_DIAMETERS_MM, OperatingTable, Scenario, Stand
+from rastrainer.scenario.setup import HeadPlace, SetUp
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.scenario_maker import NewScenarioOptions
 from rastrainer.slicer.translation import _
@@ -23,8 +23,8 @@ _USUAL = SetUp()
 _MOVED = _USUAL.perturbation
 _PLACE, _EXTENT = (-WORLD_LIMIT_MM, WORLD_LIMIT_MM), (1.0, WORLD_LIMIT_MM)
 _ROWS = (
-    (_("Head center, mm:"), "head", _PLACE, _USUAL.head_center),
-    (_("Head rotation, °:"), "yaw", (-180.0, 180.0), (_USUAL.head_yaw_deg,)),
+    (_("Head center, mm:"), "head", _PLACE, _USUAL.head.center_mm),
+    (_("Head rotation, °:"), "yaw", (-180.0, 180.0), (_USUAL.head.yaw_deg,)),
     (
         _("Shift in a trial, ± mm:"),
         "shift",
@@ -33,10 +33,10 @@ _ROWS = (
     ),
     (_("Rotation in a trial, ± °:"), "turn", (0.0, MAX_PERTURBATION.yaw_deg), (_MOVED.yaw_deg,)),
     (_("Tilt in a trial, ± °:"), "tilt", (0.0, MAX_PERTURBATION.tilt_deg), (_MOVED.tilt_deg,)),
-    (_("Table center, mm:"), "table", _PLACE, _USUAL.table_center),
-    (_("Table size, mm:"), "size", _EXTENT, _USUAL.table_size),
-    (_("Stand diameter, mm:"), "stand", STAND_DIAMETERS_MM, (_USUAL.stand_diameter,)),
-    (_("Robot base, mm:"), "base", _PLACE, _USUAL.robot_base),
+    (_("Table center, mm:"), "table", _PLACE, _USUAL.table.center_mm),
+    (_("Table size, mm:"), "size", _EXTENT, _USUAL.table.size_mm),
+    (_("Stand diameter, mm:"), "stand", STAND_DIAMETERS_MM, (_USUAL.stand.diameter_mm,)),
+    (_("Robot base, mm:"), "base", _PLACE, _USUAL.robot_base_mm),
 )
 """Label, name, lowest and highest, usual values; places are in the table's frame."""
 
@@ -64,13 +64,11 @@ class SetUpForm:
         """Return the set-up that is chosen."""
         values = {name: tuple(box.value for box in boxes) for name, boxes in self._boxes.items()}
         return SetUp(
-            head_center=values["head"],
-            head_yaw_deg=values["yaw"][0],
+            head=HeadPlace(values["head"], *values["yaw"]),
             perturbation=Perturbation(*values["shift"], *values["turn"], *values["tilt"]),
-            table_center=values["table"],
-            table_size=values["size"],
-            stand_diameter=values["stand"][0],
-            robot_base=values["base"],
+            table=OperatingTable(values["table"], values["size"]),
+            stand=Stand(*values["stand"]),
+            robot_base_mm=values["base"],
         )
 
 

@@ -19,9 +19,10 @@ from rastrainer.panels.widgets import (
     setText,
     setUsable,
 )
+from rastrainer.procedure.checks import LineMeasures, MeasuredProcedure
 from rastrainer.procedure.plan import ProcedureKind
 from rastrainer.slicer.logic.module_session import ModuleSession
-from rastrainer.slicer.logic.procedure_plan_logic import CheckedLine, CheckedPlan, PlanDescription
+from rastrainer.slicer.logic.procedure_plan_logic import PlanDescription
 from rastrainer.slicer.scene.nodes import Role, findNode, worldPoints
 from rastrainer.slicer.scene.plan_points import LIST, startPlacing
 from rastrainer.slicer.scene.procedure_lines import (
@@ -58,7 +59,7 @@ class ProcedurePlanPanel:
         self._session = session
         self._logic = session.procedurePlan
         self._name = ""
-        self._checked: tuple[tuple, CheckedPlan] | None = None
+        self._checked: tuple[tuple, MeasuredProcedure] | None = None
         self._problem = ""
         self._removed: list[RemovedLine] = []
         self._work = CancelableWork(self._showProblem, self._showProgress, self.showState)
@@ -239,7 +240,7 @@ class ProcedurePlanPanel:
             chosenData(self._ui.scenarioComboBox),
         )
 
-    def _showLines(self, found: Sequence[CheckedLine]) -> None:
+    def _showLines(self, found: Sequence[LineMeasures]) -> None:
         lines, table = planLines(slicer.mrmlScene), self._ui.linesTable
         measured = {each.name: each for each in found}
         chosen = table.currentRow()
@@ -311,17 +312,18 @@ class ProcedurePlanPanel:
         self._problem = sentence
 
 
-def _row(line: Any, measured: CheckedLine | None) -> tuple[str, ...]:
+def _row(line: Any, measured: LineMeasures | None) -> tuple[str, ...]:
     length = lengthMm(line)
     first = (line.GetName(), "–" if length is None else fixed(length, 1))
     if measured is None:
         return (*first, "–", "–", "–", "–")
+    angle, nearest = measured.skull_angle_deg, measured.nearest_no_go
     return (
         *first,
-        "–" if measured.angleDeg is None else fixed(measured.angleDeg, 1),
-        _named(measured.noGoMm, measured.noGo),
-        _named(measured.otherMm, measured.other),
-        REACH[measured.isHeld],
+        "–" if angle is None else fixed(angle, 1),
+        _named(measured.no_go_mm.get(nearest), nearest),
+        _named(measured.nearest_line_mm, measured.nearest_line),
+        REACH[measured.is_held],
     )
 
 

@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
-from rastrainer.files.json_fields import json_object
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh
+from rastrainer.json_checks import number, text
 from rastrainer.procedure.geometry import (
     BoneAhead,
     axis_distance_mm,
@@ -28,6 +28,8 @@ from rastrainer.procedure.plan import Procedure, ProcedureMeshes, ProcedureTraje
 OUTSIDE_MM = 60.0
 """Before the entry: outside of the head, also where the entry is planned on the bone."""
 
+_DISTANCE = number(-1e4, 1e4, "mm")
+
 
 @dataclass(frozen=True)
 class LineMeasures:
@@ -41,22 +43,31 @@ class LineMeasures:
             overlaps the structure.
         nearest_line: name of the nearest other trajectory; empty where there is no other.
         nearest_line_mm: between the surfaces of both instruments; None where there is no other.
+        is_held: whether the robot can hold the guide on the line; None where that was not tried.
     """
 
-    name: str
-    length_mm: float
-    skull_angle_deg: float | None
-    no_go_mm: Mapping[str, float]
-    nearest_line: str
-    nearest_line_mm: float | None
+    name: Annotated[str, text(60)]
+    length_mm: Annotated[float, _DISTANCE]
+    skull_angle_deg: Annotated[float | None, number(0, 180)]
+    no_go_mm: Mapping[str, Annotated[float, _DISTANCE]]
+    nearest_line: Annotated[str, text(60, 0)]
+    nearest_line_mm: Annotated[float | None, _DISTANCE]
+    is_held: bool | None = None
 
     @property
     def nearest_no_go(self) -> str:
         """Name of the nearest no-go structure; empty where there is none."""
         return min(self.no_go_mm, key=self.no_go_mm.__getitem__, default="")
 
-    def to_json(self) -> dict[str, Any]:
-        return json_object(self)
+
+@dataclass(frozen=True)
+class MeasuredProcedure:
+    """A procedure as it would be on a head; `wrong` has a sentence for each error."""
+
+    procedure: Annotated[str, text(40)]
+    title: Annotated[str, text(80)]
+    lines: tuple[LineMeasures, ...]
+    wrong: tuple[Annotated[str, text(2000)], ...]
 
 
 def measure_lines(procedure: Procedure, meshes: ProcedureMeshes) -> list[LineMeasures]:
@@ -70,7 +81,7 @@ def planned_bone(trajectory: ProcedureTrajectory, skull: HeadMesh) -> BoneAhead 
     not go through bone.
     """
     direction = trajectory.direction
-    start = trajectory.entry - OUTSIDE_MM * direction
+    start = trajectory.entry_ras - OUTSIDE_MM * direction
     bone = bone_ahead(skull, start, direction, OUTSIDE_MM + trajectory.length_mm)
     if bone is None:
         return None
@@ -83,7 +94,7 @@ def planned_skull_angle_deg(trajectory: ProcedureTrajectory, skull: HeadMesh) ->
     bone = planned_bone(trajectory, skull)
     if bone is None:
         return None
-    point = trajectory.entry + bone.outer_mm * trajectory.direction
+    point = trajectory.entry_ras + bone.outer_mm * trajectory.direction
     return skull_angle_deg(skull, point, trajectory.direction)
 
 
@@ -96,7 +107,7 @@ def distances_to_no_go(
     """
     radius = trajectory.diameter_mm / 2
     return {
-        name: axis_distance_mm(mesh, trajectory.entry, trajectory.target) - radius
+        name: axis_distance_mm(mesh, trajectory.entry_ras, trajectory.target_ras) - radius
         for name, mesh in meshes.no_go.items()
     }
 
@@ -104,7 +115,7 @@ def distances_to_no_go(
 def line_distance_mm(one: ProcedureTrajectory, other: ProcedureTrajectory) -> float:
     """Return the distance between the surfaces of two instruments, mm; below 0 they overlap."""
     axes = segment_distances_mm(
-        one.entry, one.target, np.array([other.entry]), np.array([other.target])
+        one.entry_ras, one.target_ras, np.array([other.entry_ras]), np.array([other.target_ras])
     )
     return float(axes[0]) - (one.diameter_mm + other.diameter_mm) / 2
 
@@ -155,7 +166,7 @@ def check_procedure(procedure: Procedure, head: HeadMesh, meshes: ProcedureMeshe
         wrong += [f"{about} {what}" for what in _questionable(trajectory, meshes)]
     wrong += _too_near_each_other(procedure)
     for checkpoint in procedure.checkpoints:
-        away = nearest_on_mesh(head, checkpoint.position).distance
+        away = nearest_on_mesh(head, checkpoint.position_ras).distance
         if away > CHECKPOINT_OFF_SKIN_MM:
             wrong.append(
                 f"{procedure.title}: the checkpoint {checkpoint.name} is {away:.1f} mm off the "
@@ -184,7 +195,7 @@ def _about(procedure: Procedure, trajectory: ProcedureTrajectory) -> str:
 
 
 def _unusable(trajectory: ProcedureTrajectory, head: HeadMesh, skull: HeadMesh) -> str | None:
-    entry, target, direction = trajectory.entry, trajectory.target, trajectory.direction
+    entry, target, direction = trajectory.entry_ras, trajectory.target_ras, trajectory.direction
     if not is_inside(head, target):
         outside = nearest_on_mesh(head, target).distance
         return f"has its target {outside:.0f} mm outside of the head."

@@ -141,7 +141,7 @@ class TrajectoryErrors:
     @property
     def shown_target(self) -> np.ndarray:
         """(3,) float, RAS: the same of the planned target."""
-        return self.trajectory.target + self.target.by_registration
+        return self.trajectory.target_ras + self.target.by_registration
 
     @property
     def depth(self) -> tuple[float, float, float]:
@@ -318,15 +318,15 @@ def _errors(
     direction /= np.linalg.norm(direction)
     tip = start + done.instrument_depth_mm * direction
     shown_entry, shown_target = (
-        transforms.apply(shown, point) for point in (plan.entry, plan.target)
+        transforms.apply(shown, point) for point in (plan.entry_ras, plan.target_ras)
     )
     deepest = start + max(done.instrument_depth_mm, done.drill_depth_mm) * direction
     radius = done.diameter_mm / 2
     return TrajectoryErrors(
         trajectory=plan,
         instrument=done,
-        entry=SplitError(shown_entry - plan.entry, start - shown_entry).across(direction),
-        target=SplitError(shown_target - plan.target, tip - shown_target),
+        entry=SplitError(shown_entry - plan.entry_ras, start - shown_entry).across(direction),
+        target=SplitError(shown_target - plan.target_ras, tip - shown_target),
         shown_direction=shown[:3, :3] @ plan.direction,
         axis_start=start,
         axis_direction=direction,
@@ -339,7 +339,7 @@ def _errors(
 
 
 def _check_same(record: ProcedureRecord, procedure: Procedure) -> None:
-    planned = [(each.name, each.entry, each.target) for each in procedure.trajectories]
+    planned = [(each.name, each.entry_ras, each.target_ras) for each in procedure.trajectories]
     done = [(each.trajectory, each.entry_ras, each.target_ras) for each in record.instruments]
     is_same = len(planned) == len(done) and all(
         one[0] == other[0] and np.allclose(one[1:], other[1:], rtol=0.0, atol=SAME_MM)

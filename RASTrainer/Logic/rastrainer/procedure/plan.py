@@ -8,18 +8,29 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Annotated, Any
 
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.json_fields import Fields, read_fields
+from rastrainer.files.reading import path_beside, read_record, relative_path
+from rastrainer.files.writing import rounded
 from rastrainer.head.mesh import RAS_LIMIT_MM, HeadMesh, read_head_mesh
-from rastrainer.json_checks import IDENTIFIER_WORDS, is_identifier
+from rastrainer.json_checks import (
+    IDENTIFIER_WORDS,
+    SizeCheck,
+    identifier,
+    is_identifier,
+    list_of,
+    number,
+    point,
+    text,
+)
+from rastrainer.json_records import record_to_json
 
 MAX_PROCEDURES = 10
 MAX_TRAJECTORIES = 20
@@ -41,32 +52,57 @@ class ProcedureKind(str, Enum):
     SEEG = "seeg"
 
 
+def named_once(minimum: int, maximum: int) -> SizeCheck:
+    """Accept a list of objects, each with a name of its own."""
+    check_size = list_of(minimum, maximum, "objects")
+
+    def check(value: Any) -> Any:
+        items = check_size(value)
+        names = [str(item.get("name")) for item in items if isinstance(item, Mapping)]
+        if len(set(names)) != len(names):
+            raise ValueError("a list in which each name occurs once")
+        return items
+
+    return SizeCheck(check)
+
+
+def _no_go_path(value: Any) -> Path:
+    path = relative_path(value)
+    if path.parent.name != NO_GO_FOLDER or path.suffix != ".ply" or not is_identifier(path.stem):
+        raise ValueError(f"{NO_GO_FOLDER}/NAME.ply with a NAME of {IDENTIFIER_WORDS}")
+    return path
+
+
+_Name = Annotated[str, text(60)]
+_Point = Annotated[np.ndarray, point(RAS_LIMIT_MM)]
+
+
 @dataclass(frozen=True)
 class ProcedureTrajectory:
     """The planned straight path of one instrument.
 
     Attributes:
         name: for people and records; unique in its procedure.
-        entry: (3,) float, RAS mm, near the skin.
-        target: (3,) float, RAS mm, where the instrument's tip is to be.
+        entry_ras: (3,) float, mm, near the skin.
+        target_ras: (3,) float, mm, where the instrument's tip is to be.
         diameter_mm: of the instrument.
         safety_mm: least planned distance of the instrument's surface to a no-go structure.
     """
 
-    name: str
-    entry: np.ndarray
-    target: np.ndarray
-    diameter_mm: float
-    safety_mm: float
+    name: _Name
+    entry_ras: _Point
+    target_ras: _Point
+    diameter_mm: Annotated[float, number(*DIAMETERS_MM, "mm")]
+    safety_mm: Annotated[float, number(0, MAX_SAFETY_MM, "mm")]
 
     @property
     def length_mm(self) -> float:
-        return float(np.linalg.norm(self.target - self.entry))
+        return float(np.linalg.norm(self.target_ras - self.entry_ras))
 
     @property
     def direction(self) -> np.ndarray:
         """(3,) float, unit vector from entry to target, RAS."""
-        return (self.target - self.entry) / self.length_mm
+        return (self.target_ras - self.entry_ras) / self.length_mm
 
 
 @dataclass(frozen=True)
@@ -75,11 +111,11 @@ class NoGoStructure:
 
     Attributes:
         name: for people; unique in its procedure.
-        mesh: path of its closed surface, a mesh like the head's, RAS mm.
+        file: path of its closed surface, a mesh like the head's, RAS mm.
     """
 
-    name: str
-    mesh: Path
+    name: _Name
+    file: Annotated[Path, _no_go_path]
 
 
 @dataclass(frozen=True)
@@ -88,14 +124,11 @@ class Checkpoint:
 
     Attributes:
         name: for people and records; unique in its procedure.
-        position: (3,) float, RAS mm.
+        position_ras: (3,) float, mm.
     """
 
-    name: str
-    position: np.ndarray
-
-
-_Named = TypeVar("_Named", ProcedureTrajectory, NoGoStructure, Checkpoint)
+    name: _Name
+    position_ras: _Point
 
 
 @dataclass(frozen=True)
@@ -103,22 +136,22 @@ class Procedure:
     """A planned procedure.
 
     Attributes:
-        name: for commands and records: lower-case letters, digits and hyphens.
+        name: for commands and records.
         title: for people.
         kind: what is done.
         source: of the plan: where the coordinates come from.
-        trajectories: in the order to do; at least one.
+        trajectories: in the order to do.
         no_go: structures to keep away from.
         checkpoints: landmarks for verifying the registration.
     """
 
-    name: str
-    title: str
+    name: Annotated[str, identifier]
+    title: Annotated[str, text(80)]
     kind: ProcedureKind
-    source: str
-    trajectories: tuple[ProcedureTrajectory, ...]
-    no_go: tuple[NoGoStructure, ...] = ()
-    checkpoints: tuple[Checkpoint, ...] = ()
+    source: Annotated[str, text(4000)]
+    trajectories: Annotated[tuple[ProcedureTrajectory, ...], named_once(1, MAX_TRAJECTORIES)]
+    no_go: Annotated[tuple[NoGoStructure, ...], named_once(0, MAX_NO_GO)] = ()
+    checkpoints: Annotated[tuple[Checkpoint, ...], named_once(0, MAX_CHECKPOINTS)] = ()
 
     def trajectory(self, name: str) -> ProcedureTrajectory:
         """Return the trajectory of this name."""
@@ -143,26 +176,9 @@ class Procedure:
         content = procedure_json(self)
         del content["title"], content["source"]
         whole = hashlib.sha256(json.dumps(content, sort_keys=True).encode())
-        for path in (skull, *(structure.mesh for structure in self.no_go)):
+        for path in (skull, *(structure.file for structure in self.no_go)):
             whole.update(hashlib.sha256(path.read_bytes()).digest())
         return whole.hexdigest()
-
-
-def read_procedures(fields: Fields) -> tuple[Procedure, ...]:
-    """Return the optional field `procedures` of a scenario. Meshes are only named, not read."""
-    if "procedures" not in fields.names():
-        return ()
-    entries = fields.list_of_fields("procedures", 0, MAX_PROCEDURES)
-    procedures = tuple(_read_procedure(entry) for entry in entries)
-    _check_names(fields, "procedures", [procedure.name for procedure in procedures])
-    if procedures and "skull" not in fields.names():
-        raise fields.error(
-            "skull", "given, because the scenario has procedures, and drilling needs a skull"
-        )
-    files = {structure.mesh for procedure in procedures for structure in procedure.no_go}
-    if len(files) > MAX_NO_GO_FILES:
-        raise fields.error("procedures", f"with at most {MAX_NO_GO_FILES} files of no-go meshes")
-    return procedures
 
 
 def read_procedure(path: Path) -> Procedure:
@@ -170,95 +186,37 @@ def read_procedure(path: Path) -> Procedure:
 
     Meshes are only named, not read; they are in the folder `no-go` beside the file.
     """
-    return _read_procedure(read_fields(path))
+    return located(read_record(Procedure, path), path, "")
+
+
+def located(procedure: Procedure, file: Path, key: str) -> Procedure:
+    """Return a procedure of a JSON file with the paths of its meshes.
+
+    `key` begins the names of the file's fields in errors.
+    """
+    for index, each in enumerate(procedure.trajectories):
+        if each.length_mm < MIN_LENGTH_MM:
+            raise InputError(
+                f"{file}: {key}trajectories[{index}].entryRas must be at least {MIN_LENGTH_MM:g} "
+                "mm from targetRas."
+            )
+    no_go = tuple(
+        replace(each, file=path_beside(file, each.file, f"{key}noGo[{index}].file"))
+        for index, each in enumerate(procedure.no_go)
+    )
+    return replace(procedure, no_go=no_go)
+
+
+POINT_DECIMALS = {"entryRas": 4, "targetRas": 4, "positionRas": 4}
 
 
 def procedure_json(procedure: Procedure) -> dict[str, Any]:
-    """Return the JSON entry of a procedure, with its no-go meshes as in `no_go_file`."""
-    return {
-        "name": procedure.name,
-        "title": procedure.title,
-        "kind": procedure.kind.value,
-        "source": procedure.source,
-        "trajectories": [
-            {
-                "name": trajectory.name,
-                "entryRas": _listed(trajectory.entry),
-                "targetRas": _listed(trajectory.target),
-                "diameterMm": trajectory.diameter_mm,
-                "safetyMm": trajectory.safety_mm,
-            }
-            for trajectory in procedure.trajectories
-        ],
-        "noGo": [
-            {"name": structure.name, "file": no_go_file(structure)} for structure in procedure.no_go
-        ],
-        "checkpoints": [
-            {"name": checkpoint.name, "positionRas": _listed(checkpoint.position)}
-            for checkpoint in procedure.checkpoints
-        ],
-    }
-
-
-def no_go_file(structure: NoGoStructure) -> str:
-    """Return the path of a structure's mesh in a scenario's folder."""
-    return f"{NO_GO_FOLDER}/{structure.mesh.name}"
-
-
-def _read_procedure(fields: Fields) -> Procedure:
-    return Procedure(
-        name=fields.identifier("name"),
-        title=fields.text("title", 80),
-        kind=ProcedureKind(fields.one_of("kind", tuple(kind.value for kind in ProcedureKind))),
-        source=fields.text("source", 4000),
-        trajectories=_all(fields, "trajectories", (1, MAX_TRAJECTORIES), _read_trajectory),
-        no_go=_all(fields, "noGo", (0, MAX_NO_GO), _read_no_go),
-        checkpoints=_all(fields, "checkpoints", (0, MAX_CHECKPOINTS), _read_checkpoint),
-    )
-
-
-def _read_trajectory(fields: Fields) -> ProcedureTrajectory:
-    trajectory = ProcedureTrajectory(
-        name=fields.text("name", 60),
-        entry=fields.point("entryRas", RAS_LIMIT_MM),
-        target=fields.point("targetRas", RAS_LIMIT_MM),
-        diameter_mm=fields.number("diameterMm", *DIAMETERS_MM),
-        safety_mm=fields.number("safetyMm", 0.0, MAX_SAFETY_MM),
-    )
-    if trajectory.length_mm < MIN_LENGTH_MM:
-        raise fields.error("entryRas", f"at least {MIN_LENGTH_MM:g} mm from targetRas")
-    return trajectory
-
-
-def _read_no_go(fields: Fields) -> NoGoStructure:
-    path = fields.file("file")
-    if path.parent.name != NO_GO_FOLDER or path.suffix != ".ply" or not is_identifier(path.stem):
-        raise fields.error("file", f"{NO_GO_FOLDER}/NAME.ply with a NAME of {IDENTIFIER_WORDS}")
-    return NoGoStructure(fields.text("name", 60), path)
-
-
-def _read_checkpoint(fields: Fields) -> Checkpoint:
-    return Checkpoint(fields.text("name", 60), fields.point("positionRas", RAS_LIMIT_MM))
-
-
-def _all(
-    fields: Fields, name: str, counts: tuple[int, int], read: Callable[[Fields], _Named]
-) -> tuple[_Named, ...]:
-    """Return the parts of a procedure in one list, whose names must differ."""
-    if counts[0] == 0 and name not in fields.names():
-        return ()
-    parts = tuple(read(entry) for entry in fields.list_of_fields(name, *counts))
-    _check_names(fields, name, [part.name for part in parts])
-    return parts
-
-
-def _check_names(fields: Fields, name: str, names: list[str]) -> None:
-    if len(set(names)) != len(names):
-        raise fields.error(name, "a list in which each name occurs once")
-
-
-def _listed(point: np.ndarray) -> list[float]:
-    return [round(float(value), 4) + 0.0 for value in point]
+    """Return the JSON entry of a procedure, with its meshes in the folder `no-go` beside it."""
+    no_go = [
+        {"name": each.name, "file": f"{NO_GO_FOLDER}/{each.file.name}"} for each in procedure.no_go
+    ]
+    content = {**record_to_json(procedure, with_defaults=True), "noGo": no_go}
+    return rounded(content, POINT_DECIMALS)
 
 
 MAX_NO_GO_TRIANGLES = 200_000
@@ -287,7 +245,7 @@ def read_procedure_meshes(procedure: Procedure, skull: Path) -> ProcedureMeshes:
     mesh = read_head_mesh(skull)
     if not mesh.is_closed:
         raise InputError(f"The skull {skull} is not closed: it has a hole.")
-    no_go = {structure.name: read_no_go_mesh(structure.mesh) for structure in procedure.no_go}
+    no_go = {structure.name: read_no_go_mesh(structure.file) for structure in procedure.no_go}
     return ProcedureMeshes(mesh, no_go)
 
 
@@ -321,5 +279,5 @@ def check_no_go_size(triangles: int, name: str) -> None:
 
 def read_all_no_go(procedures: Iterable[Procedure]) -> dict[str, HeadMesh]:
     """Return the surfaces of all no-go structures of some procedures, by file name."""
-    paths = {structure.mesh for procedure in procedures for structure in procedure.no_go}
+    paths = {structure.file for procedure in procedures for structure in procedure.no_go}
     return {path.name: read_no_go_mesh(path) for path in sorted(paths)}

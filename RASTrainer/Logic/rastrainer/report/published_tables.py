@@ -209,13 +209,13 @@ def paper_notes(data: StudyData) -> str:
         if printed.quantity in ("pearson_r", "r_squared"):
             count = counted(len({trial.task for trial in trials}), "task mean")
         rows.append([printed.what, count, printed.printed, _ours(data, printed)])
-    claims = [[page.text(claim), page.text(words)] for claim, words in notes.claims]
+    claims = [[page.text(each.claim), page.text(each.numbers)] for each in notes.claims]
     return page.section(
         "The paper's numbers, checked",
         page.paragraph(f"Source: {notes.source}."),
         page.table([["what", "n", "printed", "from the trials"]], rows),
         page.heading("What does not fit"),
-        page.bullets(notes.inconsistencies),
+        page.bullets([each.sentence for each in notes.inconsistencies]),
         page.heading("The claims"),
         page.table(
             [[page.text("The paper says"), page.text("The trials say")]],

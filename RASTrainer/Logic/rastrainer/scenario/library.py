@@ -201,7 +201,7 @@ def checked_scenario(folder: Path) -> Scenario:
             raise InputError(f"The head mesh {path} is not closed: it has a hole.")
     if scenario.volume is not None:
         volume, head = read_head_volume(scenario.volume), read_head_mesh(scenario.head_mesh)
-        check_place(volume, head, scenario.volume.path)
+        check_place(volume, head, scenario.volume.file)
     require_usable_lines(scenario)
     return scenario
 

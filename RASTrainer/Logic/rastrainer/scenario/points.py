@@ -11,13 +11,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.json_fields import Fields
 from rastrainer.files.point_files import read_markups
 from rastrainer.head.mesh import RAS_LIMIT_MM, HeadMesh, nearest_on_mesh
+from rastrainer.json_checks import point, text
 from rastrainer.protocol import COARSE_LANDMARKS, FIDUCIAL_COUNT
 
 LABELS = tuple(str(number) for number in range(1, FIDUCIAL_COUNT + 1))
@@ -86,87 +87,34 @@ def touch_order(labels: Sequence[str]) -> list[int]:
     return sorted(range(FIDUCIAL_COUNT), key=numbers.__getitem__)
 
 
-MAX_TARGETS = 20
+MAX_TARGETS, MAX_LANDMARKS = 20, 15
 MIN_TRAJECTORY_MM = 1.0
+_Point = Annotated[np.ndarray, point(RAS_LIMIT_MM)]
 
 
 @dataclass(frozen=True)
 class PlannedTarget:
-    """A target point, such as a tumor's center.
+    """A target point, such as a tumor's center; `position_ras` (3,) float, mm."""
 
-    Attributes:
-        name: for people.
-        position: (3,) float, RAS mm.
-    """
-
-    name: str
-    position: np.ndarray
+    name: Annotated[str, text(60)]
+    position_ras: _Point
 
 
 @dataclass(frozen=True)
 class PlannedTrajectory:
-    """A straight path into the head.
+    """A straight path into the head; `entry_ras` and `target_ras` (3,) float, mm."""
 
-    Attributes:
-        name: for people.
-        entry: (3,) float, RAS mm.
-        target: (3,) float, RAS mm.
-    """
-
-    name: str
-    entry: np.ndarray
-    target: np.ndarray
-
-
-def read_targets(fields: Fields) -> tuple[PlannedTarget, ...]:
-    """Return the optional field `targets`."""
-    if "targets" not in fields.names():
-        return ()
-    entries = fields.list_of_fields("targets", 0, MAX_TARGETS)
-    return tuple(
-        PlannedTarget(entry.text("name", 60), entry.point("positionRas", RAS_LIMIT_MM))
-        for entry in entries
-    )
-
-
-def read_trajectory(fields: Fields) -> PlannedTrajectory | None:
-    """Return the optional field `trajectory`."""
-    if "trajectory" not in fields.names():
-        return None
-    own = fields.fields("trajectory")
-    entry, target = (own.point(end, RAS_LIMIT_MM) for end in ("entryRas", "targetRas"))
-    if np.linalg.norm(target - entry) < MIN_TRAJECTORY_MM:
-        raise own.error("entryRas", f"at least {MIN_TRAJECTORY_MM:g} mm from targetRas")
-    return PlannedTrajectory(own.text("name", 60), entry, target)
-
-
-MAX_LANDMARKS = 15
+    name: Annotated[str, text(60)]
+    entry_ras: _Point
+    target_ras: _Point
 
 
 @dataclass(frozen=True)
 class Landmark:
-    """A landmark.
+    """A landmark, asked for by its name, such as "Nasion"; `position_ras` (3,) float, mm."""
 
-    Attributes:
-        name: such as "Nasion", by which it is asked for.
-        position: (3,) float, RAS mm.
-    """
-
-    name: str
-    position: np.ndarray
-
-
-def read_landmarks(fields: Fields) -> tuple[Landmark, ...]:
-    """Return the optional field `landmarks` of a scenario, in the order of touching."""
-    if "landmarks" not in fields.names():
-        return ()
-    landmarks: dict[str, Landmark] = {}
-    for entry in fields.list_of_fields("landmarks", 0, MAX_LANDMARKS):
-        name = entry.text("name", 40)
-        if name in landmarks:
-            raise entry.error("name", "another name than that of each landmark before")
-        landmarks[name] = Landmark(name, entry.point("positionRas", RAS_LIMIT_MM))
-    return tuple(landmarks.values())
+    name: Annotated[str, text(40)]
+    position_ras: _Point
 
 
 NASION, NOSE_TIP = "Nasion", "Tip of the nose"
@@ -196,9 +144,9 @@ def on_skin(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> tuple[Landmark, ..
     """Return landmarks with those near the skin moved onto it; others stay where they are."""
     moved = []
     for landmark in landmarks:
-        nearest = nearest_on_mesh(mesh, landmark.position)
+        nearest = nearest_on_mesh(mesh, landmark.position_ras)
         is_near = nearest.distance <= SNAP_MM
-        place = nearest.position.round(2) if is_near else landmark.position
+        place = nearest.position.round(2) if is_near else landmark.position_ras
         moved.append(Landmark(landmark.name, place))
     return tuple(moved)
 
@@ -232,7 +180,7 @@ def spread_first(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
 
 
 def _area(three: Sequence[Landmark]) -> float:
-    a, b, c = (landmark.position for landmark in three)
+    a, b, c = (landmark.position_ras for landmark in three)
     return float(np.linalg.norm(np.cross(b - a, c - a)))
 
 
@@ -245,7 +193,7 @@ def _named_twice(landmarks: Sequence[Landmark]) -> list[str]:
 def _off_skin(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> list[str]:
     wrong = []
     for landmark in landmarks:
-        away = nearest_on_mesh(mesh, landmark.position).distance
+        away = nearest_on_mesh(mesh, landmark.position_ras).distance
         if away > SNAP_MM:
             wrong.append(
                 f"{landmark.name} is {away:.0f} mm off the skin; place it within {SNAP_MM:g} mm."
@@ -255,7 +203,7 @@ def _off_skin(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> list[str]:
 
 def _on_other_side(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> list[str]:
     """Return the landmarks on the opposite side to the one they are named for; +R is right."""
-    places = {landmark.name: landmark.position for landmark in landmarks}
+    places = {landmark.name: landmark.position_ras for landmark in landmarks}
     middle = float((mesh.vertices[:, 0].max() + mesh.vertices[:, 0].min()) / 2.0)
     swapped, wrong = [], []
     for name, place in places.items():
@@ -280,7 +228,7 @@ _OTHER = {"right": "left", "left": "right"}
 def _close(landmarks: Sequence[Landmark]) -> list[str]:
     wrong = []
     for one, other in combinations(landmarks, 2):
-        apart = float(np.linalg.norm(one.position - other.position))
+        apart = float(np.linalg.norm(one.position_ras - other.position_ras))
         if apart < APART_MM and one.name != other.name:
             wrong.append(
                 f"{one.name} and {other.name} are {apart:.1f} mm apart; landmarks must be "
@@ -290,7 +238,7 @@ def _close(landmarks: Sequence[Landmark]) -> list[str]:
 
 
 def _in_line(three: Sequence[Landmark]) -> list[str]:
-    places = np.array([landmark.position for landmark in three], dtype=float)
+    places = np.array([landmark.position_ras for landmark in three], dtype=float)
     spread = np.linalg.svd(places - places.mean(axis=0), compute_uv=False)[1]
     if spread >= LEAST_SPREAD_MM:
         return []

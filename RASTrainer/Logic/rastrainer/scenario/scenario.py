@@ -11,40 +11,40 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from enum import Enum
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.json_fields import Fields, read_fields
-from rastrainer.head.mesh import RAS_LIMIT_MM
-from rastrainer.head.trial_head import (
-    MAX_PERTURBATION,
-    UNMOVED,
-    Perturbation,
-    SkinShift,
-    perturbed_pose,
-    read_skin,
+from rastrainer.files.reading import format_version, path_beside, read_record, relative_path
+from rastrainer.head.trial_head import UNMOVED, Perturbation, SkinShift, perturbed_pose
+from rastrainer.head.volume import VolumeFile
+from rastrainer.json_checks import identifier, list_of, number, numbers, point, text
+from rastrainer.procedure.plan import (
+    MAX_NO_GO_FILES,
+    MAX_PROCEDURES,
+    Procedure,
+    located,
+    named_once,
 )
-from rastrainer.head.volume import VolumeFile, read_volume_file
-from rastrainer.json_checks import IDENTIFIER_WORDS, is_identifier
-from rastrainer.procedure.plan import Procedure, read_procedures
 from rastrainer.protocol import (
     COARSE_LANDMARKS,
     PLAYED_METHODS,
+    SKIN_KEYS,
     WORLD_LIMIT_MM,
     RegistrationMethod,
 )
 from rastrainer.scenario.points import (
+    MAX_LANDMARKS,
+    MAX_TARGETS,
+    MIN_TRAJECTORY_MM,
     Landmark,
     PlannedTarget,
     PlannedTrajectory,
     Task,
-    read_landmarks,
-    read_targets,
     read_task,
-    read_trajectory,
 )
 from rastrainer.transforms import is_rigid
 
@@ -54,39 +54,81 @@ FORMAT_VERSION = 1
 CAMERAS = ("close-up", "far")
 MAX_TASKS = 20
 STAND_DIAMETERS_MM = (1.0, 500.0)
-SKULL_KINDS = ("bone", "approximation")
 UNKNOWN_LICENSE = "Not to be shared: its license is unknown."
+
+
+class SkullKind(str, Enum):
+    """The origin of a skull; an approximation is estimated from the skin, as from MRI."""
+
+    BONE = "bone"
+    APPROXIMATION = "approximation"
+
+
+def _rigid(value: Any) -> np.ndarray:
+    matrix = np.reshape(numbers(16, WORLD_LIMIT_MM)(value), (4, 4))
+    if not is_rigid(matrix):
+        raise ValueError("a rigid transform, 4×4, row by row, in mm")
+    matrix.setflags(write=False)
+    return matrix
+
+
+def _unit_vector(value: Any) -> np.ndarray:
+    vector = np.array(numbers(3, WORLD_LIMIT_MM)(value))
+    vector /= np.linalg.norm(vector) or 1.0
+    vector.setflags(write=False)
+    return vector
+
+
+def _all_cameras(value: Any) -> Any:
+    if not isinstance(value, Mapping) or not value.keys() >= set(CAMERAS):
+        raise ValueError(f"an object of {' and '.join(CAMERAS)}")
+    return {name: value[name] for name in CAMERAS}
+
+
+def _amounts_of_skin(value: Any) -> Any:
+    """Accept a skin without a seed: each trial has its own."""
+    if not isinstance(value, Mapping) or not set(value) <= set(SKIN_KEYS):
+        raise ValueError(f"an object of {' and '.join(SKIN_KEYS)}")
+    return value
 
 
 @dataclass(frozen=True)
 class Camera:
-    """A view, in World, mm.
+    """A view, in World.
 
     Attributes:
-        position: (3,) float, the eye.
-        focal_point: (3,) float, the center of the picture.
+        position_mm: (3,) float, the eye.
+        focal_point_mm: (3,) float, the center of the picture.
         view_up: (3,) float, unit vector.
     """
 
-    position: np.ndarray
-    focal_point: np.ndarray
-    view_up: np.ndarray
-    view_angle_deg: float
+    position_mm: Annotated[np.ndarray, point(WORLD_LIMIT_MM)]
+    focal_point_mm: Annotated[np.ndarray, point(WORLD_LIMIT_MM)]
+    view_up: Annotated[np.ndarray, _unit_vector]
+    view_angle_deg: Annotated[float, number(1, 120)]
+
+
+@dataclass(frozen=True)
+class OperatingTable:
+    """The table, in World; its top is at z = 0. Its size is along x, along y, and its thickness."""
+
+    center_mm: Annotated[tuple[float, ...], numbers(2, WORLD_LIMIT_MM)]
+    size_mm: Annotated[tuple[float, ...], numbers(3, WORLD_LIMIT_MM)]
+
+
+@dataclass(frozen=True)
+class Stand:
+    """The round stand from the table to the head's base."""
+
+    diameter_mm: Annotated[float, number(*STAND_DIAMETERS_MM)]
 
 
 @dataclass(frozen=True)
 class Furniture:
-    """What the robot and the head stand on, in World, mm; the table's top is at z = 0.
+    """Table and stand, which carry the robot and the head."""
 
-    Attributes:
-        table_center: (2,) float, x and y.
-        table_size: (3,) float, along x, along y, thickness.
-        stand_diameter: of the round stand from the table to the head's base.
-    """
-
-    table_center: np.ndarray
-    table_size: np.ndarray
-    stand_diameter: float
+    table: OperatingTable
+    stand: Stand
 
 
 @dataclass(frozen=True)
@@ -99,9 +141,53 @@ class Provenance:
         license: with the notice that it requires.
     """
 
-    source: str
-    method: str
-    license: str
+    source: Annotated[str, text(4000)]
+    method: Annotated[str, text(4000)]
+    license: Annotated[str, text(4000)]
+
+
+@dataclass(frozen=True)
+class SkullFile:
+    """The mesh of a skull."""
+
+    file: Annotated[Path, relative_path]
+    kind: SkullKind
+
+
+@dataclass(frozen=True)
+class TaskFile:
+    """A task of a scenario's file; see `Task`. The file holds its fiducials."""
+
+    name: Annotated[str, identifier]
+    title: Annotated[str, text(60)]
+    file: Annotated[Path, relative_path]
+    complexity: Annotated[float, number(0, 1000)]
+    shortest_path_mm: Annotated[float | None, number(1, 1e5)] = None
+
+
+@dataclass(frozen=True)
+class ScenarioFile:
+    """The content of `scenario.json`; see `Scenario`. Paths are relative to its folder."""
+
+    format_version: Annotated[int, format_version(FORMAT_VERSION)]
+    name: Annotated[str, identifier]
+    title: Annotated[str, text(80)]
+    head: Annotated[Path, relative_path]
+    target: PlannedTarget
+    head_to_world: Annotated[np.ndarray, _rigid]
+    perturbation: Perturbation
+    tasks: Annotated[tuple[TaskFile, ...], named_once(1, MAX_TASKS)]
+    cameras: Annotated[Mapping[str, Camera], _all_cameras]
+    table: OperatingTable
+    stand: Stand
+    provenance: Provenance
+    skull: SkullFile | None = None
+    volume: VolumeFile | None = None
+    targets: Annotated[tuple[PlannedTarget, ...], list_of(0, MAX_TARGETS, "objects")] = ()
+    trajectory: PlannedTrajectory | None = None
+    landmarks: Annotated[tuple[Landmark, ...], named_once(0, MAX_LANDMARKS)] = ()
+    skin: Annotated[SkinShift, _amounts_of_skin] = UNMOVED
+    procedures: Annotated[tuple[Procedure, ...], named_once(0, MAX_PROCEDURES)] = ()
 
 
 @dataclass(frozen=True)
@@ -190,98 +276,65 @@ def load_scenario(folder: Path | str) -> Scenario:
 def _load(folder: Path) -> Scenario:
     if not folder.is_dir():
         raise InputError(f"The scenario's folder {folder} does not exist.")
-    fields = read_fields(folder / FILE_NAME)
-    fields.check_format(FORMAT_VERSION)
-    target = fields.fields("target")
+    path = folder / FILE_NAME
+    file = read_record(ScenarioFile, path)
+    _check_fields(file, path)
+    skull = file.skull
     return Scenario(
         folder=folder,
-        name=fields.identifier("name"),
-        title=fields.text("title", 80),
-        head_mesh=fields.file("head"),
-        target_name=target.text("name", 60),
-        target_position=target.point("positionRas", RAS_LIMIT_MM),
-        head_to_world=_rigid(fields, "headToWorld"),
-        perturbation=read_perturbation(fields),
-        tasks=_tasks(fields),
-        cameras={name: _camera(fields.fields("cameras").fields(name)) for name in CAMERAS},
-        furniture=_furniture(fields),
-        provenance=_provenance(fields.fields("provenance")),
-        **_skull(fields),
-        targets=read_targets(fields),
-        trajectory=read_trajectory(fields),
-        volume=read_volume_file(fields),
-        procedures=read_procedures(fields),
-        landmarks=read_landmarks(fields),
-        skin=read_skin(fields),
+        name=file.name,
+        title=file.title,
+        head_mesh=path_beside(path, file.head, "head"),
+        target_name=file.target.name,
+        target_position=file.target.position_ras,
+        head_to_world=file.head_to_world,
+        perturbation=file.perturbation,
+        tasks=tuple(
+            read_task(
+                path_beside(path, task.file, f"tasks[{index}].file"),
+                task.name,
+                task.title,
+                task.complexity,
+                task.shortest_path_mm,
+            )
+            for index, task in enumerate(file.tasks)
+        ),
+        cameras=file.cameras,
+        furniture=Furniture(file.table, file.stand),
+        provenance=file.provenance,
+        skull_mesh=path_beside(path, skull.file, "skull.file") if skull else None,
+        is_skull_approximate=skull is not None and skull.kind is SkullKind.APPROXIMATION,
+        targets=file.targets,
+        trajectory=file.trajectory,
+        volume=file.volume and file.volume.located(path),
+        procedures=tuple(
+            located(procedure, path, f"procedures[{index}].")
+            for index, procedure in enumerate(file.procedures)
+        ),
+        landmarks=file.landmarks,
+        skin=file.skin,
     )
 
 
-def _skull(fields: Fields) -> dict[str, Any]:
-    if "skull" not in fields.names():
-        return {}
-    skull = fields.fields("skull")
-    kind = skull.one_of("kind", SKULL_KINDS)
-    return {"skull_mesh": skull.file("file"), "is_skull_approximate": kind == SKULL_KINDS[1]}
-
-
-def _tasks(fields: Fields) -> tuple[Task, ...]:
-    tasks: dict[str, Task] = {}
-    for entry in fields.list_of_fields("tasks", 1, MAX_TASKS):
-        name = entry.text("name", 40)
-        if not is_identifier(name) or name in tasks:
-            raise entry.error("name", f"{IDENTIFIER_WORDS}, each name once")
-        title, complexity = entry.text("title", 60), entry.number("complexity", 0, 1000)
-        is_measured = "shortestPathMm" in entry.names()
-        shortest = entry.number("shortestPathMm", 1, 1e5) if is_measured else None
-        tasks[name] = read_task(entry.file("file"), name, title, complexity, shortest)
-    return tuple(tasks.values())
-
-
-def read_perturbation(fields: Fields) -> Perturbation:
-    """Return the field `perturbation`."""
-    limits = fields.fields("perturbation")
-    return Perturbation(
-        limits.number("translationMm", 0, MAX_PERTURBATION.translation_mm),
-        limits.number("yawDeg", 0, MAX_PERTURBATION.yaw_deg),
-        limits.number("tiltDeg", 0, MAX_PERTURBATION.tilt_deg),
-    )
-
-
-def _camera(fields: Fields) -> Camera:
-    position, focal_point, up = (
-        _array(fields.numbers(name, 3, WORLD_LIMIT_MM))
-        for name in ("positionMm", "focalPointMm", "viewUp")
-    )
-    if np.linalg.norm(np.cross(focal_point - position, up)) < 1e-6:
-        raise fields.error("viewUp", "a direction across the line of sight")
-    view_up = _array(up / np.linalg.norm(up))
-    return Camera(position, focal_point, view_up, fields.number("viewAngleDeg", 1, 120))
-
-
-def _furniture(fields: Fields) -> Furniture:
-    table, stand = fields.fields("table"), fields.fields("stand")
-    return Furniture(
-        _array(table.numbers("centerMm", 2, WORLD_LIMIT_MM)),
-        _array(table.numbers("sizeMm", 3, WORLD_LIMIT_MM)),
-        stand.number("diameterMm", *STAND_DIAMETERS_MM),
-    )
-
-
-def _provenance(fields: Fields) -> Provenance:
-    return Provenance(*(fields.text(name, 4000) for name in ("source", "method", "license")))
-
-
-def _rigid(fields: Fields, name: str) -> np.ndarray:
-    matrix = _array(fields.numbers(name, 16, WORLD_LIMIT_MM)).reshape(4, 4)
-    if not is_rigid(matrix):
-        raise fields.error(name, "a rigid transform, 4×4, row by row, in mm")
-    return matrix
-
-
-def _array(values: list[float] | np.ndarray) -> np.ndarray:
-    array = np.array(values, dtype=float)
-    array.setflags(write=False)
-    return array
+def _check_fields(file: ScenarioFile, path: Path) -> None:
+    """Raise `InputError` if fields do not fit each other."""
+    wrong = ""
+    for name, camera in file.cameras.items():
+        sight = camera.focal_point_mm - camera.position_mm
+        if np.linalg.norm(np.cross(sight, camera.view_up)) < 1e-6:
+            wrong = f"cameras.{name}.viewUp must be a direction across the line of sight"
+    line = file.trajectory
+    if line and np.linalg.norm(line.target_ras - line.entry_ras) < MIN_TRAJECTORY_MM:
+        wrong = f"trajectory.entryRas must be at least {MIN_TRAJECTORY_MM:g} mm from targetRas"
+    if file.procedures and file.skull is None:
+        wrong = (
+            "skull must be given, because the scenario has procedures, and drilling needs a skull"
+        )
+    no_go = {each.file for procedure in file.procedures for each in procedure.no_go}
+    if len(no_go) > MAX_NO_GO_FILES:
+        wrong = f"procedures must be with at most {MAX_NO_GO_FILES} files of no-go meshes"
+    if wrong:
+        raise InputError(f"{path}: {wrong}.")
 
 
 def method_of(name: str | None) -> RegistrationMethod:
@@ -313,7 +366,7 @@ def task_by_method(scenario: Scenario, task_name: str, method: RegistrationMetho
         )
     if method is RegistrationMethod.SURFACE:
         landmarks = landmarks[:COARSE_LANDMARKS]
-    places = np.array([landmark.position for landmark in landmarks], dtype=float)
+    places = np.array([landmark.position_ras for landmark in landmarks], dtype=float)
     places.setflags(write=False)
     labels = tuple(landmark.name for landmark in landmarks)
     # The shortest path is that through the fiducials.

@@ -12,25 +12,36 @@ import uuid
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
-
-import numpy as np
+from typing import Annotated
 
 from rastrainer.errors import InputError
-from rastrainer.files.json_fields import json_object, read_fields
 from rastrainer.files.point_files import write_markups
 from rastrainer.files.point_list import PointList
-from rastrainer.files.writing import make_private_folder, write_json
+from rastrainer.files.reading import read_record
+from rastrainer.files.writing import make_private_folder, rounded, write_json
 from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
-from rastrainer.head.volume import HeadVolume, read_head_volume, read_volume_file, write_head_volume
-from rastrainer.json_checks import identifier_of
+from rastrainer.head.volume import (
+    HeadVolume,
+    VolumeFile,
+    read_head_volume,
+    write_head_volume,
+)
+from rastrainer.json_checks import identifier_of, text
 from rastrainer.json_records import record_to_json
-from rastrainer.procedure.plan import NO_GO_FOLDER, procedure_json
-from rastrainer.scenario.points import Task
-from rastrainer.scenario.scenario import FILE_NAME, FORMAT_VERSION, SKULL_KINDS, Camera, Scenario
+from rastrainer.procedure.plan import NO_GO_FOLDER, POINT_DECIMALS, procedure_json
+from rastrainer.scenario.points import PlannedTarget, Task
+from rastrainer.scenario.scenario import (
+    FILE_NAME,
+    FORMAT_VERSION,
+    Scenario,
+    ScenarioFile,
+    SkullFile,
+    SkullKind,
+    TaskFile,
+)
 
-HEAD_NAME, SKULL_NAME, VOLUME_NAME = "head.ply", "skull.ply", "volume.nrrd"
-_DECIMALS = 4
+HEAD_NAME, SKULL_NAME = Path("head.ply"), Path("skull.ply")
+VOLUME_NAME = Path("volume.nrrd")
 
 
 def require_new(folder: Path) -> None:
@@ -98,91 +109,70 @@ def write_scenario(
     for name, mesh in (no_go or {}).items():
         (folder / NO_GO_FOLDER).mkdir(exist_ok=True)
         write_head_mesh(folder / NO_GO_FOLDER / name, mesh)
-    content = scenario_json(scenario, skull is not None, volume)
-    write_json(folder / FILE_NAME, content)
+    content = record_to_json(_scenario_file(scenario, skull is not None, volume))
+    procedures = {"procedures": list(map(procedure_json, scenario.procedures))} if skull else {}
+    write_json(folder / FILE_NAME, rounded({**content, **procedures}, _DECIMALS))
 
 
-def scenario_json(
-    scenario: Scenario, has_skull: bool, volume: HeadVolume | None = None
-) -> dict[str, Any]:
-    """Return the content of a scenario's `scenario.json`."""
-    furniture = scenario.furniture
-    content: dict[str, Any] = {
-        "formatVersion": FORMAT_VERSION,
-        "name": scenario.name,
-        "title": scenario.title,
-        "head": HEAD_NAME,
-        "target": _named_point(scenario.target_name, scenario.target_position),
-        "headToWorld": _listed(scenario.head_to_world.ravel(), 9),
-        "perturbation": json_object(scenario.perturbation),
-        "tasks": [_task_entry(task) for task in scenario.tasks],
-        "cameras": {name: _camera(camera) for name, camera in scenario.cameras.items()},
-        "table": {
-            "centerMm": _listed(furniture.table_center),
-            "sizeMm": _listed(furniture.table_size),
-        },
-        "stand": {"diameterMm": furniture.stand_diameter},
-        "provenance": json_object(scenario.provenance),
-    }
-    if has_skull:
-        kind = SKULL_KINDS[1 if scenario.is_skull_approximate else 0]
-        content["skull"] = {"file": SKULL_NAME, "kind": kind}
-    if volume is not None:
-        content["volume"] = volume_entry(volume)
-    if scenario.targets:
-        content["targets"] = [_named_point(t.name, t.position) for t in scenario.targets]
-    if scenario.trajectory is not None:
-        content["trajectory"] = {
-            "name": scenario.trajectory.name,
-            "entryRas": _listed(scenario.trajectory.entry),
-            "targetRas": _listed(scenario.trajectory.target),
-        }
-    if scenario.landmarks:
-        content["landmarks"] = [
-            _named_point(each.name, each.position) for each in scenario.landmarks
-        ]
-    if not scenario.skin.is_none:
-        content["skin"] = record_to_json(scenario.skin)
-    if scenario.procedures and has_skull:
-        content["procedures"] = [procedure_json(each) for each in scenario.procedures]
-    return content
+_DECIMALS = {
+    **POINT_DECIMALS,
+    "positionMm": 4,
+    "focalPointMm": 4,
+    "centerMm": 4,
+    "sizeMm": 4,
+    "viewUp": 9,
+    "headToWorld": 9,
+    "complexity": 2,
+    "shortestPathMm": 1,
+}
 
 
-def volume_entry(volume: HeadVolume) -> dict[str, Any]:
-    return {"file": VOLUME_NAME, "window": volume.window, "level": volume.level}
+def _scenario_file(scenario: Scenario, has_skull: bool, volume: HeadVolume | None) -> ScenarioFile:
+    """Return the content of `scenario.json`, without procedures."""
+    kind = SkullKind.APPROXIMATION if scenario.is_skull_approximate else SkullKind.BONE
+    return ScenarioFile(
+        format_version=FORMAT_VERSION,
+        name=scenario.name,
+        title=scenario.title,
+        head=HEAD_NAME,
+        target=PlannedTarget(scenario.target_name, scenario.target_position),
+        head_to_world=scenario.head_to_world.ravel(),
+        perturbation=scenario.perturbation,
+        tasks=tuple(
+            TaskFile(task.name, task.title, _file(task), task.complexity, task.shortest_path_mm)
+            for task in scenario.tasks
+        ),
+        cameras=scenario.cameras,
+        table=scenario.furniture.table,
+        stand=scenario.furniture.stand,
+        provenance=scenario.provenance,
+        skull=SkullFile(SKULL_NAME, kind) if has_skull else None,
+        volume=_volume_file(volume),
+        targets=scenario.targets,
+        trajectory=scenario.trajectory,
+        landmarks=scenario.landmarks,
+        skin=scenario.skin,
+    )
 
 
-def _task_entry(task: Task) -> dict[str, Any]:
-    entry: dict[str, Any] = {"name": task.name, "title": task.title, "file": _file(task)}
-    entry["complexity"] = round(task.complexity, 2)
-    if task.shortest_path_mm is not None:
-        entry["shortestPathMm"] = round(task.shortest_path_mm, 1)
-    return entry
+def _volume_file(volume: HeadVolume | None) -> VolumeFile | None:
+    return VolumeFile(VOLUME_NAME, volume.window, volume.level) if volume else None
 
 
-def _file(task: Task) -> str:
-    return f"tasks/{task.name}.mrk.json"
-
-
-def _named_point(name: str, position: np.ndarray) -> dict[str, Any]:
-    return {"name": name, "positionRas": _listed(position)}
-
-
-def _camera(camera: Camera) -> dict[str, Any]:
-    return {
-        "positionMm": _listed(camera.position),
-        "focalPointMm": _listed(camera.focal_point),
-        "viewUp": _listed(camera.view_up, 9),
-        "viewAngleDeg": camera.view_angle_deg,
-    }
-
-
-def _listed(values: np.ndarray, decimals: int = _DECIMALS) -> list[float]:
-    return [round(float(value), decimals) + 0.0 for value in values]
+def _file(task: Task) -> Path:
+    return Path(f"tasks/{task.name}.mrk.json")
 
 
 DRAFT_NAME = "draft.json"
-NO_SKULL = "none"
+
+
+@dataclass(frozen=True)
+class DraftFile:
+    """The content of `draft.json`; see `HeadDraft`."""
+
+    method: Annotated[str, text(4000)]
+    skull: SkullKind | None = None
+    volume: VolumeFile | None = None
 
 
 @dataclass(frozen=True)
@@ -206,26 +196,30 @@ class HeadDraft:
 
 def write_draft(folder: Path, draft: HeadDraft) -> None:
     """Write a draft into an existing folder."""
-    kind = SKULL_KINDS[int(draft.is_skull_approximate)] if draft.skull else NO_SKULL
+    kind = SkullKind.APPROXIMATION if draft.is_skull_approximate else SkullKind.BONE
+    volume = draft.volume
     write_head_mesh(folder / HEAD_NAME, draft.head)
     if draft.skull is not None:
         write_head_mesh(folder / SKULL_NAME, draft.skull)
-    content: dict[str, Any] = {"method": draft.method, "skull": kind}
-    if draft.volume is not None:
-        write_head_volume(folder / VOLUME_NAME, draft.volume)
-        content["volume"] = volume_entry(draft.volume)
-    write_json(folder / DRAFT_NAME, content)
+    if volume is not None:
+        write_head_volume(folder / VOLUME_NAME, volume)
+    file = DraftFile(
+        draft.method,
+        kind if draft.skull else None,
+        _volume_file(volume),
+    )
+    write_json(folder / DRAFT_NAME, record_to_json(file))
 
 
 def read_draft(folder: Path) -> HeadDraft:
     """Read a draft."""
-    fields = read_fields(folder / DRAFT_NAME)
-    kind = fields.one_of("skull", (*SKULL_KINDS, NO_SKULL))
-    volume = read_volume_file(fields)
+    path = folder / DRAFT_NAME
+    file = read_record(DraftFile, path)
+    volume = file.volume
     return HeadDraft(
         read_head_mesh(folder / HEAD_NAME),
-        fields.text("method", 4000),
-        None if kind == NO_SKULL else read_head_mesh(folder / SKULL_NAME),
-        kind == SKULL_KINDS[1],
-        None if volume is None else read_head_volume(volume),
+        file.method,
+        read_head_mesh(folder / SKULL_NAME) if file.skull else None,
+        file.skull is SkullKind.APPROXIMATION,
+        read_head_volume(volume.located(path)) if volume else None,
     )

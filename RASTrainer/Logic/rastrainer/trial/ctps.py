@@ -21,8 +21,8 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.files.csv_table import number_in, read_rows
-from rastrainer.files.json_fields import Fields, read_fields
-from rastrainer.json_checks import number
+from rastrainer.files.reading import read_record
+from rastrainer.json_checks import list_of, number, one_of, text
 
 PUBLISHED_STUDY = ("studies", "published.csv")
 """Place among the assets of the published study's trials, with which CTPS compares."""
@@ -222,10 +222,25 @@ QUANTITIES = (
 class Printed:
     """A number printed in a paper, and the computed quantity that it should equal."""
 
-    what: str
+    what: Annotated[str, text(100)]
     mode: str
-    quantity: str
-    printed: str
+    quantity: Annotated[str, one_of(*QUANTITIES)]
+    printed: Annotated[str, text(20)]
+
+
+@dataclass(frozen=True)
+class Inconsistency:
+    """A sentence about numbers that do not fit each other."""
+
+    sentence: Annotated[str, text(1000)]
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A claim of a paper's authors, and what its numbers say to it."""
+
+    claim: Annotated[str, text(400)]
+    numbers: Annotated[str, text(1000)]
 
 
 @dataclass(frozen=True)
@@ -239,48 +254,18 @@ class StudyNotes:
         setting: How it was done, in a sentence.
         mean_ct_s: Mean completion times that the authors used, by mode.
         printed: Numbers to compare with ours.
-        inconsistencies: Sentences about numbers that do not fit each other.
-        claims: The authors' claims and, after each, what the numbers say to it.
     """
 
-    title: str
-    source: str
-    participants: str
-    setting: str
-    mean_ct_s: Mapping[str, float]
-    printed: tuple[Printed, ...]
-    inconsistencies: tuple[str, ...]
-    claims: tuple[tuple[str, str], ...]
+    title: Annotated[str, text(200)]
+    source: Annotated[str, text(400)]
+    participants: Annotated[str, text(400)]
+    setting: Annotated[str, text(1000)]
+    mean_ct_s: Mapping[str, Annotated[float, number(0.001, 1e6)]]
+    printed: Annotated[tuple[Printed, ...], list_of(0, 50)]
+    inconsistencies: Annotated[tuple[Inconsistency, ...], list_of(0, 50)]
+    claims: Annotated[tuple[Claim, ...], list_of(0, 50)]
 
 
 def read_notes(path: Path) -> StudyNotes | None:
     """Read a file of notes; None where there is none."""
-    if not path.exists():
-        return None
-    fields = read_fields(path)
-    means = fields.fields("meanCtS")
-    return StudyNotes(
-        title=fields.text("title", 200),
-        source=fields.text("source", 400),
-        participants=fields.text("participants", 400),
-        setting=fields.text("setting", 1000),
-        mean_ct_s={mode: means.number(mode, 0.001, 1e6) for mode in means.names()},
-        printed=tuple(_printed(entry) for entry in fields.list_of_fields("printed", 0, 50)),
-        inconsistencies=tuple(
-            entry.text("sentence", 1000)
-            for entry in fields.list_of_fields("inconsistencies", 0, 50)
-        ),
-        claims=tuple(
-            (entry.text("claim", 400), entry.text("numbers", 1000))
-            for entry in fields.list_of_fields("claims", 0, 50)
-        ),
-    )
-
-
-def _printed(entry: Fields) -> Printed:
-    return Printed(
-        entry.text("what", 100),
-        entry.text("mode", 64),
-        entry.one_of("quantity", QUANTITIES),
-        entry.text("printed", 20),
-    )
+    return read_record(StudyNotes, path) if path.exists() else None

@@ -166,7 +166,7 @@ class TraceFollower:
 
 def trace_guide(scenario: Scenario, mesh: HeadMesh) -> TraceGuide:
     to_head = transforms.inverse(scenario.head_to_world)
-    eye = transforms.apply(to_head, scenario.cameras["close-up"].position)
+    eye = transforms.apply(to_head, scenario.cameras["close-up"].position_mm)
     return TraceGuide(mesh, scenario.target_position, eye)
 
 

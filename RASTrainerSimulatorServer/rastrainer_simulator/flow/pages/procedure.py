@@ -217,7 +217,10 @@ def _lines(session: TrainingSession) -> tuple[ErrorArrow, ...]:
     lines = []
     planned = session.scenario.procedure(procedure.name).trajectories
     for plan, trajectory in zip(planned, procedure.trajectories, strict=True):
-        entry, target = session.truly_in_world(plan.entry), session.truly_in_world(plan.target)
+        entry, target = (
+            session.truly_in_world(plan.entry_ras),
+            session.truly_in_world(plan.target_ras),
+        )
         lines.append(drawn(PlannedLine(plan.name, entry, target), PLANNED))
         lines.append(drawn(trajectory.line, SHOWN))
         placed = placed_line(trajectory)

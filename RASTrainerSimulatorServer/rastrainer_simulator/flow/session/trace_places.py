@@ -97,7 +97,7 @@ class TracePlaces:
         if self._trial is None or self._place is None or place is None:
             return None
         outward = self._trial[2].head_to_world[:3, :3] @ np.array(self._place.normal)
-        line = subtract(vector(camera.position.tolist()), place)
+        line = subtract(vector(camera.position_mm.tolist()), place)
         between = unit(add(vector(outward.tolist()), unit(line)))
         return add(place, scale(between, EYE_M))
 

@@ -62,13 +62,13 @@ _NUMBERS = 2**32
 
 
 @dataclass
-class _Turn:
+class _CommandQueue:
     """One client's commands: how many the simulation has, and which are waiting.
 
     While a registration is being checked, the commands after it wait.
     """
 
-    at_work: int = 0
+    running: int = 0
     is_checking: bool = False
     waiting: deque[tuple[Command, Mapping[str, Any]]] = field(default_factory=deque)
     waiting_bytes: int = 0
@@ -86,7 +86,7 @@ class CommandHandler:
         self._submit = submit
         self._limits = limits
         self._loop = asyncio.get_running_loop()
-        self._turns: dict[ClientConnection, _Turn] = {}
+        self._queues: dict[ClientConnection, _CommandQueue] = {}
 
     def handle(self, connection: ClientConnection, command: Command) -> None:
         """Check a command and carry it out in its turn."""
@@ -95,28 +95,28 @@ class CommandHandler:
         except InputError as error:
             self._refuse(connection, command, str(error))
             return
-        turn = self._turns.setdefault(connection, _Turn())
-        is_full = len(turn.waiting) >= self._limits.waiting_commands
-        if is_full or turn.waiting_bytes > self._limits.waiting_command_bytes:
+        queue = self._queues.setdefault(connection, _CommandQueue())
+        is_full = len(queue.waiting) >= self._limits.waiting_commands
+        if is_full or queue.waiting_bytes > self._limits.waiting_command_bytes:
             self._refuse(connection, command, "Too many commands wait: wait for their answers.")
             return
-        turn.waiting.append((command, arguments))
-        turn.waiting_bytes += len(command.body)
-        self._submit_waiting(connection, turn)
+        queue.waiting.append((command, arguments))
+        queue.waiting_bytes += len(command.body)
+        self._submit_waiting(connection, queue)
 
     def forget(self, connection: ClientConnection) -> None:
         """Drop the waiting commands of a client that has left."""
-        self._turns.pop(connection, None)
+        self._queues.pop(connection, None)
 
-    def _submit_waiting(self, connection: ClientConnection, turn: _Turn) -> None:
-        while turn.waiting and turn.at_work < self._limits.commands_at_once:
-            is_checked = turn.waiting[0][0].name in CHECKED
-            if turn.is_checking or (is_checked and turn.at_work):
+    def _submit_waiting(self, connection: ClientConnection, queue: _CommandQueue) -> None:
+        while queue.waiting and queue.running < self._limits.commands_at_once:
+            is_checked = queue.waiting[0][0].name in CHECKED
+            if queue.is_checking or (is_checked and queue.running):
                 return
-            turn.is_checking = is_checked
-            command, arguments = turn.waiting.popleft()
-            turn.waiting_bytes -= len(command.body)
-            turn.at_work += 1
+            queue.is_checking = is_checked
+            command, arguments = queue.waiting.popleft()
+            queue.waiting_bytes -= len(command.body)
+            queue.running += 1
             answered = partial(self._answered, connection, command)
             future = self._submit(connection, command.name, arguments)
             future.add_done_callback(partial(self._loop.call_soon_threadsafe, answered))
@@ -124,17 +124,17 @@ class CommandHandler:
     def _answered(
         self, connection: ClientConnection, command: Command, done: Future[Answer]
     ) -> None:
-        turn = self._turns.get(connection)
-        if turn is None:
+        queue = self._queues.get(connection)
+        if queue is None:
             return
-        turn.at_work -= 1
-        turn.is_checking = False
+        queue.running -= 1
+        queue.is_checking = False
         if done.cancelled() or done.exception() is not None:
             self._refuse(connection, command, "The simulator could not carry the command out.")
         else:
             answer = done.result()
             self._reply(connection, command, answer.ok, answer.message, answer.data)
-        self._submit_waiting(connection, turn)
+        self._submit_waiting(connection, queue)
 
     def _refuse(self, connection: ClientConnection, command: Command, sentence: str) -> None:
         self._reply(connection, command, False, sentence, {})

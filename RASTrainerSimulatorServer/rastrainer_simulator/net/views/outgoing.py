@@ -68,7 +68,7 @@ def scene(sha256: str, scenario: Scenario, task: str, axes: AxesChoice) -> str:
         cameras=cameras,
         fiducials=fiducials,
         noGo={
-            procedure.name: [no_go_name(each.mesh) for each in procedure.no_go]
+            procedure.name: [no_go_name(each.file) for each in procedure.no_go]
             for procedure in scenario.procedures
         },
     )

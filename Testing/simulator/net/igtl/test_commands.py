@@ -76,7 +76,7 @@ def test_simulation_gets_checked_arguments_and_the_name_of_the_client(client, li
     client.send_command("Jog", {"velocityMmS": [1, 2, 3]})
     name, arguments, sender = link_server.simulated.commands[-1]
     assert (name, sender) == ("Jog", "test")
-    assert arguments == {"velocityMmS": [1.0, 2.0, 3.0], "frame": "world", "durationS": 0.1}
+    assert arguments == {"velocityMmS": (1.0, 2.0, 3.0), "frame": "world", "durationS": 0.1}
 
 
 def test_refusal_by_the_simulation_is_returned_in_its_words(client, link_server):

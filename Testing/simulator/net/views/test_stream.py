@@ -91,7 +91,7 @@ def test_the_scene_is_named_after_its_content_and_fits_the_scenario(served, conn
     assert scene["url"] == f"/scene/{hashlib.sha256(glb).hexdigest()}.glb"
     assert (scene["task"], scene["fiducials"]) == ("", {})
     for name, camera in scenario.cameras.items():
-        assert scene["cameras"][name]["position"] == pytest.approx(camera.position / MM_PER_M)
+        assert scene["cameras"][name]["position"] == pytest.approx(camera.position_mm / MM_PER_M)
         assert scene["cameras"][name]["viewAngleDeg"] == camera.view_angle_deg
 
 

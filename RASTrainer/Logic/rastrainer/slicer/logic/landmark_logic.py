@@ -69,7 +69,7 @@ class LandmarkPoints:
         self._set(
             _Placed(
                 tuple(each.name for each in landmarks),
-                np.array([each.position for each in landmarks], dtype=float).reshape(-1, 3),
+                np.array([each.position_ras for each in landmarks], dtype=float).reshape(-1, 3),
             )
         )
 
@@ -197,5 +197,7 @@ class LandmarkLogic:
         with tempfile.TemporaryDirectory() as temporary:
             path = Path(temporary) / FILE
             names = tuple(landmark.name for landmark in landmarks)
-            write_markups(path, PointList(names, np.array([each.position for each in landmarks])))
+            write_markups(
+                path, PointList(names, np.array([each.position_ras for each in landmarks]))
+            )
             yield path

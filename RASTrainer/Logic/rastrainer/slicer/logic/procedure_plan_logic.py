@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,8 @@ from rastrainer.errors import InputError
 from rastrainer.files.writing import write_json
 from rastrainer.head.mesh import HeadMesh, write_head_mesh
 from rastrainer.json_checks import identifier_of
+from rastrainer.json_records import record_from_json
+from rastrainer.procedure.checks import MeasuredProcedure
 from rastrainer.procedure.plan import (
     MAX_NO_GO,
     MAX_TRAJECTORIES,
@@ -60,52 +62,6 @@ class PlanDescription:
     source: str = ""
     name: str = ""
     checkpoints: Any = None
-
-
-@dataclass(frozen=True)
-class CheckedLine:
-    """What was measured of a line: like `LineMeasures`, and whether the robot reaches it.
-
-    Attributes:
-        name: of the line.
-        angleDeg: to the skull's normal; None where the line does not meet it.
-        noGo: name of the nearest no-go structure; empty where there is none.
-        noGoMm: how far it is from the instrument's surface.
-        other: name of the nearest other line; empty where there is none.
-        otherMm: between the surfaces of both instruments.
-        isHeld: whether the robot can hold the guide on the line; None where that was not tried.
-    """
-
-    name: str
-    angleDeg: float | None
-    noGo: str
-    noGoMm: float | None
-    other: str
-    otherMm: float | None
-    isHeld: bool | None
-
-    @classmethod
-    def of(cls, measured: Mapping[str, Any]) -> CheckedLine:
-        """Return a line of the file that `rastrainer scenario lines` writes."""
-        distances = measured["noGoMm"]
-        nearest = min(distances, key=distances.get, default="")
-        return cls(
-            name=measured["name"],
-            angleDeg=measured["skullAngleDeg"],
-            noGo=nearest,
-            noGoMm=distances.get(nearest),
-            other=measured["nearestLine"],
-            otherMm=measured["nearestLineMm"],
-            isHeld=measured["isHeld"],
-        )
-
-
-@dataclass(frozen=True)
-class CheckedPlan:
-    """A plan as it was measured on a head, and a sentence for each error."""
-
-    lines: tuple[CheckedLine, ...]
-    wrong: tuple[str, ...]
 
 
 class ProcedurePlanLogic:
@@ -154,7 +110,7 @@ class ProcedurePlanLogic:
 
     def check(
         self, scenario: Scenario, plan: PlanDescription, progress: Progress = no_progress
-    ) -> CheckedPlan:
+    ) -> MeasuredProcedure:
         """Measure the plan on the head of a scenario; nothing is changed.
 
         Args:
@@ -172,8 +128,7 @@ class ProcedurePlanLogic:
             if not measures.is_file():
                 raise InputError(refusal)
             (measured,) = json.loads(measures.read_text(encoding="utf-8"))
-        lines = tuple(CheckedLine.of(line) for line in measured["lines"])
-        return CheckedPlan(lines, tuple(measured["wrong"]))
+        return record_from_json(MeasuredProcedure, measured)
 
     def save(
         self,

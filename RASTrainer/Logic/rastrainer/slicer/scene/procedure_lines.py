@@ -144,7 +144,9 @@ def showPlan(
     for trajectory in trajectories:
         line = _addLine(scene, trajectory.name)
         setInstrument(line, trajectory.diameter_mm, trajectory.safety_mm)
-        setPoints(line, (_("Entry"), _("Target")), np.array([trajectory.entry, trajectory.target]))
+        setPoints(
+            line, (_("Entry"), _("Target")), np.array([trajectory.entry_ras, trajectory.target_ras])
+        )
     for name, mesh in noGo.items():
         model = scene.AddNewNodeByClass(MODEL, name)
         model.SetAttribute(ROLE_ATTRIBUTE, Role.NO_GO)
@@ -155,7 +157,7 @@ def showPlan(
         setNoGo(model, True)
     node = checkpointList(scene)
     names = [checkpoint.name for checkpoint in checkpoints]
-    places = [checkpoint.position for checkpoint in checkpoints]
+    places = [checkpoint.position_ras for checkpoint in checkpoints]
     setPoints(node, names, np.array(places, dtype=float).reshape(-1, 3))
 
 
@@ -217,7 +219,7 @@ def showPlannedLines(scene: Any, procedure: Procedure | None) -> None:
     """
     forgetProcedureErrors(scene)
     planned = [] if procedure is None else procedure.trajectories
-    ends = [np.array([each.entry, each.target]) for each in planned]
+    ends = [np.array([each.entry_ras, each.target_ras]) for each in planned]
     _showLines(scene, Role.PLANNED_LINE, "{}", [each.name for each in planned], ends)
 
 
@@ -231,7 +233,7 @@ def showProcedureErrors(scene: Any, analysis: ProcedureAnalysis) -> Any:
     """
     each = analysis.trajectories
     names = [errors.trajectory.name for errors in each]
-    planned = [np.array([e.trajectory.entry, e.trajectory.target]) for e in each]
+    planned = [np.array([e.trajectory.entry_ras, e.trajectory.target_ras]) for e in each]
     shown = [np.array([e.shown_entry, e.shown_target]) for e in each]
     placed = [np.array([e.axis_start, e.tip]) for e in each]
     _showLines(scene, Role.PLANNED_LINE, "{}", names, planned)
@@ -297,8 +299,8 @@ def _showArrows(scene: Any, each: Sequence[TrajectoryErrors]) -> None:
         append = vtk.vtkAppendPolyData()
         for errors in each:
             for start, split in (
-                (errors.trajectory.entry, errors.entry),
-                (errors.trajectory.target, errors.target),
+                (errors.trajectory.entry_ras, errors.entry),
+                (errors.trajectory.target_ras, errors.target),
             ):
                 byRegistration = role == Role.ERRORS_BY_REGISTRATION
                 begin = start if byRegistration else start + split.by_registration

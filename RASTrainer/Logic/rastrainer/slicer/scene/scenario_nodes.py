@@ -145,7 +145,7 @@ def _requestMesh(
 def _showTargets(scene: Any, scenario: Scenario) -> None:
     node = findOrAddNode(scene, "vtkMRMLMarkupsFiducialNode", Role.TARGET, "Targets")
     names = [scenario.target_name, *(target.name for target in scenario.targets)]
-    places = [scenario.target_position, *(target.position for target in scenario.targets)]
+    places = [scenario.target_position, *(target.position_ras for target in scenario.targets)]
     setPoints(node, names, np.array(places, dtype=float))
     showAsPlanned(node)
 
@@ -157,7 +157,9 @@ def _showTrajectory(scene: Any, scenario: Scenario) -> None:
         return
     node = findOrAddNode(scene, "vtkMRMLMarkupsLineNode", Role.TRAJECTORY, planned.name)
     node.SetName(planned.name)
-    setPoints(node, ("Entry", "Target"), np.array([planned.entry, planned.target], dtype=float))
+    setPoints(
+        node, ("Entry", "Target"), np.array([planned.entry_ras, planned.target_ras], dtype=float)
+    )
     showAsPlanned(node)
 
 
@@ -173,13 +175,13 @@ def requestVolume(scene: Any, scenario: Scenario) -> None:
     Called again, nothing is read twice: window, level and what the views show stay as they are.
     """
     node, file = findNode(scene, VOLUME, Role.HEAD_VOLUME), scenario.volume
-    if file is not None and isFileShown(node, scenario.name, file.path):
+    if file is not None and isFileShown(node, scenario.name, file.file):
         return
     removeNode(scene, VOLUME, Role.HEAD_VOLUME)
     if file is None:
         return
     node = findOrAddNode(scene, VOLUME, Role.HEAD_VOLUME, scenario.title)
-    requestFile(node, scenario.name, file.path)
+    requestFile(node, scenario.name, file.file)
     display = node.GetDisplayNode()
     display.SetAutoWindowLevel(False)
     display.SetWindowLevel(file.window, file.level)

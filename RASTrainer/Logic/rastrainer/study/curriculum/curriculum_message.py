@@ -110,10 +110,7 @@ class CurriculumMessage:
 
     @classmethod
     def from_arguments(cls, arguments: Mapping[str, Any]) -> CurriculumMessage:
-        assignments = tuple(
-            AssignmentMessage(**{**each, "missing": tuple(each["missing"])})
-            for each in arguments["assignments"]
-        )
+        assignments = tuple(AssignmentMessage(**asdict(each)) for each in arguments["assignments"])
         return cls(**{**arguments, "assignments": assignments})
 
     def arguments(self) -> dict[str, Any]:
