@@ -13,6 +13,7 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.json_records import record_to_json
 from rastrainer.number_text import fixed
 from rastrainer.procedure.checks import LineMeasures, check_procedure, measure_lines
 from rastrainer.procedure.plan import (
@@ -142,7 +143,7 @@ class MeasuredProcedure:
             "procedure": self.procedure.name,
             "title": self.procedure.title,
             "lines": [
-                {**line.to_json(), "isHeld": is_held}
+                {**record_to_json(line, with_defaults=True), "isHeld": is_held}
                 for line, is_held in zip(self.lines, self.is_held, strict=True)
             ],
             "wrong": list(self.wrong),

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.files.writing import write_json
+from rastrainer.json_records import record_to_json
 from rastrainer.scenario.library import list_scenarios, unpack
 from rastrainer.scenario.writer import require_new
 from rastrainer.work_progress import print_progress, print_warning
@@ -181,7 +182,7 @@ def _lines(arguments: argparse.Namespace) -> int:
     measured = measure_procedures(arguments.folder, procedure_of(arguments))
     print("\n".join(line_table(measured)))
     if arguments.json is not None:
-        write_json(arguments.json, [each.to_json() for each in measured])
+        write_json(arguments.json, [record_to_json(each, with_defaults=True) for each in measured])
     return 1 if any(each.wrong for each in measured) else 0
 
 

@@ -17,12 +17,12 @@ from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.journal.folder import SUFFIX, journals_of
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
 from rastrainer.json_records import record_from_json, record_to_json
+from rastrainer.procedure.record import UsedRegistration
 from rastrainer.protocol import CommandName
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.record.aborted_archive import AbortedArchive
 from rastrainer_simulator.record.journal_writer import Journal
-from rastrainer_simulator.state import FinalRegistration
 from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.head_pose import Truth
 
@@ -193,7 +193,7 @@ class TrialArchive:
             entry = {"kind": "registration", **times, "arguments": arguments}
             self._append(trial.record.trial_id, entry)
             return replace(trial, registration=arguments)
-        kept, given = map(FinalRegistration.from_arguments, (trial.registration, arguments))
+        kept, given = map(UsedRegistration.from_arguments, (trial.registration, arguments))
         if not kept.agrees_with(given):
             raise InputError(Texts().say("registration is final"))
         return trial

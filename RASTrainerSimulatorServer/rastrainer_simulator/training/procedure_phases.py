@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from rastrainer.procedure.record import MAX_ATTEMPTS, MAX_TOUCHED_CHECKPOINTS
+from rastrainer.procedure.record import MAX_ATTEMPTS, MAX_TOUCHED_CHECKPOINTS, UsedRegistration
 from rastrainer.protocol import STAND_OFF_LIMIT_MM, CommandName, Phase, TouchRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import EventKind, OperatorCommand, TrainingState
@@ -22,7 +22,6 @@ from rastrainer_simulator.training.replies import RefusedStep, TrialStep
 from rastrainer_simulator.training.rules import TouchMoment, TrainingSettings
 from rastrainer_simulator.trial_state import (
     CheckedPoint,
-    FinalRegistration,
     GuideAlignment,
     GuideAxis,
     ProcedureState,
@@ -130,7 +129,7 @@ class ProcedurePhases:
 
     def _use_registration(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
         """Show the plan by a registration from now on; a second one is refused unless equal."""
-        registration = FinalRegistration.from_arguments(moment.arguments)
+        registration = UsedRegistration.from_arguments(moment.arguments)
         known = moment.procedure.registration
         if known is not None and not known.agrees_with(registration):
             return RefusedStep(self._texts.say("already in use"))

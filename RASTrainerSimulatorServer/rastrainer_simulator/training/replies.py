@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from rastrainer.procedure.record import UsedRegistration
 from rastrainer.protocol import Phase, RegistrationMethod
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import Event, EventKind, TrainingState, TrialResult
 from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.feed import Feed
 from rastrainer_simulator.training.head_pose import Truth
-from rastrainer_simulator.trial_state import FinalRegistration
 from rastrainer_simulator.vectors import in_millimeters
 
 
@@ -122,7 +122,7 @@ def take_registration(
 ) -> TrialStep | TrainingReply:
     """Accept a registration, which becomes final, and reveal the truth; refuse any other."""
     known = state.registration
-    registration = FinalRegistration.from_arguments(arguments)
+    registration = UsedRegistration.from_arguments(arguments)
     if known is not None and not known.agrees_with(registration):
         return TrainingReply(False, texts.say("registration is final"))
     matrix = registration.matrix if known is None else known.matrix

@@ -30,7 +30,7 @@ from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_entries import TrialEntries
 from rastrainer_simulator.record.trial_records import UnmeasuredRecord
 from rastrainer_simulator.state import (
-    HANDS_OFF,
+    NEUTRAL_STICKS,
     OperatorCommand,
     OperatorInput,
     SimulationState,
@@ -150,7 +150,7 @@ def play_virtual_trial(
 def _input(action: Action | None, own: Mapping[str, Any]) -> OperatorInput:
     """Return an action as the operator's input; `own` are arguments that no client may send."""
     if action is None:
-        return HANDS_OFF
+        return NEUTRAL_STICKS
     name, arguments = action
     return OperatorInput(
         commands=(OperatorCommand(name, {**check_arguments(name, arguments), **own}),)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from rastrainer.journal.journal_file import read_journal
+from rastrainer.json_records import record_to_json
 from rastrainer.study.protocol.steps import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.arm import start_tip
@@ -109,8 +110,8 @@ def test_the_tutorial_is_played_and_leads_to_the_trial_run(who, device, says, re
     assert trainee.menu.name == "tutorial-done"
     finished = FinishedTutorials(outside.services.records).latest("P07")
     assert (finished.device, finished.mode, finished.trainee) == (device.value, "desktop", "P07")
-    assert 5.0 < finished.seconds < 60.0
-    assert set(finished.step_seconds) == {step.value for step, _ in player.read}
+    assert 5.0 < finished.duration_s < 60.0
+    assert set(finished.step_times_s) == {step.value for step, _ in player.read}
     assert max(finished.first_error_mm, *finished.errors_mm) < 3.0
     facts = {fact.label: fact.value for fact in trainee.menu.facts}
     shown = [
@@ -415,7 +416,7 @@ def test_a_finished_tutorial_is_remembered_per_device(tmp_path):
     ids=lambda change: next(iter(change)),
 )
 def test_a_file_that_does_not_hold_a_tutorial_counts_for_nothing(tmp_path, change):
-    values = {"utc": "now", **LEARNED.to_json(), **change}
+    values = {"utc": "now", **record_to_json(LEARNED), **change}
     (tmp_path / "1.tutorial").write_text(json.dumps(values))
     (tmp_path / "2.tutorial").write_text("[")
     (tmp_path / "3.tutorial").mkdir()

@@ -8,11 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 
-from rastrainer.files.json_fields import json_object
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh
 from rastrainer.procedure.geometry import (
     BoneAhead,
@@ -54,9 +52,6 @@ class LineMeasures:
     def nearest_no_go(self) -> str:
         """Name of the nearest no-go structure; empty where there is none."""
         return min(self.no_go_mm, key=self.no_go_mm.__getitem__, default="")
-
-    def to_json(self) -> dict[str, Any]:
-        return json_object(self)
 
 
 def measure_lines(procedure: Procedure, meshes: ProcedureMeshes) -> list[LineMeasures]:

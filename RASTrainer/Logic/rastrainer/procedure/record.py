@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Any
@@ -68,18 +69,39 @@ class RegisteredTouch:
     position_mm: WorldPoint
 
 
+SAME = 1e-9
+"""Registrations are the same up to this part of a number, and up to as many mm."""
+
+
 @dataclass(frozen=True)
 class UsedRegistration:
-    """The registration by which the plan was shown.
+    """A registration by its numbers: one by which the plan is shown, or the final one of a trial.
 
     Attributes:
-        matrix: WorldToHead, 16 numbers, row by row, rigid, mm.
+        matrix: WorldToHead, 16 numbers, row by row, mm; rigid in a record.
         expected_tre_mm: at the scenario's target.
     """
 
     matrix: Annotated[tuple[float, ...], _rigid_matrix]
     fre_mm: _Length
     expected_tre_mm: _Length
+
+    @classmethod
+    def from_arguments(cls, arguments: Mapping[str, Any]) -> UsedRegistration:
+        """Return the registration in a command's checked arguments."""
+        return cls(tuple(arguments["matrix"]), arguments["freMm"], arguments["expectedTreMm"])
+
+    def agrees_with(self, other: UsedRegistration) -> bool:
+        """Return whether both are the outcome of one computation.
+
+        Slicer's numpy and the simulator's may round the last digits otherwise; who knows the truth
+        gains nothing from so little.
+        """
+        pairs = zip(self._numbers(), other._numbers(), strict=True)
+        return all(math.isclose(a, b, rel_tol=SAME, abs_tol=SAME) for a, b in pairs)
+
+    def _numbers(self) -> tuple[float, ...]:
+        return (*self.matrix, self.fre_mm, self.expected_tre_mm)
 
     @property
     def world_to_head(self) -> np.ndarray:

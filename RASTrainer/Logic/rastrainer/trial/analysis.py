@@ -74,8 +74,8 @@ class PublishedScore:
         reference: of the cohort.
     """
 
-    published: Annotated[float, number(-1e9, 1e9)]
-    equation_3: Annotated[float, number(-1e9, 1e9)]
+    published: float
+    equation_3: float
     reference: ctps.CohortReference
 
 

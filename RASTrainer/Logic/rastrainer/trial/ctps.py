@@ -15,14 +15,12 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
 
 import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.files.csv_table import number_in, read_rows
 from rastrainer.files.json_fields import Fields, read_fields
-from rastrainer.json_checks import number
 
 PUBLISHED_STUDY = ("studies", "published.csv")
 """Place among the assets of the published study's trials, with which CTPS compares."""
@@ -55,8 +53,8 @@ class Trial:
 class CohortReference:
     """What CTPS compares a trial with: mean CT in s and best RMSE in mm of all trials of a mode."""
 
-    mean_ct_s: Annotated[float, number(0, 1e9, "s")]
-    best_rmse_mm: Annotated[float, number(0, 1e9, "mm")]
+    mean_ct_s: float
+    best_rmse_mm: float
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.mean_ct_s) and self.mean_ct_s > 0):
