@@ -65,7 +65,6 @@ class AbortedArchive:
         """Close the journal of an interrupted trial, and add the trial.
 
         Raises:
-            InputError: the journal cannot be used.
             RecordError: it cannot be written.
         """
         reading = read_journal(path)
@@ -104,7 +103,6 @@ class AbortedArchive:
             find: Reads the trial's journal; None if there is none.
 
         Raises:
-            InputError: nothing else can be done with an aborted trial.
             RecordError: its journal cannot be written.
         """
         waiting = self._waiting.get(trial_id)

@@ -141,7 +141,6 @@ class TrialArchive:
         `times` are the stamps of the entry that is appended to the trial's journal.
 
         Raises:
-            InputError: there is no such trial, or its registration is final, or missing.
             RecordError: its journal cannot be written.
         """
         if arguments["trialId"] not in self._trials:
@@ -281,12 +280,12 @@ def find_unacknowledged(folder: Path) -> list[Path]:
 
     Only the end of each file is read: a lab's folder holds thousands.
     """
-    return [path for path in sorted(folder.glob(f"*{SUFFIX}")) if _awaits_delivery(path)]
-
-
-def _awaits_delivery(path: Path) -> bool:
-    kinds = _last_kinds(path)
-    return (b"registered" in kinds or b"attempt" in kinds) and b"acknowledged" not in kinds
+    last_kinds = {path: set(_last_kinds(path)) for path in sorted(folder.glob(f"*{SUFFIX}"))}
+    return [
+        path
+        for path, kinds in last_kinds.items()
+        if kinds & {b"registered", b"attempt"} and b"acknowledged" not in kinds
+    ]
 
 
 def _last_kinds(path: Path) -> list[bytes]:

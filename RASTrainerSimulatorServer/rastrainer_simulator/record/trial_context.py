@@ -127,7 +127,7 @@ class DisplayReport:
     """
 
     view: str
-    device: Annotated[str, text(64, 0)]
+    device: Annotated[str, text(80, 0)]
     refresh_hz: Annotated[float, number(0, 1e6, "Hz")]
     shown: _Frames
     dropped: _Frames

@@ -127,7 +127,8 @@ class TrialRecorder:
         if trial is None or self._registering is not None:
             return
         trial.entries.pending.append({"kind": "stopped", **stamp(state.tick, state.sim_time)})
-        self._submit_and_close(trial)
+        self._submit(trial, is_awaited=False)
+        self._end(trial.journal.close)
 
     def _start(self, simulation: Simulation, before: SimulationState, result: StepResult) -> None:
         if self._interrupted is not None:
@@ -241,11 +242,6 @@ class TrialRecorder:
             self._archive.answer, ending[-1].name, ending[-1].arguments, times
         )
         return Written(future, is_awaited=True)
-
-    def _submit_and_close(self, trial: _OpenTrial) -> Written:
-        written = self._submit(trial, is_awaited=False)
-        self._end(trial.journal.close)
-        return written
 
     def _end(self, leave: Callable[[], None]) -> None:
         self._writer.submit(leave)

@@ -75,7 +75,7 @@ _AT_TIME = json_checks.number(0, TIME_LIMIT_S, "s")
 
 
 def _text_or_number(value: Any) -> str | float:
-    check = json_checks.text() if isinstance(value, str) else json_checks.number(0, 1e9)
+    check = json_checks.text(80) if isinstance(value, str) else json_checks.number(0, 1e9)
     return check(value)
 
 
