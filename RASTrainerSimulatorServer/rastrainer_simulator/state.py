@@ -167,7 +167,7 @@ class TrainingState:
     `registration` is what a client has submitted, None before.
     `next_point` is the label of the fiducial or landmark to touch, None when there is none;
     `rejected` and `undone` count the touches that were refused and undone. `procedure` is None in a
-    trial of touches alone. `method` is how the trial is registered, `trace` None where nothing is
+    trial of touches alone. `method` is how the trial is registered, `trace` None if nothing is
     traced; the points of a stroke do not raise the revision, its beginning and its end do.
     """
 

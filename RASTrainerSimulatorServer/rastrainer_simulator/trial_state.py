@@ -113,7 +113,7 @@ class RegistrationAttempt:
 
     Attributes:
         touches: that were registered.
-        registration: that was used; None where the trainee touched again before there was one.
+        registration: that was used; None if the trainee touched again before there was one.
         checkpoints: that were touched by it.
     """
 

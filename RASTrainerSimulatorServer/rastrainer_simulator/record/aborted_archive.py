@@ -79,7 +79,7 @@ class AbortedArchive:
         self.add(record, journal)
 
     def load(self, reading: JournalReading) -> bool:
-        """Load a journal; return whether it is that of an aborted trial."""
+        """Load a journal; return whether its trial was aborted."""
         attempt = _archived_attempt(reading)
         if attempt is None:
             return False

@@ -30,7 +30,7 @@ FIRST_REACH = 1 << 16
 """Bytes at the end of a journal that are read first."""
 
 JOURNAL_PIECE_BYTES = 1 << 18
-"""Of a journal that is sent, in one answer."""
+"""Longest part of a journal in one answer."""
 
 _KIND = re.compile(rb'^\{"n":\d+,"previous":"[0-9a-f]{64}","kind":"([a-z]+)"', re.MULTILINE)
 _OVER = frozenset({b"registered", b"aborted", b"attempt"})
@@ -81,7 +81,7 @@ class ArchivedTrial:
 
 
 class TrialArchive:
-    """The registered trials of a folder, and the aborted ones that are kept.
+    """The registered and aborted trials of a folder.
 
     One thread changes it; any thread may call `unacknowledged`.
 

@@ -1,4 +1,4 @@
-"""What is recorded beside a trial: its setup and versions, its display, the tutorial before it."""
+"""The setup, versions, display and tutorial that are recorded with a trial."""
 
 from __future__ import annotations
 
@@ -120,8 +120,8 @@ class DisplayReport:
 
     Attributes:
         view: "desktop", "page" or "headset".
-        device: model of the headset or name of the browser; "" where unknown.
-        refresh_hz: of the display; 0 where unknown.
+        device: model of the headset or name of the browser; "" if unknown.
+        refresh_hz: of the display; 0 if unknown.
         shown: frames.
         dropped: frames.
     """
@@ -137,7 +137,7 @@ class DisplayUse:
     """Adds up the reports of one trial.
 
     Attributes:
-        guidance: how the trainee is guided to the next point; "" where no screen shows it.
+        guidance: how the trainee is guided to the next point; "" if no screen shows it.
         ghost: which earlier trial was shown beside the arm; "" for none.
     """
 
@@ -227,7 +227,7 @@ def report_entry(report: NotedReport) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class PlayingSession:
-    """What a simulator that plays trials was started with.
+    """The options with which the simulator was started.
 
     Attributes:
         speed: simulated seconds in a second; None is as fast as possible.

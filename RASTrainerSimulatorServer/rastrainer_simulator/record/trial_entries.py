@@ -222,7 +222,7 @@ class TrialEntries:
         return UnmeasuredRecord(record, self._recording.trajectory(), registered)
 
     def add_display(self, report: NotedReport, state: SimulationState) -> None:
-        """Record what is seen, and how; nothing depends on it."""
+        """Record a report of a view; the simulation does not depend on it."""
         if isinstance(report, DisplayReport):
             self.records.display.add(report)
         elif isinstance(report, GuidanceReport):

@@ -117,7 +117,7 @@ class TrialRecorder:
         return self._submit(trial, is_awaited=False) if is_due and not self._is_stuck else None
 
     def note_display(self, report: NotedReport, state: SimulationState) -> None:
-        """Record what is seen of the trial, if one is open, and how it is drawn."""
+        """Record a report of a view if a trial is open."""
         if self._open is not None and self._registering is None:
             self._open.entries.add_display(report, state)
 

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 
 class TrialRecords:
-    """What a trial's record holds beside its state, and the records made of both.
+    """Makes the records of a trial from its state and from what is recorded with it.
 
     Attributes:
         started_utc: when it was started, ISO 8601.

@@ -64,7 +64,7 @@ def _first_usable(
     head_to_world: np.ndarray,
     check: Callable[[], None],
 ) -> Ghost | None:
-    """Return the ghost of the first usable journal; None where none is usable."""
+    """Return the ghost of the first usable journal; None if none is usable."""
     for journal in journals:
         try:
             return Ghost(read_track(journal, check), setup, head_to_world)
@@ -124,7 +124,7 @@ class TrialGhost:
         return True
 
     def poses(self, now: SimulationState) -> tuple[np.ndarray, ...] | None:
-        """Return the ghost's poses, as of a `Ghost`; None where none is to be seen."""
+        """Return the ghost's poses, as of a `Ghost`; None if none is to be seen."""
         training = now.training
         if self._ghost is None or training.trial_id != self._trial_id:
             return None

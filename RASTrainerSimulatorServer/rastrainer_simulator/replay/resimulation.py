@@ -60,7 +60,7 @@ class ReplayReport:
     Attributes:
         ticks: simulated again.
         compared: how many entries of each kind were compared.
-        difference: the first difference in words; None where all is equal to the last bit.
+        difference: the first difference in words; None if all is equal to the last bit.
         changed_versions: name → (recorded, present), where they differ.
         motion: the motion metrics of the replayed trial, as its record has them.
     """

@@ -186,7 +186,7 @@ class ProcedurePhases:
     def _refused_check(
         self, procedure: ProcedureState, name: str, error: float, now: TouchMoment
     ) -> str | None:
-        """Return why a touch of a checkpoint does not count, None where it does."""
+        """Return why a touch of a checkpoint does not count, None if it does."""
         say, radius = self._texts.say, self._settings.checkpoint_radius
         if procedure.registration is None:
             return say("not in use yet")

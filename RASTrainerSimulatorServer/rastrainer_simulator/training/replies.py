@@ -20,7 +20,7 @@ from rastrainer_simulator.vectors import in_millimeters
 
 @dataclass(frozen=True)
 class TrainingReply:
-    """What a command led to; `feed` is what is in the guide from now on, None as before."""
+    """The answer to a command; `feed` is the new feed in the guide, None if it stays."""
 
     ok: bool
     message: str = ""
@@ -31,7 +31,7 @@ class TrainingReply:
 
 @dataclass(frozen=True)
 class TrialStep:
-    """What a command leads to.
+    """The result of a command that is carried out.
 
     Attributes:
         state: of the trial.
@@ -56,7 +56,7 @@ class TrialStep:
 
 @dataclass(frozen=True)
 class RefusedStep:
-    """Why a command is refused; `data` is that of a touch that does not count."""
+    """Why a command is refused; `data` describes a touch that does not count."""
 
     sentence: str
     data: Mapping[str, Any] | None = None

@@ -228,7 +228,7 @@ def refused_touch(
     texts: Texts,
     method: RegistrationMethod,
 ) -> str | None:
-    """Return why a touch does not count, None where it does.
+    """Return why a touch does not count, None if it does.
 
     Args:
         now: where the tip is.

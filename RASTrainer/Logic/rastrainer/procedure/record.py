@@ -1,4 +1,4 @@
-"""What was done in a procedure, as part of a trial's record; it does not hold the truth."""
+"""The record of a procedure, a part of the record of its trial; it does not hold the truth."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ class RecordedAttempt:
     Attributes:
         touches: that were registered; may be left out of the accepted one, whose touches are the
             trial's.
-        registration: in use; None where the trainee touched again before there was one.
+        registration: in use; None if the trainee touched again before there was one.
         checkpoints: touched with it, in order.
     """
 
@@ -129,7 +129,7 @@ class RecordedAttempt:
 
 @dataclass(frozen=True)
 class PlacedInstrument:
-    """What was done for one planned trajectory.
+    """The instrument of one planned trajectory, as it was placed.
 
     Attributes:
         trajectory: its name.

@@ -162,7 +162,7 @@ def task_number(task: str) -> int | None:
 def _task_correlation(trials: Sequence[Trial]) -> float | None:
     """Return Pearson's r of task number and task-mean CT; tasks without a number do not count.
 
-    None where there are fewer than three, or none takes longer than another.
+    None if there are fewer than three, or none takes longer than another.
     """
     times = [trial.completion_time_s for trial in trials]
     means = {
@@ -252,7 +252,7 @@ class StudyNotes:
 
 
 def read_notes(path: Path) -> StudyNotes | None:
-    """Read a file of notes; None where there is none."""
+    """Read a file of notes; None if there is none."""
     if not path.exists():
         return None
     fields = read_fields(path)

@@ -294,7 +294,7 @@ def unshifted_tre_mm(
         skin: How the skin lay, with its seed.
 
     Returns:
-        None where the skin lay as in the images, or where the points cannot be registered so.
+        None if the skin lay as in the images, or where the points cannot be registered so.
     """
     if skin.is_none:
         return None
@@ -317,7 +317,7 @@ def unshifted_tre_mm(
 def skin_sentence(
     skin: SkinShift, true_tre_mm: float, unshifted_mm: float | None
 ) -> Sentence | None:
-    """Return what the trainee reads after a trial; None where the skin lay as in the images."""
+    """Return what the trainee reads after a trial; None if the skin lay as in the images."""
     if skin.is_none:
         return None
     amounts = {"shift": skin.shift_mm, "indentation": skin.indentation_mm, "tre": true_tre_mm}
