@@ -81,7 +81,7 @@ def record_to_json(record: Any, with_defaults: bool = False) -> dict[str, Any]:
     Fields that hold their default are left out, unless `with_defaults`.
     """
     values = {}
-    for name, key, default in _keys(type(record)):
+    for name, key, default in _keys(cast("Any", type(record))):
         value = getattr(record, name)
         if with_defaults or default is None or not _are_equal(value, default()):
             values[key] = _plain(value, with_defaults)
