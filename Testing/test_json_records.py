@@ -248,6 +248,16 @@ def test_a_field_without_a_check_is_a_mistake_of_the_developer(kind):
         record_fields(Unchecked)
 
 
+def test_what_is_only_written_needs_no_check():
+    @dataclass
+    class Written:
+        size_mm: float
+        matrix: np.ndarray
+
+    value = {"sizeMm": 1.5, "matrix": [1.0, 2.0, 3.0, 4.0]}
+    assert record_to_json(Written(1.5, np.array([[1.0, 2.0], [3.0, 4.0]]))) == value
+
+
 def test_a_derived_field_is_not_in_json():
     @dataclass
     class Derived:

@@ -90,7 +90,7 @@ class HeadlessCommand(vtk.vtkObject):
         return self._response
 
     def GetResponseMetaDataElement(self, key: str) -> WireText:
-        """Return one entry of the answer's metadata, empty where there is none."""
+        """Return one entry of the answer's metadata, empty if there is none."""
         return self._responseMetaData.get(key, "")
 
     def GetSuccessful(self) -> bool:

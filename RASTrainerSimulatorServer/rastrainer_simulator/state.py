@@ -10,9 +10,9 @@ from typing import Annotated, Any
 import numpy as np
 
 from rastrainer.json_checks import number, whole_number
+from rastrainer.procedure.record import UsedRegistration
 from rastrainer.protocol import PROCEDURE_PHASES, Phase, Proximity, RegistrationMethod
 from rastrainer_simulator.trial_state import (
-    FinalRegistration,
     GuideAlignment,
     GuideAxis,
     PlannedLine,
@@ -54,7 +54,7 @@ class OperatorInput:
     operator: str = ""
 
 
-HANDS_OFF = OperatorInput()
+NEUTRAL_STICKS = OperatorInput()
 """The sticks are at rest and no command has arrived."""
 
 
@@ -153,7 +153,7 @@ class PlanInWorld:
 class TrialResult:
     """The result shown to the trainee when the client has registered and scored the trial (mm)."""
 
-    registration: FinalRegistration
+    registration: UsedRegistration
     true_tre_mm: float
     score: float
     details: Mapping[str, Any] = field(default_factory=dict)
@@ -167,7 +167,7 @@ class TrainingState:
     `registration` is what a client has submitted, None before.
     `next_point` is the label of the fiducial or landmark to touch, None when there is none;
     `rejected` and `undone` count the touches that were refused and undone. `procedure` is None in a
-    trial of touches alone. `method` is how the trial is registered, `trace` None where nothing is
+    trial of touches alone. `method` is how the trial is registered, `trace` None if nothing is
     traced; the points of a stroke do not raise the revision, its beginning and its end do.
     """
 
@@ -182,7 +182,7 @@ class TrainingState:
     touches: tuple[TouchState, ...] = ()
     rejected: int = 0
     undone: int = 0
-    registration: FinalRegistration | None = None
+    registration: UsedRegistration | None = None
     result: TrialResult | None = None
     procedure: ProcedureState | None = None
     method: RegistrationMethod = RegistrationMethod.FIDUCIALS

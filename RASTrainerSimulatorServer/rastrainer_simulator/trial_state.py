@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from typing import Any
 
+from rastrainer.procedure.record import UsedRegistration
 from rastrainer.protocol import MAX_TRACE_POINTS, MIN_TRACE_POINTS, Phase
 from rastrainer_simulator.vectors import Vector, angle, dot, length, reject, subtract, unit
 
@@ -75,10 +75,6 @@ class TraceState:
         return TraceState(self.points[: self.strokes[-1]], self.strokes[:-1])
 
 
-SAME = 1e-9
-"""Registrations are the same up to this part of a number, and up to as many mm."""
-
-
 @dataclass(frozen=True)
 class TouchState:
     """One touched fiducial: where it was measured (World, m) and when.
@@ -90,34 +86,6 @@ class TouchState:
     position: Vector
     sim_time: float
     elapsed: float
-
-
-@dataclass(frozen=True)
-class FinalRegistration:
-    """A registration by its numbers: one in use, or the one that was submitted for a trial (mm).
-
-    `matrix` is WorldToHead, 16 floats row by row, mm.
-    """
-
-    matrix: tuple[float, ...]
-    fre_mm: float
-    expected_tre_mm: float
-
-    @classmethod
-    def from_arguments(cls, arguments: Mapping[str, Any]) -> FinalRegistration:
-        return cls(tuple(arguments["matrix"]), arguments["freMm"], arguments["expectedTreMm"])
-
-    def agrees_with(self, other: FinalRegistration) -> bool:
-        """Return whether both are the outcome of one computation.
-
-        Slicer's numpy and the simulator's may round the last digits otherwise; who knows the truth
-        gains nothing from so little.
-        """
-        pairs = zip(self._numbers(), other._numbers(), strict=True)
-        return all(math.isclose(a, b, rel_tol=SAME, abs_tol=SAME) for a, b in pairs)
-
-    def _numbers(self) -> tuple[float, ...]:
-        return (*self.matrix, self.fre_mm, self.expected_tre_mm)
 
 
 @dataclass(frozen=True)
@@ -145,12 +113,12 @@ class RegistrationAttempt:
 
     Attributes:
         touches: that were registered.
-        registration: that was used; None where the trainee touched again before there was one.
+        registration: that was used; None if the trainee touched again before there was one.
         checkpoints: that were touched by it.
     """
 
     touches: tuple[TouchState, ...]
-    registration: FinalRegistration | None
+    registration: UsedRegistration | None
     checkpoints: tuple[CheckedPoint, ...]
 
 
@@ -273,7 +241,7 @@ class ProcedureState:
     name: str
     stage: Phase = Phase.RUNNING
     since: float = 0.0
-    registration: FinalRegistration | None = None
+    registration: UsedRegistration | None = None
     checkpoints: tuple[CheckedPoint, ...] = ()
     attempts: tuple[RegistrationAttempt, ...] = ()
     trajectories: tuple[TrajectoryState, ...] = ()

@@ -19,7 +19,7 @@ from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.state import HANDS_OFF, Motion, OperatorCommand, OperatorInput
+from rastrainer_simulator.state import NEUTRAL_STICKS, Motion, OperatorCommand, OperatorInput
 from Testing.benchmarks.loop_health import Punctuality
 from Testing.benchmarks.procedure_ticks import procedure_rows
 from Testing.benchmarks.row import resident_mb, row, row_of_figures
@@ -103,7 +103,7 @@ def _tour(simulation: Simulation) -> np.ndarray:
     def move_to(position: np.ndarray) -> None:
         do(CommandName.MOVE_TIP_TO, positionMm=position.tolist(), speedMmS=250.0)
         while simulation.state.motion is not Motion.NONE:
-            step(HANDS_OFF)
+            step(NEUTRAL_STICKS)
 
     random = np.random.default_rng(SEED)
     do(CommandName.START_TASK, task="task-3", trainee="bench", seed=SEED)

@@ -11,7 +11,7 @@ from rastrainer.commands import CommandName, check_arguments
 from rastrainer.protocol import Phase, TouchRule
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.state import HANDS_OFF, Motion, OperatorCommand, OperatorInput
+from rastrainer_simulator.state import NEUTRAL_STICKS, Motion, OperatorCommand, OperatorInput
 from Testing.benchmarks.row import row
 
 DT = 0.004
@@ -116,7 +116,7 @@ class _Operation:
 
     def _until_still(self) -> None:
         while self._simulation.state.motion is not Motion.NONE:
-            self._step(HANDS_OFF)
+            self._step(NEUTRAL_STICKS)
 
     def _feed(self) -> None:
         for _ in range(FEED_TICKS):

@@ -151,7 +151,7 @@ def carried_out(seed):
             for point, position in zip(make_record()["points"], touches, strict=True)
         ]
     )
-    record["procedure"] = ProcedureRecord(
+    done = ProcedureRecord(
         procedure.name,
         procedure.kind,
         "0" * 64,
@@ -159,7 +159,8 @@ def carried_out(seed):
         _attempts(used),
         instruments,
         {"running": 100.0},
-    ).to_json()
+    )
+    record["procedure"] = record_to_json(done)
     trial = record_from_json(TrialRecord, json.loads(json.dumps(record)))
     stored = StoredTrial(trial, {}, None, None, tuple(head_to_world.ravel().tolist()))
     return procedure, fiducials, stored

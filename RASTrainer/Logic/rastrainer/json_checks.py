@@ -6,7 +6,6 @@ returns the accepted value or raises `ValueError` with the words that follow "mu
 
 from __future__ import annotations
 
-import contextlib
 import json
 import math
 import re
@@ -379,21 +378,3 @@ def checked_keys(value: object, keys: Mapping[str, Argument], what: str) -> dict
         if key not in value and argument.is_required:
             raise InputError(f"{what} needs the key {json.dumps(key)}.")
     return {key: argument.checked(value, key, f"{what}: {key}") for key, argument in keys.items()}
-
-
-def mapping(
-    most: int,
-    words: str,
-    check_value: Callable[[Any], Any],
-    check_name: Callable[[Any], str] | None = None,
-) -> Callable[[Any], dict[str, Any]]:
-    """Accept an object of at most `most` checked names and values; `words` describes them."""
-    accept_name = check_name or text()
-
-    def check(value: Any) -> dict[str, Any]:
-        with contextlib.suppress(ValueError):
-            if isinstance(value, Mapping) and len(value) <= most:
-                return {accept_name(name): check_value(item) for name, item in value.items()}
-        raise ValueError(f"an object of at most {most} {words}")
-
-    return check

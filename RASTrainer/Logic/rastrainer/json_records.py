@@ -11,8 +11,7 @@ A field's annotation holds its check, and its key is its name in camel case:
 A plain `str` is a text of `json_checks.text()`. `bool`, enums, `Literal`, other records, and of
 these `X | None`, `tuple[X, ...]` and `Mapping[str, X]` need no check; all else does. A check sees
 the decoded JSON, and limits the length of lists and objects (`list_of`, `object_of`); the value is
-made of what it accepts. Rules for several fields stand in `__post_init__`, which raises
-`InputError`.
+made of what it accepts. For rules of several fields, `__post_init__` raises `InputError`.
 """
 
 from __future__ import annotations
@@ -82,28 +81,26 @@ def record_to_json(record: Any, with_defaults: bool = False) -> dict[str, Any]:
     Fields that hold their default are left out, unless `with_defaults`.
     """
     values = {}
-    for each in record_fields(cast("Any", type(record))):
-        value = getattr(record, each.name)
-        if with_defaults or each.default is None or not _are_equal(value, each.default()):
-            values[each.key] = _plain(value, with_defaults)
+    for name, key, default in _keys(cast("Any", type(record))):
+        value = getattr(record, name)
+        if with_defaults or default is None or not _are_equal(value, default()):
+            values[key] = _plain(value, with_defaults)
     return values
 
 
 @cache
 def record_fields(kind: Any) -> tuple[RecordField, ...]:
     """Return the fields that a dataclass has in JSON, in their order."""
-    hints = get_type_hints(kind, include_extras=True)
+    hint = get_type_hints(kind, include_extras=True)
     return tuple(
-        RecordField(
-            each.name,
-            camel_case(each.name),
-            hints[each.name],
-            _reader(hints[each.name], f"{kind.__name__}.{each.name}"),
-            _default(each),
-        )
-        for each in fields(cast("Any", kind))
-        if each.init
+        RecordField(name, key, hint[name], _reader(hint[name], f"{kind.__name__}.{name}"), default)
+        for name, key, default in _keys(kind)
     )
+
+
+@cache
+def _keys(kind: Any) -> tuple[tuple[str, str, Callable[[], Any] | None], ...]:
+    return tuple((x.name, camel_case(x.name), _default(x)) for x in fields(kind) if x.init)
 
 
 def camel_case(name: str) -> str:
@@ -198,6 +195,6 @@ def _plain(value: Any, with_defaults: bool) -> Any:
 
 
 def _are_equal(value: Any, default: Any) -> bool:
-    if isinstance(value, np.ndarray) or isinstance(default, np.ndarray):
+    if isinstance(value, np.ndarray):
         return np.array_equal(value, default)
     return value is default or (type(value) is type(default) and value == default)

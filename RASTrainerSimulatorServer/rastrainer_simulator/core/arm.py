@@ -112,7 +112,7 @@ class JointMotion:
 
         The tip, at `tip` with the joint angles `start`, is to move by `displacement` (World, m)
         and the tool to point along `direction`, a unit vector, None if it is free; `across` is the
-        x axis of its tip, a unit vector perpendicular to `direction`, None where it may roll. The
+        x axis of its tip, a unit vector perpendicular to `direction`, None if it may roll. The
         tip's position comes first: where the joint limits forbid the direction, or the joints are
         too slow for it, the tool turns as far as it can while the tip stays on its straight path.
         """

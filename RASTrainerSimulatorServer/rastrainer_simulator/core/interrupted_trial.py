@@ -21,7 +21,7 @@ from rastrainer.journal.folder import newest_journal
 from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, JournalReading, read_journal
 from rastrainer.protocol import Phase, Proximity
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.core.procedure_motion import FED
+from rastrainer_simulator.core.procedure_motion import FEED_PHASES
 from rastrainer_simulator.state import OperatorCommand, StartingPoint
 from rastrainer_simulator.training.feed import NO_FEED, Feed, HeadAhead
 from rastrainer_simulator.training.rules import INTERRUPTED, RECORDING_FAILED, TRACED, TouchMoment
@@ -88,7 +88,7 @@ class RecordedFeed:
         is_exchanged = self._stage is Phase.DRILLING and stage is Phase.INSERTING
         feed = self.before(entry)
         self._stage, self._ahead = stage, feed.ahead
-        if stage not in FED:
+        if stage not in FEED_PHASES:
             self.feed = NO_FEED
         else:
             self.feed = replace(feed, depth=0.0) if is_exchanged else feed

@@ -80,7 +80,7 @@ def _from_tip(distance_mm: float) -> float:
     return max(0.0, distance_mm - BEHIND_MM) / MM_PER_M
 
 
-FED = (Phase.DRILLING, Phase.INSERTING)
+FEED_PHASES = (Phase.DRILLING, Phase.INSERTING)
 """The arm is held, and the instrument in the guide moves."""
 
 
@@ -133,7 +133,7 @@ class ProcedureMotion:
 
     def step(self, dt: float, phase: Phase, operator_input: OperatorInput, sim_time: float) -> Fed:
         """Feed for `dt` s in a phase, with an event where what is felt changes."""
-        if phase not in FED:
+        if phase not in FEED_PHASES:
             return NOT_FED
         before = self.feed
         way = self._drive.way(dt, phase, operator_input)

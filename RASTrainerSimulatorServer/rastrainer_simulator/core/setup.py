@@ -17,7 +17,6 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
-from rastrainer.json_records import record_to_json
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import FILE_NAME, Scenario, load_scenario
 from rastrainer_simulator.assets import asset_path
@@ -133,6 +132,33 @@ DEFAULT_SCENARIO = ("scenarios", "colin27")
 
 
 @dataclass(frozen=True)
+class RecordedContent:
+    """Name and hash of a scenario or a procedure."""
+
+    name: str
+    sha256: str
+
+
+@dataclass(frozen=True)
+class RecordedMethod:
+    """The method of a trial without fiducials, and the hash of the scenario's landmarks."""
+
+    name: str
+    landmarks_sha256: str
+
+
+@dataclass(frozen=True)
+class RecordedSetup:
+    """What identifies a setup in the header of a journal."""
+
+    scenario: RecordedContent
+    robot: str
+    settings: SimulationSettings
+    procedure: RecordedContent | None = None
+    method: RecordedMethod | None = None
+
+
+@dataclass(frozen=True)
 class SimulationSetup:
     """Everything that a simulation starts from, besides its seed.
 
@@ -154,51 +180,36 @@ class SimulationSetup:
     landmarks_sha256: str = ""
     procedure_sha256: Mapping[str, str] = field(default_factory=dict)
 
-    def is_of(self, header: Mapping[str, Any]) -> bool:
-        """Return whether a journal with this header was recorded with this scenario and robot."""
-        recorded = header["robot"], header["scenario"]["sha256"]
-        return recorded == (self.robot.name, self.scenario_sha256)
-
-    def matches_procedure(self, header: Mapping[str, Any]) -> bool:
-        """Return whether the procedure of a journal's header, if it names one, is in here.
-
-        Raises:
-            KeyError, TypeError: the header is not usable.
-        """
-        recorded = header.get("procedure")
-        if recorded is None:
-            return True
-        return self.procedure_sha256.get(recorded["name"]) == recorded["sha256"]
-
-    def matches_landmarks(self, header: Mapping[str, Any]) -> bool:
-        """Return whether the landmarks of a journal's header, if it has any, are those in here.
-
-        Raises:
-            KeyError, TypeError: the header is not usable.
-        """
-        recorded = header.get("method")
-        return recorded is None or recorded["landmarksSha256"] == self.landmarks_sha256
-
-    def description(
-        self,
-        procedure: str = "",
-        method: RegistrationMethod = RegistrationMethod.FIDUCIALS,
-    ) -> dict[str, Any]:
-        """Return the fields of a journal's header, ready for JSON.
+    def recorded(
+        self, procedure: str = "", method: RegistrationMethod = RegistrationMethod.FIDUCIALS
+    ) -> RecordedSetup:
+        """Return what identifies this setup in the journal of a trial.
 
         Args:
             procedure: name of the trial's procedure, "" without one.
             method: by which the trial is registered.
         """
-        named = {"name": procedure, "sha256": self.procedure_sha256.get(procedure, "")}
-        by = {"name": method.value, "landmarksSha256": self.landmarks_sha256}
-        return {
-            **({"procedure": named} if procedure else {}),
-            **({} if method is RegistrationMethod.FIDUCIALS else {"method": by}),
-            "scenario": {"name": self.scenario.name, "sha256": self.scenario_sha256},
-            "robot": self.robot.name,
-            "settings": record_to_json(self.settings, with_defaults=True),
-        }
+        by_landmarks = method is not RegistrationMethod.FIDUCIALS
+        return RecordedSetup(
+            RecordedContent(self.scenario.name, self.scenario_sha256),
+            self.robot.name,
+            self.settings,
+            RecordedContent(procedure, self.procedure_sha256.get(procedure, ""))
+            if procedure
+            else None,
+            RecordedMethod(method.value, self.landmarks_sha256) if by_landmarks else None,
+        )
+
+    def difference(self, recorded: RecordedSetup) -> str:
+        """Return what a trial was recorded with that is not the same here, "" for nothing."""
+        procedure, method = recorded.procedure, recorded.method
+        if recorded.scenario.sha256 != self.scenario_sha256:
+            return "scenario"
+        if method is not None and method.landmarks_sha256 != self.landmarks_sha256:
+            return "landmarks"
+        if procedure and self.procedure_sha256.get(procedure.name) != procedure.sha256:
+            return "procedure"
+        return "" if recorded.robot == self.robot.name else "robot"
 
 
 def load_setup(

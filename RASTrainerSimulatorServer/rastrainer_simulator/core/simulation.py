@@ -18,7 +18,7 @@ from rastrainer_simulator.collision.contact import Contact, Moved
 from rastrainer_simulator.collision.proximity import Pressing, next_proximity
 from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.arm import JointMotion, Joints, Postures, start_joints
-from rastrainer_simulator.core.procedure_motion import FED, PlannedBone, ProcedureMotion
+from rastrainer_simulator.core.procedure_motion import FEED_PHASES, PlannedBone, ProcedureMotion
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.state import (
@@ -206,7 +206,7 @@ class Simulation:
         phase = self._training.state.phase
         if phase is Phase.PAUSED:
             self._procedure_motion.stop()
-        if phase is Phase.PAUSED or phase in FED:
+        if phase is Phase.PAUSED or phase in FEED_PHASES:
             stopped = self._teleoperation.stop()
             return MotionRequest(Motion.NONE, ended=MotionOutcome.STOPPED if stopped else None)
         self._teleoperation.hold_direction(phase is Phase.ALIGNING)

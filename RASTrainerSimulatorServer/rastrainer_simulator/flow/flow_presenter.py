@@ -42,7 +42,13 @@ from rastrainer_simulator.presentation.presenter import (
 from rastrainer_simulator.presentation.screen import PRESS, Tone
 from rastrainer_simulator.record.trial_context import DisplayReport
 from rastrainer_simulator.replay.playback import PlaybackSwitch
-from rastrainer_simulator.state import HANDS_OFF, Answer, OperatorInput, SimulationState, StepResult
+from rastrainer_simulator.state import (
+    NEUTRAL_STICKS,
+    Answer,
+    OperatorInput,
+    SimulationState,
+    StepResult,
+)
 from rastrainer_simulator.viewpoint.view_control import Pictures
 
 REFRESH_S = 0.1
@@ -88,7 +94,7 @@ class FlowPresenter(Presenter):
         self._views = ViewSources()
         self._pictures = AwaitedPictures()
         self._number = 0
-        self._sent_sticks = HANDS_OFF
+        self._sent_sticks = NEUTRAL_STICKS
         self._is_changed = True
         self._since_refresh = 0.0
         self.screen = self._flow.screen()
@@ -101,7 +107,7 @@ class FlowPresenter(Presenter):
         self._session.ghost.close()
         self._session.places.close()
         self.shown.close()
-        self._control_loop.hold_sticks(HANDS_OFF)
+        self._control_loop.hold_sticks(NEUTRAL_STICKS)
 
     def advance(self, dt: float) -> None:
         # A state ahead of its events would sound the alarm of a contact twice.

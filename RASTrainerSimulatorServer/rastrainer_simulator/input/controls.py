@@ -20,7 +20,7 @@ from rastrainer_simulator.input.inputs import (
     Source,
     SourceKind,
 )
-from rastrainer_simulator.state import HANDS_OFF, OperatorInput
+from rastrainer_simulator.state import NEUTRAL_STICKS, OperatorInput
 
 IDLE_S = 30.0
 """How long the holder has to be idle before another operator may take control.
@@ -85,7 +85,7 @@ class Controls:
     def sticks(self) -> OperatorInput:
         """What the arm should do; nothing while a menu is open."""
         if self.holder is None or self.situation is ControlContext.MENU:
-            return HANDS_OFF
+            return NEUTRAL_STICKS
         sticks = self.held
         return dataclasses.replace(sticks, operator=self.holder.kind.value)
 
@@ -93,7 +93,7 @@ class Controls:
     def held(self) -> OperatorInput:
         """The deflection of the holder's sticks, whether or not they move the arm."""
         state = self._held_state
-        return HANDS_OFF if state is None else state.sticks(self.bindings)
+        return NEUTRAL_STICKS if state is None else state.sticks(self.bindings)
 
     @property
     def view(self) -> tuple[float, float, float]:

@@ -36,7 +36,7 @@ from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.record.trial_context import NotedReport, PlayingSession
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
 from rastrainer_simulator.state import (
-    HANDS_OFF,
+    NEUTRAL_STICKS,
     Answer,
     OperatorCommand,
     OperatorInput,
@@ -111,7 +111,7 @@ class ControlLoop:
             self._recorder.resume_trial(simulation, interrupted)
         self._state = simulation.state
         self._held = DurableResults(self._state.training)
-        self._sticks = HANDS_OFF
+        self._sticks = NEUTRAL_STICKS
         self._arrived: deque[OperatorCommand] = deque()
         self._displayed: deque[NotedReport] = deque()
         self._answers = PendingAnswers()

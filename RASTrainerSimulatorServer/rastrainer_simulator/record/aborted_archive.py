@@ -66,7 +66,6 @@ class AbortedArchive:
         """Close the journal of an interrupted trial, and add the trial.
 
         Raises:
-            InputError: the journal cannot be used.
             RecordError: it cannot be written.
         """
         reading = read_journal(path)
@@ -81,7 +80,7 @@ class AbortedArchive:
         self.add(record, journal)
 
     def load(self, reading: JournalReading) -> bool:
-        """Load a journal; return whether it is that of an aborted trial."""
+        """Load a journal; return whether its trial was aborted."""
         attempt = _archived_attempt(reading)
         if attempt is None:
             return False
@@ -105,7 +104,6 @@ class AbortedArchive:
             find: Reads the trial's journal; None if there is none.
 
         Raises:
-            InputError: nothing else can be done with an aborted trial.
             RecordError: its journal cannot be written.
         """
         waiting = self._waiting.get(trial_id)

@@ -74,7 +74,7 @@ class Journal:
         """
         journal = cls(reading.path)
         journal._is_new = False
-        journal._take_up(reading)
+        journal._append_to(reading)
         return journal
 
     def write(self, entries: Sequence[Mapping[str, Any]], sync: bool) -> None:
@@ -156,10 +156,10 @@ class Journal:
         reading = read_journal(self.path)
         if reading.integrity is Integrity.ALTERED:
             raise RecordError(f"{self.path.name} is {reading.sentence}; nothing is added to it.")
-        self._take_up(reading)
+        self._append_to(reading)
         return reading.end
 
-    def _take_up(self, reading: JournalReading) -> None:
+    def _append_to(self, reading: JournalReading) -> None:
         self._count = len(reading.entries)
         self._previous = reading.last_hash
         self._size = reading.end

@@ -18,11 +18,11 @@ from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.journal.folder import SUFFIX, journals_of
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
 from rastrainer.json_records import record_from_json, record_to_json
+from rastrainer.procedure.record import UsedRegistration
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.record.aborted_archive import AbortedArchive
 from rastrainer_simulator.record.journal_writer import Journal
-from rastrainer_simulator.state import FinalRegistration
 from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training.head_pose import Truth
 
@@ -30,7 +30,7 @@ FIRST_REACH = 1 << 16
 """Bytes at the end of a journal that are read first."""
 
 JOURNAL_PIECE_BYTES = 1 << 18
-"""Of a journal that is sent, in one answer."""
+"""Longest part of a journal in one answer."""
 
 _KIND = re.compile(rb'^\{"n":\d+,"previous":"[0-9a-f]{64}","kind":"([a-z]+)"', re.MULTILINE)
 _OVER = frozenset({b"registered", b"aborted", b"attempt"})
@@ -81,7 +81,7 @@ class ArchivedTrial:
 
 
 class TrialArchive:
-    """The registered trials of a folder, and the aborted ones that are kept.
+    """The registered and aborted trials of a folder.
 
     One thread changes it; any thread may call `unacknowledged`.
 
@@ -141,7 +141,6 @@ class TrialArchive:
         `times` are the stamps of the entry that is appended to the trial's journal.
 
         Raises:
-            InputError: there is no such trial, or its registration is final, or missing.
             RecordError: its journal cannot be written.
         """
         if arguments["trialId"] not in self._trials:
@@ -193,7 +192,7 @@ class TrialArchive:
             entry = {"kind": "registration", **times, "arguments": arguments}
             self._append(trial.record.trial_id, entry)
             return replace(trial, registration=arguments)
-        kept, given = map(FinalRegistration.from_arguments, (trial.registration, arguments))
+        kept, given = map(UsedRegistration.from_arguments, (trial.registration, arguments))
         if not kept.agrees_with(given):
             raise InputError(say("registration is final"))
         return trial
@@ -281,12 +280,12 @@ def find_unacknowledged(folder: Path) -> list[Path]:
 
     Only the end of each file is read: a lab's folder holds thousands.
     """
-    return [path for path in sorted(folder.glob(f"*{SUFFIX}")) if _awaits_delivery(path)]
-
-
-def _awaits_delivery(path: Path) -> bool:
-    kinds = _last_kinds(path)
-    return (b"registered" in kinds or b"attempt" in kinds) and b"acknowledged" not in kinds
+    last_kinds = {path: set(_last_kinds(path)) for path in sorted(folder.glob(f"*{SUFFIX}"))}
+    return [
+        path
+        for path, kinds in last_kinds.items()
+        if kinds & {b"registered", b"attempt"} and b"acknowledged" not in kinds
+    ]
 
 
 def _last_kinds(path: Path) -> list[bytes]:

@@ -1,4 +1,4 @@
-"""What is recorded beside a trial: its setup and versions, its display, the tutorial before it."""
+"""The setup, versions, display and tutorial that are recorded with a trial."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rastrainer.json_checks import number, numbers, one_of, text, whole_number
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import PROTOCOL_VERSION, Mode
 from rastrainer_simulator.core.settings import SimulationSettings
-from rastrainer_simulator.core.setup import SimulationSetup, load_setup
+from rastrainer_simulator.core.setup import RecordedSetup, SimulationSetup, load_setup
 from rastrainer_simulator.input.inputs import SourceKind
 
 PACKAGES = ("numpy", "pin", "python-fcl")
@@ -50,38 +50,25 @@ def setup_of(
     header: Mapping[str, Any], scenario_folder: Path | None = None, robot_meshes: Path | None = None
 ) -> SimulationSetup:
     """Return the setup that a journal's header describes."""
-    try:
-        settings = record_from_json(
-            SimulationSettings, header["settings"], "The journal's settings", only_known=True
-        )
-        name, sha256 = header["scenario"]["name"], header["scenario"]["sha256"]
-    except (KeyError, TypeError, AttributeError):
-        raise InputError("The journal's header lacks the scenario or the settings.") from None
-    setup = load_setup(scenario_folder, settings, robot_meshes=robot_meshes)
-    if sha256 != setup.scenario_sha256:
-        raise InputError(
-            f"The trial was recorded with a scenario {name!r} whose files differ from those of "
-            f"{setup.scenario.name!r} here: give its folder with --scenario."
-        )
-    try:
-        is_same_procedure = setup.matches_procedure(header)
-        has_same_landmarks = setup.matches_landmarks(header)
-    except (KeyError, TypeError, AttributeError):
-        raise InputError(
-            "The journal's header does not name its procedure or method as it should."
-        ) from None
-    if not has_same_landmarks:
-        raise InputError(
-            f"The trial was recorded with other landmarks than those of {setup.scenario.name!r} "
-            "here: give its folder with --scenario."
-        )
-    if not is_same_procedure:
-        raise InputError(
-            f"The trial was recorded with a procedure {header['procedure']['name']!r} that differs "
-            f"from that of {setup.scenario.name!r} here: give its folder with --scenario."
-        )
-    if setup.robot.name != header.get("robot"):
-        raise InputError(f"The trial was recorded with another robot than {setup.robot.name} here.")
+    recorded = record_from_json(RecordedSetup, header, "The journal's header")
+    # A setting that is unknown here would be without effect.
+    record_from_json(
+        SimulationSettings, header["settings"], "The journal's settings", only_known=True
+    )
+    setup = load_setup(scenario_folder, recorded.settings, robot_meshes=robot_meshes)
+    name, procedure = setup.scenario.name, recorded.procedure
+    other = {
+        "": "",
+        "scenario": f"a scenario {recorded.scenario.name!r} whose files differ from those of "
+        f"{name!r} here: give its folder with --scenario",
+        "landmarks": f"other landmarks than those of {name!r} here: give its folder with "
+        "--scenario",
+        "procedure": f"a procedure {procedure.name if procedure else ''!r} that differs from that "
+        f"of {name!r} here: give its folder with --scenario",
+        "robot": f"another robot than {setup.robot.name} here",
+    }[setup.difference(recorded)]
+    if other:
+        raise InputError(f"The trial was recorded with {other}.")
     return setup
 
 
@@ -120,14 +107,14 @@ class DisplayReport:
 
     Attributes:
         view: "desktop", "page" or "headset".
-        device: model of the headset or name of the browser; "" where unknown.
-        refresh_hz: of the display; 0 where unknown.
+        device: model of the headset or name of the browser; "" if unknown.
+        refresh_hz: of the display; 0 if unknown.
         shown: frames.
         dropped: frames.
     """
 
     view: str
-    device: Annotated[str, text(64, 0)]
+    device: Annotated[str, text(80, 0)]
     refresh_hz: Annotated[float, number(0, 1e6, "Hz")]
     shown: _Frames
     dropped: _Frames
@@ -137,7 +124,7 @@ class DisplayUse:
     """Adds up the reports of one trial.
 
     Attributes:
-        guidance: how the trainee is guided to the next point; "" where no screen shows it.
+        guidance: how the trainee is guided to the next point; "" if no screen shows it.
         ghost: which earlier trial was shown beside the arm; "" for none.
     """
 
@@ -227,7 +214,7 @@ def report_entry(report: NotedReport) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class PlayingSession:
-    """What a simulator that plays trials was started with.
+    """The options with which the simulator was started.
 
     Attributes:
         speed: simulated seconds in a second; None is as fast as possible.

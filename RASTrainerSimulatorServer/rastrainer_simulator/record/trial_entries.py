@@ -112,6 +112,8 @@ class TrialEntries:
         times = stamp(state.tick, state.sim_time)
         entries = cls(simulation, training.trial_id, times["utc"], dt)
         entries.records.number = number
+        procedure = "" if training.procedure is None else training.procedure.name
+        recorded = simulation.setup.recorded(procedure, training.method)
         entries._append(
             {
                 "kind": "header",
@@ -127,10 +129,8 @@ class TrialEntries:
                 "tickS": dt,
                 "session": record_to_json(session, with_defaults=True),
                 "before": record_to_json(StartingPoint.after(before), with_defaults=True),
-                **simulation.setup.description(
-                    "" if training.procedure is None else training.procedure.name,
-                    training.method,
-                ),
+                **record_to_json(recorded),
+                "settings": record_to_json(recorded.settings, with_defaults=True),
                 "versions": entries.records.versions,
             }
         )
@@ -223,7 +223,7 @@ class TrialEntries:
         return UnmeasuredRecord(record, self._recording.trajectory(), registered)
 
     def add_display(self, report: NotedReport, state: SimulationState) -> None:
-        """Record what is seen, and how; nothing depends on it."""
+        """Record a report of a view; the simulation does not depend on it."""
         if isinstance(report, DisplayReport):
             self.records.display.add(report)
         elif isinstance(report, GuidanceReport):

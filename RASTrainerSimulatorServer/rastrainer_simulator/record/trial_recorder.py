@@ -118,7 +118,7 @@ class TrialRecorder:
         return self._submit(trial, is_awaited=False) if is_due and not self._is_stuck else None
 
     def note_display(self, report: NotedReport, state: SimulationState) -> None:
-        """Record what is seen of the trial, if one is open, and how it is drawn."""
+        """Record a report of a view if a trial is open."""
         if self._open is not None and self._registering is None:
             self._open.entries.add_display(report, state)
 
@@ -128,7 +128,8 @@ class TrialRecorder:
         if trial is None or self._registering is not None:
             return
         trial.entries.pending.append({"kind": "stopped", **stamp(state.tick, state.sim_time)})
-        self._submit_and_close(trial)
+        self._submit(trial, is_awaited=False)
+        self._end(trial.journal.close)
 
     def _start(self, simulation: Simulation, before: SimulationState, result: StepResult) -> None:
         if self._interrupted is not None:
@@ -242,11 +243,6 @@ class TrialRecorder:
             self._archive.answer, ending[-1].name, ending[-1].arguments, times
         )
         return Written(future, is_awaited=True)
-
-    def _submit_and_close(self, trial: _OpenTrial) -> Written:
-        written = self._submit(trial, is_awaited=False)
-        self._end(trial.journal.close)
-        return written
 
     def _end(self, leave: Callable[[], None]) -> None:
         self._writer.submit(leave)

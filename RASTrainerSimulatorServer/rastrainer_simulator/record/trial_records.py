@@ -30,7 +30,6 @@ from rastrainer_simulator.state import SimulationState, TrainingState
 from rastrainer_simulator.training.head_pose import RegisteredPlan
 from rastrainer_simulator.trial_state import (
     CheckedPoint,
-    FinalRegistration,
     GuideAxis,
     ProcedureState,
     RegistrationAttempt,
@@ -43,7 +42,7 @@ if TYPE_CHECKING:
 
 
 class TrialRecords:
-    """What a trial's record holds beside its state, and the records made of both.
+    """Makes the records of a trial from its state and from what is recorded with it.
 
     Attributes:
         started_utc: when it was started, ISO 8601.
@@ -280,7 +279,7 @@ def _attempt(attempt: RegistrationAttempt) -> RecordedAttempt:
         touches=tuple(
             RegisteredTouch(t.label, in_millimeters(t.position)) for t in attempt.touches
         ),
-        registration=None if attempt.registration is None else _used(attempt.registration),
+        registration=attempt.registration,
         checkpoints=tuple(
             TouchedCheckpoint(
                 point.name, in_millimeters(point.position), MM_PER_M * point.error, point.sim_time
@@ -288,10 +287,6 @@ def _attempt(attempt: RegistrationAttempt) -> RecordedAttempt:
             for point in attempt.checkpoints
         ),
     )
-
-
-def _used(registration: FinalRegistration) -> UsedRegistration:
-    return UsedRegistration(registration.matrix, registration.fre_mm, registration.expected_tre_mm)
 
 
 def _instrument(
@@ -362,7 +357,7 @@ def procedure_after(
 def _registered(
     before: ProcedureState, arguments: Mapping[str, Any], plan: Procedure
 ) -> ProcedureState:
-    registration = FinalRegistration.from_arguments(arguments)
+    registration = UsedRegistration.from_arguments(arguments)
     registered = RegisteredPlan.of(registration.matrix)
     if registered is None:
         raise ValueError("its registration is not rigid")

@@ -9,10 +9,11 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import ReplayTrack, read_track
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import GhostRule, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.arm import moving_links
-from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.core.setup import RecordedSetup, SimulationSetup
 from rastrainer_simulator.net.views.outgoing import GHOST_LINKS
 from rastrainer_simulator.replay.recorded_trial import JournalLoading
 from rastrainer_simulator.robot.kinematics import make_kinematics
@@ -36,7 +37,8 @@ class Ghost:
     def __init__(self, track: ReplayTrack, setup: SimulationSetup, head_to_world: np.ndarray):
         """Prepare; HeadToWorld is that of the present trial, (4, 4) float, mm."""
         header, touches = track.header, track.trajectory.touches
-        if not setup.is_of(header) or not touches:
+        other = setup.difference(record_from_json(RecordedSetup, header, "The journal's header"))
+        if other in ("scenario", "robot") or not touches:
             raise InputError("The trial cannot be a ghost: it has another head, or no touch.")
         then = setup.scenario.perturbed_head_to_world(header["seed"])
         self._moved = head_to_world @ np.linalg.inv(then)
@@ -64,7 +66,7 @@ def _first_usable(
     head_to_world: np.ndarray,
     check: Callable[[], None],
 ) -> Ghost | None:
-    """Return the ghost of the first usable journal; None where none is usable."""
+    """Return the ghost of the first usable journal; None if none is usable."""
     for journal in journals:
         try:
             return Ghost(read_track(journal, check), setup, head_to_world)
@@ -124,7 +126,7 @@ class TrialGhost:
         return True
 
     def poses(self, now: SimulationState) -> tuple[np.ndarray, ...] | None:
-        """Return the ghost's poses, as of a `Ghost`; None where none is to be seen."""
+        """Return the ghost's poses, as of a `Ghost`; None if none is to be seen."""
         training = now.training
         if self._ghost is None or training.trial_id != self._trial_id:
             return None

@@ -23,7 +23,7 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.collision.collision import stand_pose
 from rastrainer_simulator.core.arm import moving_links
 from rastrainer_simulator.core.interrupted_trial import refusing_malformed, seed_of
-from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.core.setup import RecordedSetup, SimulationSetup
 from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.record.trial_records import procedure_after
 from rastrainer_simulator.robot.kinematics import make_kinematics
@@ -80,12 +80,13 @@ class RecordedTrial:
 
     def _prepare(self, track: ReplayTrack, setup: SimulationSetup) -> None:
         header, scenario = track.header, setup.scenario
-        if not setup.is_of(header):
-            raise InputError("The trial was recorded with another scenario or robot.")
-        if not setup.matches_procedure(header):
-            raise InputError("The trial was recorded with another procedure.")
-        if not setup.matches_landmarks(header):
-            raise InputError("The trial was recorded with other landmarks.")
+        recorded = record_from_json(RecordedSetup, header, "The journal's header")
+        other = setup.difference(recorded)
+        if other:
+            words = {"procedure": "another procedure", "landmarks": "other landmarks"}
+            raise InputError(
+                f"The trial was recorded with {words.get(other, 'another scenario or robot')}."
+            )
         if not track.events:
             raise InputError("The trial cannot be shown again: its journal holds no event.")
         self.trainee, self.task = str(header["trainee"]), str(header["task"])
@@ -99,14 +100,13 @@ class RecordedTrial:
         self._event_times = [event.time_s for event in track.events]
         self.duration_s = max(float(track.trajectory.times_s[-1]), self._event_times[-1])
         settings = setup.settings
-        method = method_of(header.get("method", {}).get("name"))
+        method = method_of(recorded.method.name if recorded.method else None)
         task = task_by_method(scenario, self.task, method)
-        name = header["procedure"]["name"] if "procedure" in header else ""
         self._situations = _situations(
             track,
             task.labels,
             header["before"]["camera"] or settings.camera,
-            scenario.procedure(name) if name else None,
+            scenario.procedure(recorded.procedure.name) if recorded.procedure else None,
             method,
         )
         places = self._head_to_world[:3, :3] @ (task.fiducials / MM_PER_M).T

@@ -22,7 +22,7 @@ from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record.trial_entries import TrialEntries
 from rastrainer_simulator.state import (
-    HANDS_OFF,
+    NEUTRAL_STICKS,
     OperatorCommand,
     OperatorInput,
     StartingPoint,
@@ -60,7 +60,7 @@ class ReplayReport:
     Attributes:
         ticks: simulated again.
         compared: how many entries of each kind were compared.
-        difference: the first difference in words; None where all is equal to the last bit.
+        difference: the first difference in words; None if all is equal to the last bit.
         changed_versions: name → (recorded, present), where they differ.
         motion: the motion metrics of the replayed trial, as its record has them.
     """
@@ -216,7 +216,7 @@ def _inputs(
             )
         elif entry["kind"] == "command":
             commands[entry["tick"]].append(recorded_command(entry, seed))
-    held = HANDS_OFF
+    held = NEUTRAL_STICKS
     for tick in range(before + 1, last + 1):
         held = sticks.get(tick, held)
         yield replace(held, commands=tuple(commands[tick])) if tick in commands else held

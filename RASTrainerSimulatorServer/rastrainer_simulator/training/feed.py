@@ -49,7 +49,7 @@ class ProcedureSettings:
 
 
 class FeedLayer(str, Enum):
-    """What the drill is cutting, or what the instrument meets, as a hand feels it.
+    """The layer that the drill cuts or the instrument meets, as a hand feels it.
 
     `THROUGH` is past the inner table, `BLOCKED` an instrument that stands on uncut bone.
     """
@@ -63,7 +63,7 @@ class FeedLayer(str, Enum):
 
 @dataclass(frozen=True)
 class HeadAhead:
-    """What lies ahead along the guide's axis: distances from its tip, m, None where it is missed.
+    """What lies ahead along the guide's axis: distances from its tip, m, None if it is missed.
 
     Only the simulator knows them; the trainee feels them.
 

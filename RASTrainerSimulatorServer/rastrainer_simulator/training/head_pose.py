@@ -35,7 +35,7 @@ class Truth:
         head_to_world: (4, 4) float, mm, from the MRI's RAS to World.
         target_ras: (3,) float, mm, where the true error of a registration is reported.
         fiducials_ras: label → (3,) float, mm, of the trial's task.
-        skin: how the skin lies on the head, compared with the images.
+        skin: its shift, compared with the images.
     """
 
     head_to_world: Annotated[np.ndarray, transform()]

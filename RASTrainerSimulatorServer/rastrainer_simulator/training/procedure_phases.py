@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rastrainer.commands import CommandName
-from rastrainer.procedure.record import MAX_ATTEMPTS, MAX_TOUCHED_CHECKPOINTS
+from rastrainer.procedure.record import MAX_ATTEMPTS, MAX_TOUCHED_CHECKPOINTS, UsedRegistration
 from rastrainer.protocol import STAND_OFF_LIMIT_MM, Phase, TouchRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import EventKind, OperatorCommand, TrainingState
@@ -23,7 +23,6 @@ from rastrainer_simulator.training.replies import RefusedStep, TrialStep
 from rastrainer_simulator.training.rules import TouchMoment, TrainingSettings
 from rastrainer_simulator.trial_state import (
     CheckedPoint,
-    FinalRegistration,
     GuideAlignment,
     GuideAxis,
     ProcedureState,
@@ -106,7 +105,7 @@ class ProcedurePhases:
 
     def _use_registration(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
         """Show the plan by a registration from now on; a second one is refused unless equal."""
-        registration = FinalRegistration.from_arguments(moment.arguments)
+        registration = UsedRegistration.from_arguments(moment.arguments)
         known = moment.procedure.registration
         if known is not None and not known.agrees_with(registration):
             return RefusedStep(say("already in use"))

@@ -8,19 +8,19 @@ from typing import Any
 
 import numpy as np
 
+from rastrainer.procedure.record import UsedRegistration
 from rastrainer.protocol import Phase, RegistrationMethod
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import Event, EventKind, TrainingState, TrialResult
 from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training.feed import Feed
 from rastrainer_simulator.training.head_pose import Truth
-from rastrainer_simulator.trial_state import FinalRegistration
 from rastrainer_simulator.vectors import in_millimeters
 
 
 @dataclass(frozen=True)
 class TrainingReply:
-    """What a command led to; `feed` is what is in the guide from now on, None as before."""
+    """The answer to a command; `feed` is the new feed in the guide, None if it stays."""
 
     ok: bool
     message: str = ""
@@ -31,7 +31,7 @@ class TrainingReply:
 
 @dataclass(frozen=True)
 class TrialStep:
-    """What a command leads to.
+    """The result of a command that is carried out.
 
     Attributes:
         state: of the trial.
@@ -56,7 +56,7 @@ class TrialStep:
 
 @dataclass(frozen=True)
 class RefusedStep:
-    """Why a command is refused; `data` is that of a touch that does not count."""
+    """Why a command is refused; `data` describes a touch that does not count."""
 
     sentence: str
     data: Mapping[str, Any] | None = None
@@ -122,7 +122,7 @@ def take_registration(
 ) -> TrialStep | TrainingReply:
     """Accept a registration, which becomes final, and reveal the truth; refuse any other."""
     known = state.registration
-    registration = FinalRegistration.from_arguments(arguments)
+    registration = UsedRegistration.from_arguments(arguments)
     if known is not None and not known.agrees_with(registration):
         return TrainingReply(False, say("registration is final"))
     matrix = registration.matrix if known is None else known.matrix

@@ -160,7 +160,7 @@ def refused_touch(
     settings: TrainingSettings,
     method: RegistrationMethod,
 ) -> str | None:
-    """Return why a touch does not count, None where it does.
+    """Return why a touch does not count, None if it does.
 
     Args:
         now: where the tip is.

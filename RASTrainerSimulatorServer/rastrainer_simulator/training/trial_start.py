@@ -94,7 +94,10 @@ class TrialStarter:
         skin = record_from_json(SkinShift, chosen_skin) if chosen_skin else self._scenario.skin
         method = method_of(arguments.get("method"))
         task = task_by_method(self._scenario, arguments["task"], method)
-        phases = self._phases(procedure, task) if procedure else None
+        phases = None
+        if procedure:
+            plan, settings = self._scenario.procedure(procedure), self._procedure_settings
+            phases = ProcedurePhases(plan, task.labels, self._settings, settings)
         chosen = arguments.get("seed")
         if chosen is None:
             chosen = arguments.get(DRAWN_SEED)
@@ -114,11 +117,6 @@ class TrialStarter:
             trace=TraceState() if method in TRACED_METHODS else None,
         )
         return StartedTrial(seed, task, head, phases, state)
-
-    def _phases(self, procedure: str, task: Task) -> ProcedurePhases:
-        plan = self._scenario.procedure(procedure)
-        settings = self._procedure_settings
-        return ProcedurePhases(plan, task.labels, self._settings, settings)
 
 
 class TrialClock:

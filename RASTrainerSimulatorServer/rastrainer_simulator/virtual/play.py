@@ -30,7 +30,7 @@ from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_entries import TrialEntries
 from rastrainer_simulator.record.trial_records import UnmeasuredRecord
 from rastrainer_simulator.state import (
-    HANDS_OFF,
+    NEUTRAL_STICKS,
     OperatorCommand,
     OperatorInput,
     SimulationState,
@@ -111,7 +111,7 @@ def play_virtual_trial(
     }
 
     def step(action: Action | None, own: Mapping[str, Any] = NOTHING) -> StepResult:
-        before, operator_input = simulation.state, HANDS_OFF
+        before, operator_input = simulation.state, NEUTRAL_STICKS
         if action is not None:
             name, arguments = action
             # `own` are arguments that no client may send.

@@ -75,3 +75,8 @@ def test_other_records_are_refused_in_one_sentence(record, words):
     with pytest.raises(InputError, match=words) as caught:
         record_from_json(TrialRecord, record)
     assert "\n" not in str(caught.value)
+
+
+def test_the_longest_name_that_a_view_may_give_its_device_is_kept():
+    display = {"kind": "headset", "device": "Q" * 80, "refreshHz": 90.0}
+    assert record_from_json(TrialRecord, make_record(display=display)).display == display

@@ -13,7 +13,13 @@ from rastrainer_simulator.collision.proximity import DEEPEST, Pressing
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.replay.resimulation import replay
-from rastrainer_simulator.state import HANDS_OFF, EventKind, Motion, OperatorCommand, OperatorInput
+from rastrainer_simulator.state import (
+    NEUTRAL_STICKS,
+    EventKind,
+    Motion,
+    OperatorCommand,
+    OperatorInput,
+)
 from Testing.simulator.virtual.cheating_trainees import press
 
 DT = 0.004
@@ -40,7 +46,7 @@ def do(simulation, command, **arguments):
 
 
 def rest(simulation, ticks):
-    return [simulation.step(DT, HANDS_OFF) for _ in range(ticks)]
+    return [simulation.step(DT, NEUTRAL_STICKS) for _ in range(ticks)]
 
 
 def move(simulation, place_mm, speed=300.0):

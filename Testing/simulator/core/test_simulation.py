@@ -16,7 +16,7 @@ from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.robot.goal import FabrikSettings
 from rastrainer_simulator.state import (
-    HANDS_OFF,
+    NEUTRAL_STICKS,
     EventKind,
     Motion,
     OperatorCommand,
@@ -51,7 +51,7 @@ class Driver:
     def tip(self):
         return self.state.tool_tip_to_world[:3, 3].copy()
 
-    def step(self, operator_input=HANDS_OFF):
+    def step(self, operator_input=NEUTRAL_STICKS):
         result = self.simulation.step(DT, operator_input)
         self.events.extend(result.events)
         return result
@@ -104,7 +104,7 @@ def trial(idle):
 
 def random_inputs(seed, ticks, down=(0.0, 0.0, -1.0)):
     random = np.random.default_rng(seed)
-    stick = HANDS_OFF
+    stick = NEUTRAL_STICKS
     for tick in range(ticks):
         if tick % 60 == 0:
             translation = tuple(random.uniform(-0.6, 0.6, 3) + down)
@@ -246,7 +246,7 @@ def test_a_jog_moves_along_the_axes_of_its_frame(trial, scenario, frame):
     }[frame]
     start = trial.tip
     trial.do(CommandName.JOG, velocityMmS=[0.0, -40.0, 0.0], frame=frame, durationS=0.5)
-    trial.until(HANDS_OFF, lambda state: state.motion is Motion.NONE)
+    trial.until(NEUTRAL_STICKS, lambda state: state.motion is Motion.NONE)
     moved = trial.tip - start
     assert moved / np.linalg.norm(moved) == pytest.approx(-axes[1], abs=1e-3)
     assert np.linalg.norm(moved) == pytest.approx(0.04 * 0.5, rel=0.05)
@@ -336,7 +336,7 @@ def test_several_commands_in_one_tick_are_each_answered_in_order(trial):
 def test_a_simulation_continues_from_anothers_tick_time_revision_and_camera(setup):
     simulation = Simulation(setup, 1)
     simulation.restart_from(StartingPoint(tick=1000, sim_time_s=4.0, revision=7, camera="far"))
-    state = simulation.step(DT, HANDS_OFF).state
+    state = simulation.step(DT, NEUTRAL_STICKS).state
     assert (state.tick, state.sim_time, state.camera) == (1001, 4.0 + DT, "far")
     assert state.training.revision == 7
 

@@ -7,6 +7,7 @@ from concurrent.futures import Future
 from dataclasses import replace
 from types import MappingProxyType
 
+from rastrainer.procedure.record import UsedRegistration
 from rastrainer.protocol import MAX_ASSIGNMENTS, Phase
 from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
 from rastrainer.study.protocol.steps import StudyStep
@@ -34,7 +35,7 @@ from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.presentation.screen import Screen, without_secrets
 from rastrainer_simulator.rating.rating_pages import DomainPage, LoadingPage, RatedPage
 from rastrainer_simulator.record.trial_context import TutorialOutcome
-from rastrainer_simulator.state import FinalRegistration, TrainingState, TrialResult
+from rastrainer_simulator.state import TrainingState, TrialResult
 from rastrainer_simulator.trial_state import (
     PlannedLine,
     ProcedureState,
@@ -78,7 +79,7 @@ SCORED = TrainingState(
     mode="desktop",
     trial_id="none",
     touches=(TouchState("12", (0.0, 0.0, 0.0), 183.2, 183.2),),
-    result=TrialResult(FinalRegistration((1.0,) * 16, 1.25, 1.5), 1.4, 0.0, FAILED),
+    result=TrialResult(UsedRegistration((1.0,) * 16, 1.25, 1.5), 1.4, 0.0, FAILED),
 )
 
 AT_PROCEDURE = replace(

@@ -22,7 +22,7 @@ from rastrainer_simulator.input.inputs import (
     Source,
     SourceKind,
 )
-from rastrainer_simulator.state import HANDS_OFF, OperatorInput
+from rastrainer_simulator.state import NEUTRAL_STICKS, OperatorInput
 
 GAMEPAD = Source(SourceKind.GAMEPAD)
 KEYS = Source(SourceKind.KEYBOARD, view=1)
@@ -66,7 +66,7 @@ def tap(controls, source, code):
 def test_nobody_has_control_until_somebody_acts(controls):
     controls.set_inputs(GAMEPAD, {"+leftx": 0.0, "a": 0.0})
     assert controls.holder is None
-    assert controls.sticks == HANDS_OFF
+    assert controls.sticks == NEUTRAL_STICKS
     controls.set_inputs(GAMEPAD, {"+leftx": 0.4})
     assert controls.holder == GAMEPAD
     assert controls.sticks.operator == "gamepad"
@@ -130,7 +130,7 @@ def test_a_seat_switches_devices_by_using_one_but_not_while_a_stick_is_pushed(co
 def test_a_holder_that_has_left_no_longer_has_control(controls):
     controls.set_inputs(GAMEPAD, {"+leftx": 0.4})
     controls.forget(GAMEPAD)
-    assert controls.sticks == HANDS_OFF
+    assert controls.sticks == NEUTRAL_STICKS
     controls.set_key(PAGE, "KeyD", True)
     assert controls.holder == PAGE
 
@@ -138,7 +138,7 @@ def test_a_holder_that_has_left_no_longer_has_control(controls):
 def test_sticks_do_nothing_in_a_menu(controls):
     controls.enter(ControlContext.MENU)
     controls.set_inputs(GAMEPAD, {"+rightx": 0.9})
-    assert controls.sticks == HANDS_OFF
+    assert controls.sticks == NEUTRAL_STICKS
 
 
 def test_a_key_repeats_in_a_menu_only_while_its_keyboard_repeats_it(controls, ear):

@@ -9,7 +9,7 @@ from rastrainer.trial.analysis import RevealedTruth, analyze_trial
 from rastrainer.trial.scoring import LONG_PAUSE_S
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record.trial_entries import TrialEntries
-from rastrainer_simulator.state import HANDS_OFF, OperatorCommand, OperatorInput
+from rastrainer_simulator.state import NEUTRAL_STICKS, OperatorCommand, OperatorInput
 from rastrainer_simulator.virtual.play import play_virtual_trial
 from rastrainer_simulator.virtual.scripted_trainee import Skill
 
@@ -22,7 +22,7 @@ PAUSE, RESUME = (
     OperatorInput(commands=(OperatorCommand(name, {}),))
     for name in (CommandName.PAUSE, CommandName.RESUME)
 )
-IDLE = [HANDS_OFF] * round(WAIT_S / DT)
+IDLE = [NEUTRAL_STICKS] * round(WAIT_S / DT)
 ROUND_TRIP = [
     OperatorInput(translation=(0.0, 0.0, sign)) for sign in (1.0, -1.0) * 8 for _ in range(150)
 ]

@@ -133,9 +133,10 @@ def test_the_journal_of_a_fiducial_trial_mentions_no_method(traced_in_air, tmp_p
 
 
 def test_a_trial_with_landmarks_other_than_the_scenarios_is_not_replayed(airy):
-    header = {"method": {"name": "surface", "landmarksSha256": "of others"}}
-    assert not airy.matches_landmarks(header)
-    assert airy.matches_landmarks({})
+    own = airy.recorded(method=RegistrationMethod.SURFACE)
+    assert airy.difference(own) == ""
+    others = replace(own, method=replace(own.method, landmarks_sha256="of others"))
+    assert airy.difference(others) == "landmarks"
 
 
 def record_of(**changes):

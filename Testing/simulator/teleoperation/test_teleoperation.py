@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from rastrainer_simulator.state import HANDS_OFF, Motion, OperatorInput
+from rastrainer_simulator.state import NEUTRAL_STICKS, Motion, OperatorInput
 from rastrainer_simulator.teleoperation.commanded_motion import (
     ARRIVED,
     JogCommand,
@@ -44,7 +44,7 @@ class Hand:
         self.tip = Tip((0.5, 0.0, 0.5), DOWN, RIGHT)
         self.blocked = False
 
-    def step(self, operator_input=HANDS_OFF):
+    def step(self, operator_input=NEUTRAL_STICKS):
         motion_request = self.teleoperation.step(
             DT, operator_input, self.tip, self.axes, self.surface
         )

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from rastrainer.protocol import Phase
-from rastrainer_simulator.state import HANDS_OFF, OperatorInput
+from rastrainer_simulator.state import NEUTRAL_STICKS, OperatorInput
 from rastrainer_simulator.teleoperation.teleoperation import StickResponse
 from rastrainer_simulator.training.feed import (
     LONGEST_FEED_M,
@@ -54,11 +54,11 @@ def test_a_stick_that_reports_nan_feeds_nothing(drive):
 
 def test_a_commanded_feed_lasts_for_its_duration_within_the_limit(drive):
     drive.start(50.0, 0.1)
-    distances = [drive.way(DT, DRILLING, HANDS_OFF).distance for _ in range(30)]
+    distances = [drive.way(DT, DRILLING, NEUTRAL_STICKS).distance for _ in range(30)]
     assert sum(distances) == pytest.approx(0.005 * 0.1)
     assert distances[25:] == [0.0] * 5
     drive.start(-2.0, 0.01)
-    assert sum(drive.way(DT, DRILLING, HANDS_OFF).distance for _ in range(5)) == pytest.approx(
+    assert sum(drive.way(DT, DRILLING, NEUTRAL_STICKS).distance for _ in range(5)) == pytest.approx(
         -2e-5
     )
 
@@ -66,7 +66,7 @@ def test_a_commanded_feed_lasts_for_its_duration_within_the_limit(drive):
 def test_the_stick_overrides_a_commanded_feed(drive):
     drive.start(5.0, 2.0)
     assert drive.way(DT, DRILLING, stick(1.0)).distance < 0.0
-    assert drive.way(DT, DRILLING, HANDS_OFF).distance == 0.0
+    assert drive.way(DT, DRILLING, NEUTRAL_STICKS).distance == 0.0
 
 
 def test_the_drill_moves_from_the_guides_tip_to_its_full_length_and_its_depth_is_kept():

@@ -22,7 +22,13 @@ from rastrainer_simulator.collision.robot_shape import sphere_directions
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record.trial_entries import TrialEntries
-from rastrainer_simulator.state import HANDS_OFF, Answer, Motion, OperatorCommand, OperatorInput
+from rastrainer_simulator.state import (
+    NEUTRAL_STICKS,
+    Answer,
+    Motion,
+    OperatorCommand,
+    OperatorInput,
+)
 from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.virtual.play import play_virtual_trial
 from rastrainer_simulator.virtual.scripted_trainee import Skill
@@ -227,7 +233,7 @@ class Pilot:
         for _ in range(FOREVER):
             if self._simulation.state.motion is Motion.NONE:
                 return
-            self._step(HANDS_OFF)
+            self._step(NEUTRAL_STICKS)
         raise AssertionError("the arm does not come to rest")
 
     def _do(self, command: CommandName, **arguments) -> Answer:

@@ -1,4 +1,4 @@
-"""How the head lies in a trial: its pose, near the nominal one, and how its skin has shifted.
+"""The pose of the head in a trial, near the nominal one, and the shift of its skin.
 
 Only the simulator knows either. Skin and scalp move on the skull when the head is laid down
 otherwise, when its holder is tightened or tape is stuck to it, while bone, brain and targets stay.
@@ -82,7 +82,7 @@ INVERSIONS = 8
 
 @dataclass(frozen=True)
 class SkinShift:
-    """How the skin lies in the operation, compared with the images.
+    """The shift of the skin in the operation, compared with the images.
 
     Attributes:
         shift_mm: root mean square length of the shift, over seeds; 0 for none.

@@ -1,1 +1,1 @@
-"""A trial's journal as a file: its lines, how they are read and checked, what they say."""
+"""A trial's journal as a file: its lines, and how they are read and checked."""

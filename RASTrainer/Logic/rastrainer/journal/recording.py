@@ -1,4 +1,4 @@
-"""From a journal's entries, while recorded or read, to a trial's trajectory, and to its replay."""
+"""The trajectory and the replay of a trial, from its journal's entries."""
 
 from __future__ import annotations
 

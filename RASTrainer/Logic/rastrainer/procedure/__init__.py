@@ -1,1 +1,1 @@
-"""Procedures: planned trajectories into a head, what was done along them, errors and score."""
+"""Procedures: planned trajectories into a head, their records, errors and score."""

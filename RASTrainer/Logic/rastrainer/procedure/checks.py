@@ -1,4 +1,4 @@
-"""What is measured of a planned procedure, and whether it can be carried out on its head.
+"""Measures of a planned procedure, and whether it can be carried out on its head.
 
 The reach of the robot is not checked here; it needs the robot.
 """
@@ -33,12 +33,12 @@ _DISTANCE = number(-1e4, 1e4, "mm")
 
 @dataclass(frozen=True)
 class LineMeasures:
-    """What is measured of one planned line.
+    """The measures of one planned line.
 
     Attributes:
         name: of the trajectory.
         length_mm: from entry to target.
-        skull_angle_deg: to the skull's normal where the line meets it; None where it does not.
+        skull_angle_deg: to the skull's normal where the line meets it; None if it does not.
         no_go_mm: from the surface of the instrument to each no-go structure, by name; below 0 it
             overlaps the structure.
         nearest_line: name of the nearest other trajectory; empty where there is no other.
@@ -56,7 +56,7 @@ class LineMeasures:
 
     @property
     def nearest_no_go(self) -> str:
-        """Name of the nearest no-go structure; empty where there is none."""
+        """Name of the nearest no-go structure; empty if there is none."""
         return min(self.no_go_mm, key=self.no_go_mm.__getitem__, default="")
 
 
@@ -77,7 +77,7 @@ def measure_lines(procedure: Procedure, meshes: ProcedureMeshes) -> list[LineMea
 def planned_bone(trajectory: ProcedureTrajectory, skull: HeadMesh) -> BoneAhead | None:
     """Return where the planned line goes through bone, as distances from the entry in mm.
 
-    They are below 0 where the entry is planned below the bone's surface. None where the line does
+    They are below 0 if the entry is planned below the bone's surface. None if the line does
     not go through bone.
     """
     direction = trajectory.direction
@@ -90,7 +90,7 @@ def planned_bone(trajectory: ProcedureTrajectory, skull: HeadMesh) -> BoneAhead 
 
 
 def planned_skull_angle_deg(trajectory: ProcedureTrajectory, skull: HeadMesh) -> float | None:
-    """Return the angle to the skull's normal where the line meets it; None where it does not."""
+    """Return the angle to the skull's normal where the line meets it; None if it does not."""
     bone = planned_bone(trajectory, skull)
     if bone is None:
         return None

@@ -112,7 +112,7 @@ class TrajectoryErrors:
         shown_direction: (3,) float, RAS: the true direction of the line that was shown.
         axis_start: (3,) float, RAS: where the guide's tip truly was.
         axis_direction: (3,) float, RAS, unit vector: the true direction of the instrument.
-        bone: where the axis truly goes through the skull, from the guide's tip; None where it
+        bone: where the axis truly goes through the skull, from the guide's tip; None if it
             misses it.
         kept_mm: distances from the surface of the instrument (or of the drill, where it went
             deeper; taken as thick) to each no-go structure, by name; 0 or less is a hit.
@@ -172,7 +172,7 @@ class TrajectoryErrors:
 
     @property
     def plunge_mm(self) -> float | None:
-        """How deep the drill was past the inner table; None where the axis misses it."""
+        """How deep the drill was past the inner table; None if the axis misses it."""
         if self.bone is None or self.bone.inner_mm is None:
             return None
         return max(0.0, self.instrument.drill_depth_mm - self.bone.inner_mm)

@@ -26,7 +26,7 @@ class BoneAhead(NamedTuple):
 
     Attributes:
         outer_mm: the outer table.
-        inner_mm: the inner table; None where the line does not leave the bone.
+        inner_mm: the inner table; None if the line does not leave the bone.
     """
 
     outer_mm: float
@@ -124,7 +124,7 @@ def is_inside(mesh: HeadMesh, point: np.ndarray) -> bool:
 
 
 def axis_distance_mm(mesh: HeadMesh, start: np.ndarray, end: np.ndarray) -> float:
-    """Return the distance of a straight segment from a closed body, 0 where they meet.
+    """Return the distance of a straight segment from a closed body, 0 if they meet.
 
     Unless they meet, the shortest path to a triangle begins at an end of the segment, or ends on a
     side of the triangle.

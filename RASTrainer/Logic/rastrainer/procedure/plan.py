@@ -37,7 +37,7 @@ MAX_TRAJECTORIES = 20
 MAX_NO_GO = 10
 MAX_CHECKPOINTS = 20
 MAX_NO_GO_FILES = 30
-"""Of all procedures of a scenario together, so that a package can hold them."""
+"""Size limit of all procedures of a scenario together, so that a package can hold them."""
 MIN_LENGTH_MM = 10.0
 DIAMETERS_MM = (0.5, 10.0)
 MAX_SAFETY_MM = 20.0
@@ -45,7 +45,7 @@ NO_GO_FOLDER = "no-go"
 
 
 class ProcedureKind(str, Enum):
-    """What is done along the trajectories."""
+    """The kind of a procedure."""
 
     BIOPSY = "biopsy"
     DBS = "dbs"

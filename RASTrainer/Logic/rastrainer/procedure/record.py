@@ -1,7 +1,8 @@
-"""What was done in a procedure, as part of a trial's record; it does not hold the truth."""
+"""The record of a procedure, a part of the record of its trial; it does not hold the truth."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Any
@@ -68,18 +69,39 @@ class RegisteredTouch:
     position_mm: WorldPoint
 
 
+SAME = 1e-9
+"""Registrations are the same up to this part of a number, and up to as many mm."""
+
+
 @dataclass(frozen=True)
 class UsedRegistration:
-    """The registration by which the plan was shown.
+    """A registration by its numbers: one by which the plan is shown, or the final one of a trial.
 
     Attributes:
-        matrix: WorldToHead, 16 numbers, row by row, rigid, mm.
+        matrix: WorldToHead, 16 numbers, row by row, mm; rigid in a record.
         expected_tre_mm: at the scenario's target.
     """
 
     matrix: Annotated[tuple[float, ...], _rigid_matrix]
     fre_mm: _Length
     expected_tre_mm: _Length
+
+    @classmethod
+    def from_arguments(cls, arguments: Mapping[str, Any]) -> UsedRegistration:
+        """Return the registration in a command's checked arguments."""
+        return cls(tuple(arguments["matrix"]), arguments["freMm"], arguments["expectedTreMm"])
+
+    def agrees_with(self, other: UsedRegistration) -> bool:
+        """Return whether both are the outcome of one computation.
+
+        Slicer's numpy and the simulator's may round the last digits otherwise; who knows the truth
+        gains nothing from so little.
+        """
+        pairs = zip(self._numbers(), other._numbers(), strict=True)
+        return all(math.isclose(a, b, rel_tol=SAME, abs_tol=SAME) for a, b in pairs)
+
+    def _numbers(self) -> tuple[float, ...]:
+        return (*self.matrix, self.fre_mm, self.expected_tre_mm)
 
     @property
     def world_to_head(self) -> np.ndarray:
@@ -94,7 +116,7 @@ class RecordedAttempt:
     Attributes:
         touches: that were registered; may be left out of the accepted one, whose touches are the
             trial's.
-        registration: in use; None where the trainee touched again before there was one.
+        registration: in use; None if the trainee touched again before there was one.
         checkpoints: touched with it, in order.
     """
 
@@ -107,7 +129,7 @@ class RecordedAttempt:
 
 @dataclass(frozen=True)
 class PlacedInstrument:
-    """What was done for one planned trajectory.
+    """The instrument of one planned trajectory, as it was placed.
 
     Attributes:
         trajectory: its name.

@@ -1,4 +1,4 @@
-"""From a trial's record to its numbers: registrations, target errors, scores and submissions."""
+"""Analysis of a trial's record: registrations, target errors, scores and submissions."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class RevealedTruth:
     Attributes:
         head_to_world: 16 numbers, row by row, mm, from MRI RAS to World.
         true_tre_mm: true error of the registration at the target.
-        skin: how the skin lay on the head; a study keeps no more of it than the record does.
+        skin: its shift; a study keeps no more of it than the record does.
     """
 
     head_to_world: Annotated[tuple[float, ...], numbers(16, 1e6)]
@@ -74,8 +74,8 @@ class PublishedScore:
         reference: of the cohort.
     """
 
-    published: Annotated[float, number(-1e9, 1e9)]
-    equation_3: Annotated[float, number(-1e9, 1e9)]
+    published: float
+    equation_3: float
     reference: ctps.CohortReference
 
 

@@ -56,7 +56,7 @@ STAND_OFF_MM, INSERTION_MM_S = 30.0, 8.0
 
 @dataclass(frozen=True)
 class ProcedureMeasures:
-    """What is scored of a procedure.
+    """The measures of a procedure that count for its score.
 
     Attributes:
         duration_s: from the start of the trial to the last release, without pauses; above 0.

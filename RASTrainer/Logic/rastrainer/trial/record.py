@@ -75,7 +75,7 @@ _AT_TIME = json_checks.number(0, TIME_LIMIT_S, "s")
 
 
 def _text_or_number(value: Any) -> str | float:
-    check = json_checks.text() if isinstance(value, str) else json_checks.number(0, 1e9)
+    check = json_checks.text(80) if isinstance(value, str) else json_checks.number(0, 1e9)
     return check(value)
 
 
@@ -96,7 +96,7 @@ class TouchedPoint:
 
 @dataclass(frozen=True, kw_only=True)
 class AnyTrial:
-    """What the records of a finished and of an aborted trial share: who, what, when, the touches.
+    """Fields that the records of finished and of aborted trials share.
 
     Attributes:
         trainee: pseudonym.
@@ -153,12 +153,12 @@ class TrialRecord(AnyTrial):
         motion: motion metrics by name (`rastrainer.motion`).
         display: what the trainee looked at: `kind`, `device`, `refreshHz`, `shownFrames` and
             `droppedFrames`, the `guidance` to the next point, and the `ghost` that was shown (a
-            `GhostRule`); empty where no view reported it.
+            `GhostRule`); empty if no view reported it.
         procedure: what was done after the touches; None in a trial of touches alone. The points
             are those of the accepted registration.
-        trace: the points that were traced over the skin, in order of time; empty where the method
+        trace: the points that were traced over the skin, in order of time; empty if the method
             has no trace.
-        skin: how the skin lay on the head, never with its seed; the truth reveals that.
+        skin: its shift, without the seed: that is revealed with the truth.
         played: who moved the arm, and more; None of a trial that no simulator recorded.
         journal_sha256: hash of the journal's line of this record, which stands for all lines up to
             it; "" in that line itself.

@@ -78,7 +78,7 @@ class SafetyMeasures(NamedTuple):
 
 @dataclass(frozen=True)
 class ScoreMeasures:
-    """What is scored of a trial.
+    """The measures of a trial that count for its score.
 
     Attributes:
         completion_time_s: above 0.
@@ -149,12 +149,12 @@ class TrialScore:
         accuracy_desirability: from 0 (no registration) to 1 (no error, no common bias).
         safety_desirability: from 0 to 1 (no unintended contact, nothing pressed in).
         is_accurate: whether the target error is within the limit.
-        is_unbiased: whether the common bias is; None where it was not scored.
+        is_unbiased: whether the common bias is; None if it was not scored.
         is_safe: whether contact and pressing are.
         measures: what was scored.
-        reference: what it was measured against.
+        reference: that the measures were compared with.
         version: of the formula and the references.
-        unshifted_tre_mm: true TRE at the target, had the skin not shifted; None where it had not.
+        unshifted_tre_mm: true TRE at the target, had the skin not shifted; None if it had not.
             It does not count.
     """
 

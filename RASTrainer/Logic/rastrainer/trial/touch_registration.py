@@ -18,18 +18,19 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer import json_checks, transforms
+from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, pair
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.trial_head import SkinShift
-from rastrainer.json_checks import Argument, accepted, checked_keys
+from rastrainer.json_checks import accepted
+from rastrainer.json_records import record_from_json
+from rastrainer.procedure.record import RegisteredTouch
 from rastrainer.protocol import (
     COARSE_LANDMARKS,
     FIDUCIAL_COUNT,
     MIN_TRACE_POINTS,
     TRACED_METHODS,
-    WORLD_LIMIT_MM,
     RegistrationMethod,
 )
 from rastrainer.registration.fits import RIGID
@@ -93,9 +94,11 @@ class GivenPoints:
             raise InputError(
                 f"The simulator's answer to GetTrial must hold touches, a list of {wanted}."
             )
-        points = [checked_keys(touch, _TOUCH_KEYS, "Each touch of the trial") for touch in given]
-        places = np.array([point["positionMm"] for point in points])
-        touches = PointList(tuple(point["label"] for point in points), places)
+        points = [
+            record_from_json(RegisteredTouch, touch, "Each touch of the trial") for touch in given
+        ]
+        places = np.array([point.position_mm for point in points])
+        touches = PointList(tuple(point.label for point in points), places)
         trace = _trace_of(answer, method, least_traced)
         return cls(str(answer.get("task", "")), touches, method, trace)
 
@@ -110,12 +113,6 @@ def _trace_of(answer: Mapping[str, Any], method: RegistrationMethod, least: int)
             f"more, not {len(trace)}."
         )
     return np.array(trace).reshape(-1, 4)[:, :3]
-
-
-_TOUCH_KEYS = {
-    "label": Argument(json_checks.text()),
-    "positionMm": Argument(json_checks.numbers(3, WORLD_LIMIT_MM, "mm")),
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -297,7 +294,7 @@ def unshifted_tre_mm(
         skin: How the skin lay, with its seed.
 
     Returns:
-        None where the skin lay as in the images, or where the points cannot be registered so.
+        None if the skin lay as in the images, or where the points cannot be registered so.
     """
     if skin.is_none:
         return None
@@ -320,7 +317,7 @@ def unshifted_tre_mm(
 def skin_sentence(
     skin: SkinShift, true_tre_mm: float, unshifted_mm: float | None
 ) -> Sentence | None:
-    """Return what the trainee reads after a trial; None where the skin lay as in the images."""
+    """Return what the trainee reads after a trial; None if the skin lay as in the images."""
     if skin.is_none:
         return None
     amounts = {"shift": skin.shift_mm, "indentation": skin.indentation_mm, "tre": true_tre_mm}

@@ -192,13 +192,13 @@ class TrialFeedback:
     """What a trainee is shown after a trial.
 
     Attributes:
-        score: With its parts; None where the trial has none.
+        score: With its parts; None if the trial has none.
         touches: Every touch, in the order of touching.
         worst: The touch with the largest error; its `replay_s` is what to look at again.
         advice: Up to three things to improve, the first first.
-        progress: None where there is no history.
+        progress: None if there is no history.
         paused_s: How long the trial was paused in all, as far as that is known.
-        skin: How the skin had shifted, and what that did; None where it had not.
+        skin: How the skin had shifted, and what that did; None if it had not.
     """
 
     score: TrialScore | None
@@ -272,7 +272,7 @@ def trial_feedback(
     """Return the feedback on a trial; what is not known is left out.
 
     Args:
-        score: Of the trial; None where it has none.
+        score: Of the trial; None if it has none.
         registration: That was scored.
         normals: (n, 3) float, outward unit normals of the skin at the fiducials, RAS.
         motion: Motion metrics; with `path_efficiency`, detours are advised on too.

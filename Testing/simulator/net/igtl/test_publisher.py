@@ -11,6 +11,7 @@ import pytest
 
 from rastrainer.igtl.content import Points, String
 from rastrainer.igtl.message import HEADER_BYTES, read_header, unpack
+from rastrainer.procedure.record import UsedRegistration
 from rastrainer.protocol import DeviceName, Phase, Proximity
 from rastrainer_simulator.loop.results import StateFeed
 from rastrainer_simulator.loop.timing import Pacer
@@ -18,7 +19,6 @@ from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher
 from rastrainer_simulator.state import StepResult, TrainingState
 from rastrainer_simulator.trial_state import (
     CheckedPoint,
-    FinalRegistration,
     PlannedLine,
     ProcedureState,
     TouchState,
@@ -215,7 +215,7 @@ def aligning(feed=0.0, phase=Phase.ALIGNING, **others):
     procedure = ProcedureState(
         "dbs",
         stage=phase,
-        registration=FinalRegistration((1.0,) * 16, 1.0, 1.0),
+        registration=UsedRegistration((1.0,) * 16, 1.0, 1.0),
         checkpoints=(CheckedPoint("Vertex", (0.0, 0.0, 0.0), 0.00123456, 1.0, 1.0),),
         trajectories=(TrajectoryState(line), TrajectoryState(line)),
     )

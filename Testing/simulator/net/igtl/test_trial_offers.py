@@ -1,7 +1,7 @@
 """A finished trial is offered again and again until a client acknowledges it."""
 
 import json
-from types import SimpleNamespace
+from dataclasses import dataclass
 
 import pytest
 
@@ -15,8 +15,15 @@ from Testing.domain.trial.trial_records import make_aborted
 from Testing.simulator.net.igtl.servers import LinkServer, at_rest
 
 
-def record(name: str):
-    return SimpleNamespace(trial_id=name, to_json=lambda: {"trialId": name})
+@dataclass
+class Offered:
+    """All that is read of a record to offer it."""
+
+    trial_id: str
+
+
+def record(name: str) -> Offered:
+    return Offered(name)
 
 
 class Collector(Client):
