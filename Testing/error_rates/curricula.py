@@ -10,13 +10,14 @@ import numpy as np
 
 from rastrainer.number_text import fixed
 from rastrainer.protocol import AssignmentState, GoalKind
-from rastrainer.study.curriculum.curriculum import Assignment, Curriculum
+from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.standing import (
     AssignmentStanding,
     CountedTrial,
     CurriculumStanding,
     standing_in,
 )
+from rastrainer.study_messages import Assignment
 from rastrainer.trial.scoring import PASS_MARK
 from Testing.error_rates.measured import Measured, share_of
 
@@ -153,7 +154,7 @@ def weakest(sets: int) -> list[Measured]:
             skill = _skill(random)
             played = [_play(task, skill, random) for task in range(TASKS) for _ in range(count)]
             best = next_best(_stand(CURRICULUM, played), random)
-            chosen = int(best.assignment.name) - 1
+            chosen = int(best.name) - 1
             hits.append(chosen == int(np.argmin(skill)))
             missed.append(skill[chosen] - skill.min())
             by_chance.append(skill.mean() - skill.min())
@@ -186,7 +187,7 @@ def course(choose: Choice, seed: int) -> Course:
         standing = _stand(CURRICULUM, played)
         if standing.reached == TASKS:
             break
-        chosen = int(choose(standing, random).assignment.name) - 1
+        chosen = int(choose(standing, random).name) - 1
         played.append(_play(chosen, skill, random))
         gain = np.full(TASKS, TRANSFER)
         gain[chosen] = LEARNING

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, cast
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import (
     MAX_RECORD_VALUES,
     Argument,
-    checked_keys,
     decode_message_object,
     number,
     numbers,
@@ -20,36 +18,24 @@ from rastrainer.json_checks import (
     plain_object,
     pseudonym,
     text,
-    texts,
     trial_id,
     whole_number,
     yes_or_no,
 )
+from rastrainer.json_records import RecordField, record_fields
 from rastrainer.protocol import (
-    ALL_DONE,
     COMMANDED_ABORTS,
     FEED_LIMIT_MM_S,
-    FREE,
-    MAX_ASSIGNMENTS,
-    MAX_GATES,
     MAX_JOURNAL_BYTES,
-    REPEAT,
-    SKIN_KEYS,
-    SKIN_LIMIT_MM,
     SPEED_LIMIT_MM_S,
     STAND_OFF_LIMIT_MM,
     WORLD_LIMIT_MM,
     AbortReason,
-    AssignmentState,
     CommandName,
-    GhostRule,
-    GoalKind,
-    Guidance,
     Mode,
     Rate,
-    StepKind,
-    TutorialRule,
 )
+from rastrainer.study_messages import CurriculumMessage, StudyStep, skin_amounts
 
 
 def deflection(value: float) -> float:
@@ -60,52 +46,15 @@ def deflection(value: float) -> float:
     return max(-1.0, min(1.0, value)) if math.isfinite(value) else 0.0
 
 
-def skin_amounts(value: Any) -> dict[str, float]:
-    """Accept how far the skin shifts (RMS) and is indented, mm; what is left out is 0.
+def _arguments_of(command: str, kind: type[Any]) -> dict[str, Argument]:
+    """Return the arguments of a command that are one record."""
 
-    Raises:
-        ValueError: anything else; the words follow "must be".
-    """
-    check = number(0, SKIN_LIMIT_MM)
-    with contextlib.suppress(ValueError):
-        if isinstance(value, Mapping) and set(value) <= set(SKIN_KEYS):
-            return {key: check(amount) for key, amount in value.items()}
-    raise ValueError(
-        f"an object of {' and '.join(SKIN_KEYS)}, each a number from 0 to {SKIN_LIMIT_MM:g} mm"
-    )
+    def argument(each: RecordField) -> Argument:
+        place = f"{command}: the argument {each.key}"
+        default = ... if each.default is None else each.default()
+        return Argument(lambda value: each.read(value, place, True), default)
 
-
-_ASSIGNMENT: Mapping[str, Argument] = {
-    "name": Argument(text(40)),
-    "task": Argument(text(40)),
-    "scenario": Argument(text(40, 0), ""),
-    "mode": Argument(one_of("", *(mode.value for mode in Mode)), ""),
-    "method": Argument(text(40, 0), ""),
-    "procedure": Argument(text(40, 0), ""),
-    "goal": Argument(one_of(*(kind.value for kind in GoalKind))),
-    "state": Argument(one_of(*(state.value for state in AssignmentState))),
-    "done": Argument(whole_number(0, 100), 0),
-    "needed": Argument(whole_number(1, 100)),
-    "mark": Argument(number(0, 100), 0.0),
-    "played": Argument(whole_number(0, 1_000_000), 0),
-    "missing": Argument(texts(0, MAX_GATES), ()),
-    "weakest": Argument(text(20, 0), ""),
-}
-
-
-def checked_assignments(value: Any) -> tuple[dict[str, Any], ...]:
-    """Accept a list of a trainee's progress in each assignment; missing values get defaults.
-
-    Raises:
-        ValueError: anything else; the words follow "must be".
-        InputError: a key of an assignment is unknown, missing or out of range.
-    """
-    if not isinstance(value, list) or len(value) > MAX_ASSIGNMENTS:
-        raise ValueError(f"a list of up to {MAX_ASSIGNMENTS} assignments")
-    for each in value:
-        if isinstance(each, Mapping) and not set(each) <= set(_ASSIGNMENT):
-            raise ValueError(f"a list of assignments, each an object of {', '.join(_ASSIGNMENT)}")
-    return tuple(checked_keys(each, _ASSIGNMENT, "An assignment") for each in value)
+    return {each.key: argument(each) for each in record_fields(cast("Any", kind))}
 
 
 _REGISTRATION: Mapping[str, Argument] = {
@@ -185,29 +134,8 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
         "entryMm": Argument(numbers(3, WORLD_LIMIT_MM, "mm"), None),
         "name": Argument(text(), "target"),
     },
-    CommandName.STUDY_STEP: {
-        "trainee": Argument(text()),
-        "kind": Argument(one_of(*(kind.value for kind in StepKind), ALL_DONE, FREE, REPEAT)),
-        "number": Argument(whole_number(1, 100_000), 0),
-        "count": Argument(whole_number(1, 100_000), 0),
-        "task": Argument(text(), ""),
-        "mode": Argument(one_of(*(mode.value for mode in Mode)), ""),
-        "questionnaire": Argument(text(), ""),
-        "minutes": Argument(number(0, 43_200, "min"), 0.0),
-        "over": Argument(number(0, 43_200, "min"), 0.0),
-        "guidance": Argument(one_of(*(choice.value for choice in Guidance)), ""),
-        "ghost": Argument(one_of(*(rule.value for rule in GhostRule)), ""),
-        "procedure": Argument(text(40, 0), ""),
-        "tutorial": Argument(one_of(*(rule.value for rule in TutorialRule)), ""),
-        "method": Argument(text(40, 0), ""),
-        "skin": Argument(skin_amounts, {}),
-    },
-    CommandName.CURRICULUM: {
-        "trainee": Argument(text()),
-        "title": Argument(text(80, 0), ""),
-        "next": Argument(text(40, 0), ""),
-        "assignments": Argument(checked_assignments, ()),
-    },
+    CommandName.STUDY_STEP: _arguments_of(CommandName.STUDY_STEP, StudyStep),
+    CommandName.CURRICULUM: _arguments_of(CommandName.CURRICULUM, CurriculumMessage),
     CommandName.GET_TRIAL: {"trialId": Argument(trial_id)},
     CommandName.GET_JOURNAL: {
         "trialId": Argument(trial_id),

@@ -20,7 +20,6 @@ from urllib.parse import urlsplit, urlunsplit
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import text
-from rastrainer.study.database import study_trainees
 from rastrainer.study.database.database import StudyPlace, path_beside_study
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import moment, utc_now
@@ -126,9 +125,9 @@ class CourseStudy:
         """Forget the users whose trainees were deleted from the study, on any computer."""
         # First: a user linked meanwhile is already a trainee, and is not forgotten.
         linked = self._links.pseudonyms()
-        with self._study.database.reading() as connection:
-            both = [study_trainees.listed(connection, archived) for archived in (False, True)]
-        known = {trainee.pseudonym for trainees in both for trainee in trainees}
+        with self._study.database.reading():
+            everyone = (*self._study.trainees(), *self._study.trainees(archived=True))
+        known = {trainee.pseudonym for trainee in everyone}
         for pseudonym in linked - known:
             self._links.forget(pseudonym)
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rastrainer.journal.journal_file import read_journal
-from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.study_messages import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.arm import start_tip
 from rastrainer_simulator.flow.session.session import TUTORIAL_VIEW

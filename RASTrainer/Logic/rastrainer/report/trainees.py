@@ -156,11 +156,11 @@ def _of_curriculum(curriculum: Curriculum, found: Mapping[str, CurriculumStandin
         ]
         for name, standing in found.items()
     ]
-    goals = [f"{each.assignment.name}: {_goal(each)}" for each in first.standings]
+    goals = [f"{each.name}: {_goal(each)}" for each in first.standings]
     return heading(curriculum.title) + table([header], rows) + bullets(goals)
 
 
 def _goal(standing: AssignmentStanding) -> str:
-    after = ", ".join(standing.assignment.after)
+    after = ", ".join(standing.after)
     gate = f"; after {after}" if after else ""
-    return f"{title_of(standing.assignment)}, {goal_of(standing)}{gate}"
+    return f"{title_of(standing)}, {goal_of(standing)}{gate}"

@@ -18,10 +18,11 @@ from rastrainer.study.database.cohort_store import CohortStore, IncompleteStudyE
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredProcedure, StoredTrial
-from rastrainer.study.protocol.steps import Step
+from rastrainer.study.protocol.steps import objections_to
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers, StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.ratings import Rating, RatingStore
+from rastrainer.study_messages import StudyStep
 from rastrainer.trial.ctps import StudyNotes, Trial, read_notes, read_trials
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore
@@ -239,11 +240,11 @@ def _from_database(place: StudyPlace) -> StudyData:
         )
 
 
-def _objected(record: TrialRecord, steps: Iterable[Step]) -> tuple[str, str, str] | None:
+def _objected(record: TrialRecord, steps: Iterable[StudyStep]) -> tuple[str, str, str] | None:
     """Return why a trial did not count for the step of its task and mode; None if nothing does."""
     of_task = (s for s in steps if (s.task, s.mode) == (record.task, record.mode))
     step = next(of_task, None)
-    reasons = () if step is None else step.objections(record)
+    reasons = () if step is None else objections_to(step, record)
     what = f"{record.task}, {record.mode}, {record.started_utc}"
     return (record.trainee, what, "; ".join(reasons)) if reasons else None
 

@@ -21,9 +21,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 from rastrainer.errors import InputError
+from rastrainer.json_checks import number
 from rastrainer.protocol import RegistrationMethod
 
 TIME_FLOOR = 0.04
@@ -60,9 +61,9 @@ class ScoreReference:
         limit_mm: largest acceptable true TRE.
     """
 
-    time_s: float
-    tre_mm: float
-    limit_mm: float = LIMIT_MM
+    time_s: Annotated[float, number(1, 1e4, "s")]
+    tre_mm: Annotated[float, number(0.01, 100, "mm")]
+    limit_mm: Annotated[float, number(0.01, 100, "mm")] = LIMIT_MM
 
 
 class SafetyMeasures(NamedTuple):

@@ -9,8 +9,7 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import TRIAL_RUN, Mode, StepKind, TutorialRule
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.scenario import method_of, playable_methods
-from rastrainer.study.curriculum.curriculum_message import AssignmentMessage
-from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.study_messages import AssignmentStanding, StudyStep
 from rastrainer.trial.scoring import PASS_MARK
 from rastrainer_simulator.flow.pages.own_trials import OwnTrialsPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
@@ -353,7 +352,7 @@ class AssignmentsPage(SessionPage):
         if self.session.curriculum is None:
             self.back()
 
-    def _item(self, each: AssignmentMessage) -> MenuItem:
+    def _item(self, each: AssignmentStanding) -> MenuItem:
         words = self.session.assignment_texts
         reason = assignment_obstacle(self.session, each)
         return MenuItem(

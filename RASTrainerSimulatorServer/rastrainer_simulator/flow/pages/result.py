@@ -8,7 +8,7 @@ from typing import Any, TypeGuard
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import is_number
-from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.study_messages import StudyStep
 from rastrainer.trial.scoring import (
     COMMON_BIAS_LIMIT_MM,
     CONTACT_LIMIT_S,

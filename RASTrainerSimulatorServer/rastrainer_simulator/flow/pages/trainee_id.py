@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from rastrainer.study.protocol.questionnaires import QuestionnaireItem, find_questionnaire
-from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.study_messages import StudyStep
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.presentation.screen import Fact, Menu

@@ -14,8 +14,7 @@ from rastrainer.journal.folder import journals_of
 from rastrainer.procedure.geometry import BoneAhead
 from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, CommandName, Mode, RegistrationMethod
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
-from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.study_messages import AssignmentStanding, CurriculumMessage, StudyStep
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.flow.session.assigned_training import (
     AssignmentTexts,
@@ -195,7 +194,7 @@ class TrainingSession:
         return self._services.curricula.of(trainee)
 
     @property
-    def next_assignment(self) -> AssignmentMessage | None:
+    def next_assignment(self) -> AssignmentStanding | None:
         """The assignment to practice next; None where no open one is left, or no curriculum."""
         curriculum = self.curriculum
         return None if curriculum is None else curriculum.find(curriculum.next)

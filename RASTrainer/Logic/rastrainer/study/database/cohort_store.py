@@ -12,12 +12,8 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import decode_finite_json
-from rastrainer.study.database import study_trainees, study_trials
-from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.study_trainees import DeletedTrialError, check_not_deleted
-from rastrainer.study.database.study_trials import json_text
-from rastrainer.study.database.values import utc_now
+from rastrainer.study.database.values import json_text, utc_now
 from rastrainer.trial.analysis import TrialAnalysis
 
 
@@ -57,7 +53,7 @@ class CohortStore:
     """The virtual cohort of one study. One thread may use it."""
 
     def __init__(self, study: Study) -> None:
-        self._database = study.database
+        self._study, self._database = study, study.database
 
     def start(self, plan: Mapping[str, Any], planned_trials: int) -> None:
         """Store the plan; the same plan again, to resume, changes nothing.
@@ -69,7 +65,12 @@ class CohortStore:
         with self._database.writing() as connection:
             row = connection.execute("SELECT plan_json FROM cohort").fetchone()
             if row is None:
-                _check_new(connection)
+                for table in ("trainees", "study_protocol"):
+                    if connection.execute(f"SELECT 1 FROM {table}").fetchone() is not None:
+                        raise InputError(
+                            "The folder contains a study that is no virtual cohort; choose an "
+                            "empty folder."
+                        )
                 connection.execute(
                     "INSERT INTO cohort VALUES (1, ?, ?, ?, NULL)",
                     (json_text(plan), planned_trials, utc_now()),
@@ -93,13 +94,11 @@ class CohortStore:
         """Return whether a trial was played: stored, stuck, or deleted since."""
         with self._database.reading() as connection:
             query = "SELECT 1 FROM stuck_trials WHERE trial_id = ?"
-            if connection.execute(query, (trial_id,)).fetchone() is not None:
-                return True
-            try:
-                check_not_deleted(connection, trial_id)
-            except DeletedTrialError:
-                return True
-            return study_trials.exists(connection, trial_id)
+            return (
+                connection.execute(query, (trial_id,)).fetchone() is not None
+                or self._study.is_deleted(trial_id)
+                or self._study.has_trial(trial_id)
+            )
 
     def add(self, analysis: TrialAnalysis) -> None:
         """Store a finished trial with all results in one transaction.
@@ -113,21 +112,19 @@ class CohortStore:
         record, truth = analysis.record, analysis.truth
         if truth is None:
             raise ValueError("A virtual trial is stored with its truth.")
-        with self._database.writing() as connection:
-            study_trainees.create_where_missing(connection, record.trainee, consent=True)
+        study = self._study
+        with study.database.writing():
+            study.create_where_missing(record.trainee, consent=True)
             # Not new where a second process plays the same cohort; its trial is the same.
-            if study_trials.add(connection, record, record.to_json()):
-                study_trials.add_results(
-                    connection,
+            if study.add_trial(record):
+                study.add_results(
                     record.trial_id,
                     analysis.fits.values(),
                     analysis.target_errors,
                     analysis.score,
                     analysis.procedure,
                 )
-                study_trials.set_truth(
-                    connection, record.trial_id, truth.true_tre_mm, truth.head_to_world
-                )
+                study.set_truth(record.trial_id, truth.true_tre_mm, truth.head_to_world)
 
     def add_stuck(self, trial_id: str) -> None:
         """Note that a trial was played but not finished."""
@@ -141,15 +138,6 @@ class CohortStore:
         with self._database.writing() as connection:
             connection.execute(
                 "UPDATE cohort SET finished_utc = ? WHERE finished_utc IS NULL", (utc_now(),)
-            )
-
-
-def _check_new(connection: Connection) -> None:
-    for table in ("trainees", "study_protocol"):
-        if connection.execute(f"SELECT 1 FROM {table}").fetchone() is not None:
-            raise InputError(
-                "The folder contains a study that is no virtual cohort, or one of an older "
-                "RASTrainer; choose an empty folder."
             )
 
 

@@ -201,23 +201,7 @@ class PostgresDatabase(StudyDatabase):
         self._may_change, self._may_create = may_change, may_create
         super().__init__(address.database, address, lock_wait)
 
-    @contextmanager
-    def reading(self) -> Iterator[PostgresStatements]:
-        """Yield the connection for several reads of one state."""
-        with self._transaction(_READ) as statements:
-            yield statements
-
-    @contextmanager
-    def writing(self) -> Iterator[PostgresStatements]:
-        """Yield the connection for changes in one transaction, once those of others are done."""
-        if not self._may_change:
-            raise InputError(f"The study {self._address} is read-only here.")
-        with self._transaction(f"{self._begin_waiting()}; {LOCKED}") as statements:
-            yield statements
-        self._own_changes += 1
-
     def version(self) -> int | None:
-        """Return a number that changes when another connection changes the study."""
         try:
             with self.reading() as statements:
                 changes = statements.execute("SELECT changes FROM rastrainer_study").fetchone()[0]
@@ -226,7 +210,6 @@ class PostgresDatabase(StudyDatabase):
         return changes - self._own_changes
 
     def continue_numbers(self) -> None:
-        """Number new rows after all copied ones, within a transaction of `writing`."""
         for table in study_tables():
             if table.order in ("id", "rowid") and table.name != "trainee_numbers":
                 self._connection.execute(
@@ -235,7 +218,15 @@ class PostgresDatabase(StudyDatabase):
                 )
 
     @contextmanager
-    def _transaction(self, begin: str) -> Iterator[PostgresStatements]:
+    def _transaction(self, may_change: bool) -> Iterator[PostgresStatements]:
+        if may_change and not self._may_change:
+            raise InputError(f"The study {self._address} is read-only here.")
+        with self._begun(f"{self._begin_waiting()}; {LOCKED}" if may_change else _READ) as found:
+            yield found
+        self._own_changes += may_change
+
+    @contextmanager
+    def _begun(self, begin: str) -> Iterator[PostgresStatements]:
         with self._sentences():
             try:
                 self._begin(begin)
@@ -289,7 +280,7 @@ class PostgresDatabase(StudyDatabase):
                 return
         if not (self._may_change and self._may_create):
             raise InputError(f"The database {self._address} holds no study.")
-        with self._transaction(self._begin_waiting()) as statements:
+        with self._begun(self._begin_waiting()) as statements:
             create_tables(statements, self._address)
 
     @contextmanager

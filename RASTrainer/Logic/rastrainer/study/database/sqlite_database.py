@@ -59,21 +59,7 @@ class SqliteDatabase(StudyDatabase):
         self._check_place()
         super().__init__(self.path.stem, self.path, lock_wait)
 
-    @contextmanager
-    def reading(self) -> Iterator[sqlite3.Connection]:
-        with self._transaction("BEGIN") as connection:
-            yield connection
-
-    @contextmanager
-    def writing(self) -> Iterator[sqlite3.Connection]:
-        with self._transaction("BEGIN IMMEDIATE") as connection:
-            yield connection
-
     def version(self) -> int | None:
-        """Return a number that changes when another connection changes the file.
-
-        Never waits, and is cheap enough to call every second. None if unknown, as during a change.
-        """
         try:
             self._connection.execute("PRAGMA busy_timeout = 0")
             return self._number("data_version")
@@ -84,11 +70,11 @@ class SqliteDatabase(StudyDatabase):
         """Do nothing: SQLite numbers new rows after the last one."""
 
     @contextmanager
-    def _transaction(self, begin: str) -> Iterator[sqlite3.Connection]:
+    def _transaction(self, may_change: bool) -> Iterator[sqlite3.Connection]:
         with self._sentences():
             timeout_ms = 1000 * self._lock_wait.timeout_s
             self._connection.execute(f"PRAGMA busy_timeout = {timeout_ms:.0f}")
-            self._connection.execute(begin)
+            self._connection.execute("BEGIN IMMEDIATE" if may_change else "BEGIN")
             try:
                 yield self._connection
                 self._connection.execute("COMMIT")

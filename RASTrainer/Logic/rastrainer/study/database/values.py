@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import json
+import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime, timezone
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
+from rastrainer.errors import InputError
+from rastrainer.json_checks import decode_finite_json
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.procedure_outcome import ProcedureOutcome, ProcedureScore
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore
+
+Value = TypeVar("Value")
 
 
 def utc_now() -> str:
@@ -32,12 +38,51 @@ def moment(utc: str) -> datetime:
     return datetime.fromisoformat(utc.replace("Z", "+00:00"))
 
 
+RECORD_LIMIT_BYTES = 2**20
+_NULL = re.compile(r"(?<!\\)(?:\\\\)*\\u0000")
+
+
+def json_text(value: object) -> str:
+    """Return a value as ASCII JSON; raise `InputError` if that is impossible.
+
+    Null characters and halves of surrogate pairs are refused: PostgreSQL cannot read JSON with
+    them, and a single trial would hide all of its trainee's.
+    """
+    try:
+        text = json.dumps(value, allow_nan=False)
+        if "\\ud" in text:
+            json.dumps(value, ensure_ascii=False).encode()
+        if _NULL.search(text):
+            raise ValueError
+    except (TypeError, ValueError, RecursionError):
+        raise InputError(
+            "What a study stores must be JSON with finite numbers and whole characters, none of "
+            "them null."
+        ) from None
+    return text
+
+
+def record_text(record: Mapping[str, Any]) -> str:
+    """Return a record as ASCII JSON; raise `InputError` if that is impossible or above 1 MiB."""
+    text = json_text(record)
+    if len(text) > RECORD_LIMIT_BYTES:
+        raise InputError("The trial record is larger than 1 MiB, the most that is stored.")
+    return text
+
+
+def decoded(text: str, read: Callable[[Any], Value]) -> Value:
+    """Return decoded stored JSON; raise `InputError` if it is invalid."""
+    try:
+        return read(decode_finite_json(text))
+    except (TypeError, ValueError, KeyError, AttributeError):
+        raise InputError("The study contains a value that RASTrainer did not write.") from None
+
+
 @dataclass(frozen=True)
 class Trainee:
     """A trainee, known only by a pseudonym.
 
     Attributes:
-        pseudonym: Unique in the study.
         consent: Whether the trainee consents to research.
         archived: Whether the trainee is hidden from the list.
         created_utc: ISO 8601.
