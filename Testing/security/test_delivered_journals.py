@@ -73,7 +73,7 @@ def received(folder, port, scenario, **protocol):
         ((name,),) = [[each.pseudonym for each in study.trainees()]]
         (trial,) = study.history(name)
         (attempt,) = AbortedTrials(study).attempts(name)
-        (counted,) = counted_trials_of(study, name)
+        (counted,) = counted_trials(study, name)
     assert attempt.is_aborted == counted.is_aborted == (trial.score is None)
     return trial.score, problems
 
@@ -82,11 +82,6 @@ def is_revealed(path):
     with Study.open(path) as study:
         histories = [study.history(each.pseudonym) for each in study.trainees()]
         return any(trial.true_tre_mm is not None for trials in histories for trial in trials)
-
-
-def counted_trials_of(study, name):
-    with study.database.reading() as connection:
-        return counted_trials(connection, name)
 
 
 def test_a_trial_that_was_played_is_scored(played, scenario, tmp_path, capsys):
@@ -114,7 +109,7 @@ def test_an_invented_trial_in_a_real_simulator_is_scored_only_by_a_study_that_wa
     records.mkdir()
     write_finished_trials(records, range(1))
     with SimulatorProcess(records, "--no-views") as simulator:
-        score, problems = received(tmp_path, simulator.port, scenario, checks_journals=is_checked)
+        score, problems = received(tmp_path, simulator.port, scenario, check_journals=is_checked)
     assert (score is None) == is_checked
     assert [("was not scored: Its journal" in problem) for problem in problems] == [
         True

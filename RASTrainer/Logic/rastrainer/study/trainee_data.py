@@ -8,6 +8,7 @@ from typing import Any
 
 from rastrainer.files.writing import write_json
 from rastrainer.journal.folder import SUFFIX, erase_journals
+from rastrainer.json_records import record_to_json
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.database import path_beside_study
@@ -66,7 +67,7 @@ def _protocol_json(progress: StudyProgress, pseudonym: str) -> dict[str, Any] | 
 def _trial_json(trial: StoredTrial) -> dict[str, Any]:
     return {
         "record": trial.record.to_json(),
-        "registrations": {kind: fit.to_json() for kind, fit in trial.registrations.items()},
+        "registrations": {kind: record_to_json(fit) for kind, fit in trial.registrations.items()},
         "score": None if trial.score is None else trial.score.to_json(),
         "true_tre_mm": trial.true_tre_mm,
         "head_to_world": trial.head_to_world,

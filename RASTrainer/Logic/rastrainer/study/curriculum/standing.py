@@ -16,12 +16,7 @@ from rastrainer.protocol import AssignmentState, RegistrationMethod
 from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.database.values import day_of, moment
 from rastrainer.study.protocol.steps import trial_title
-from rastrainer.study_messages import (
-    WHOLE_WAY,
-    Assignment,
-    AssignmentStanding,
-    CurriculumMessage,
-)
+from rastrainer.study_messages import WHOLE_WAY, Assignment, AssignmentStanding, CurriculumMessage
 from rastrainer.trial.scoring import passes
 from rastrainer.trial.trial_feedback import competence_of
 

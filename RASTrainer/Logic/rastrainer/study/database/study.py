@@ -17,6 +17,7 @@ from typing import Any
 from rastrainer import json_checks
 from rastrainer.errors import InputError
 from rastrainer.files import writing
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import TRIAL_RUN, RegistrationMethod
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
@@ -103,9 +104,7 @@ class Study(StudyTrainees):
 
     @classmethod
     def open_for_reading(
-        cls,
-        place: str | os.PathLike[str] | PostgresAddress,
-        lock_wait: LockWait | None = None,
+        cls, place: str | os.PathLike[str] | PostgresAddress, lock_wait: LockWait | None = None
     ) -> Study:
         """Open a study without changing it; changes are refused."""
         place = study_place(place)
@@ -248,7 +247,7 @@ class Study(StudyTrainees):
             self._check_exists(trial_id)
             for registration in registrations:
                 error = (target_errors or {}).get(registration.kind)
-                stored = json_text(StoredRegistration.of(registration, error).to_json())
+                stored = json_text(record_to_json(StoredRegistration.of(registration, error)))
                 connection.execute(
                     "INSERT INTO registrations "
                     "(trial_id, kind, fre_mm, registration_json, stored_utc) "
@@ -327,9 +326,7 @@ class Study(StudyTrainees):
             procedures = rows("outcome_json", "procedure_outcomes", "ORDER BY id")
         return StoredTrial(
             record=record,
-            registrations={
-                kind: decoded(text, StoredRegistration.from_json) for kind, text in registrations
-            },
+            registrations={kind: decoded(text, _registration) for kind, text in registrations},
             score=decoded(scores[-1][0], TrialScore.from_json) if scores else None,
             true_tre_mm=truths[0][0] if truths else None,
             head_to_world=decoded(truths[0][1], tuple) if truths else None,
@@ -407,6 +404,10 @@ class Study(StudyTrainees):
                 (task, mode),
             ).fetchall()
         return tuple(TrialOutcome(*row) for row in rows)
+
+
+def _registration(value: Any) -> StoredRegistration:
+    return record_from_json(StoredRegistration, value, "The stored registration")
 
 
 def _past_trial(

@@ -145,8 +145,7 @@ class StudyProtocol:
         default_factory=dict
     )
     methods: Annotated[
-        Mapping[str, str],
-        _by_task("methods", one_of(*(method.value for method in PLAYED_METHODS))),
+        Mapping[str, str], _by_task("methods", one_of(*(method.value for method in PLAYED_METHODS)))
     ] = field(default_factory=dict)
     skin: Annotated[Mapping[str, Mapping[str, float]], _by_task("skin", _skin)] = field(
         default_factory=dict
