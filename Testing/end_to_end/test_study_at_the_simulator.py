@@ -12,9 +12,10 @@ from rastrainer.number_text import with_units
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
-from rastrainer.study.curriculum.standing import CountedTrial, standing_in
+from rastrainer.study.curriculum.standing import standing_in
 from rastrainer.study.database.study import Study
 from rastrainer.study_messages import Assignment, StudyStep
+from rastrainer.trial.trial_feedback import PastTrial
 from Testing.domain.trial.trial_records import gentle_score, make_record
 from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.end_to_end.study_side import STUDY, StudySide
@@ -49,7 +50,7 @@ TWO = Curriculum(
     "C",
     (Assignment("one", "task-1"), Assignment("two", "task-2", after=("one",))),
 )
-PASSED = CountedTrial("task-1", "desktop", score=80.0, acceptable=True)
+PASSED = PastTrial("", "task-1", "desktop", 60.0, 80.0, acceptable=True)
 
 
 def curriculum(*trials):

@@ -10,27 +10,35 @@ import pytest
 
 from rastrainer.command_arguments import check_arguments, decode_json_object
 from rastrainer.errors import InputError
-from rastrainer.protocol import MAX_ASSIGNMENTS, MAX_GATES, AssignmentState, CommandName, GoalKind
+from rastrainer.protocol import (
+    MAX_ASSIGNMENTS,
+    MAX_GATES,
+    AssignmentState,
+    CommandName,
+    GoalKind,
+    RegistrationMethod,
+)
 from rastrainer.study.curriculum.curriculum import (
     Curriculum,
     curriculum_from_json,
     read_curriculum,
 )
-from rastrainer.study.curriculum.curriculum_store import CurriculumStore, counted_trials
-from rastrainer.study.curriculum.standing import CountedTrial, standing_in
+from rastrainer.study.curriculum.curriculum_store import CurriculumStore
+from rastrainer.study.curriculum.standing import standing_in
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer.study.trainee_data import export_trainee
 from rastrainer.study_messages import Assignment, CurriculumMessage
+from rastrainer.trial.trial_feedback import PastTrial
 from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record
 
 SHIPPED = Path(__file__).parents[3] / "assets" / "studies" / "example-curriculum.json"
 LOCKED, OPEN, REACHED = AssignmentState.LOCKED, AssignmentState.OPEN, AssignmentState.REACHED
-PASSED = CountedTrial("task-1", "desktop", score=80.0, acceptable=True)
+PASSED = PastTrial("", "task-1", "desktop", 60.0, 80.0, acceptable=True)
 FAILED = replace(PASSED, score=50.0)
-ABORTED = CountedTrial("task-1", "desktop", is_aborted=True)
+ABORTED = replace(PASSED, score=0.0, acceptable=False, is_aborted=True)
 ONE = Assignment("one", "task-1", trials=2)
 TWO = Assignment("two", "task-2", trials=1, after=("one",))
 
@@ -140,7 +148,7 @@ def test_only_trials_that_match_the_assignment_count():
     assert states([PASSED], in_headset) == [OPEN]
     assert states([replace(PASSED, mode="hmd")], in_headset) == [REACHED]
     assert states([PASSED], by_surface) == [OPEN]
-    surface = replace(PASSED, method="surface")
+    surface = replace(PASSED, method=RegistrationMethod.SURFACE)
     assert states([surface], by_surface) == [REACHED]
     assert states([surface], replace(ONE, trials=1)) == [OPEN]
     assert states([PASSED], biopsy) == [OPEN]
@@ -301,7 +309,7 @@ def test_stored_trials_count_in_order_of_starting_and_aborted_ones_as_failures(s
     study.add_trial(record(5))
     at = {"trainee": "A", "startedUtc": "2024-05-17T10:02:00Z"}
     AbortedTrials(study).add(make_aborted(**at))
-    found = counted_trials(study, "A")
+    found = AbortedTrials(study).attempts("A")
     assert [trial.is_aborted for trial in found] == [False, True, False]
     assert found[0].parts["common bias"] == 1.0
     store = CurriculumStore(study)
@@ -386,7 +394,7 @@ def test_anything_that_is_not_a_list_of_assignments_is_refused(assignments):
 
 
 def test_an_assignment_records_when_it_was_reached_and_never_before_its_gate_opened():
-    def on(day: int, **changes) -> CountedTrial:
+    def on(day: int, **changes) -> PastTrial:
         return replace(PASSED, started_utc=f"2026-05-{day:02}T09:00:00Z", **changes)
 
     second = on(1, task="task-2")

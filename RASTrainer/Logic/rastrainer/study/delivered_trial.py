@@ -38,7 +38,6 @@ class DeliveredTrial:
     """A trial that is stored in the study.
 
     Attributes:
-        record: the trial.
         analysis: its registration, or None if not to be scored now.
         problem: why it cannot be registered; empty otherwise.
     """
@@ -63,7 +62,6 @@ def store_delivered(
         is_being_scored: whether its registration or score is being sent to the simulator.
 
     Raises:
-        InputError: the record is invalid, or cannot be stored.
         DeletedTrialError: it was deleted with its trainee.
     """
     record = TrialRecord.from_json(value)

@@ -51,8 +51,7 @@ class LinkedAssignment:
     """A column of a course's gradebook, for one user who has opened its link.
 
     Attributes:
-        issuer, client_id: Of the platform.
-        subject: Of the user there.
+        subject: Of the user at the platform.
         line_item: URL of the column.
         task, mode: Whose trials count; "" for any.
         method: Of registration, a `RegistrationMethod`.

@@ -6,28 +6,18 @@ that were aborted or can have no score.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rastrainer.errors import InputError
-from rastrainer.protocol import PROCEDURE_PHASES, TRIAL_RUN
 from rastrainer.study.curriculum.curriculum import Curriculum, curriculum_from_json
-from rastrainer.study.curriculum.standing import (
-    CountedTrial,
-    CurriculumStanding,
-    PassMarkOf,
-    standing_in,
-)
+from rastrainer.study.curriculum.standing import CurriculumStanding, PassMarkOf, standing_in
 from rastrainer.study.database.aborted_trials import AbortedTrials
-from rastrainer.study.database.study import METHOD, Study
+from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import TRAINEE_ID
-from rastrainer.study.database.values import StoredProcedure, decoded, json_text, moment, utc_now
+from rastrainer.study.database.values import decoded, json_text, utc_now
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import pass_mark_of
-from rastrainer.trial.aborted_trial import AbortedTrial
-from rastrainer.trial.procedure_outcome import ProcedureScore
-from rastrainer.trial.record import TrialRecord
-from rastrainer.trial.scoring import TrialScore
+from rastrainer.trial.trial_feedback import PastTrial
 
 _STAMPS = """
     SELECT pseudonym,
@@ -115,8 +105,9 @@ class CurriculumStore:
             curriculum = None if row is None else _read(row[0])
             if curriculum is None:
                 return None
-            trials = counted_trials(self._study, pseudonym)
-            return standing_in(curriculum, trials, _marks(self._study))
+            trials = AbortedTrials(self._study).attempts(pseudonym)
+            counted = [_as_counted(trial) for trial in trials]
+            return standing_in(curriculum, counted, _marks(self._study))
 
     def stamps(self) -> dict[str, tuple[int | None, ...]]:
         """Return for each active trainee numbers that change with where they may stand.
@@ -142,58 +133,10 @@ def _read(text: str | None) -> Curriculum | None:
     return None if text is None else decoded(text, curriculum_from_json)
 
 
-def counted_trials(study: Study, pseudonym: str) -> tuple[CountedTrial, ...]:
-    """Return a trainee's trials in order of starting."""
-    with study.database.reading() as connection:
-        study.trainee(pseudonym)
-        rows = connection.execute(
-            f"SELECT trials.stored_utc, started_utc, task, mode, scenario, {METHOD}, "
-            "(SELECT score_json FROM scores WHERE scores.trial_id = trials.trial_id "
-            "ORDER BY scores.id DESC LIMIT 1), "
-            "(SELECT outcome_json FROM procedure_outcomes "
-            "WHERE procedure_outcomes.trial_id = trials.trial_id "
-            "ORDER BY procedure_outcomes.id DESC LIMIT 1) "
-            f"FROM trials WHERE trainee_id = ({TRAINEE_ID}) AND task != ?",
-            (pseudonym, TRIAL_RUN),
-        )
-        timed = [
-            (moment(row[0]), stored, _scored(*row)) for stored, *row in rows if row[-2] is not None
-        ]
-        timed += [
-            (moment(record.started_utc), "", _failed(record))
-            for record in AbortedTrials(study).failed(pseudonym)
-        ]
-    return tuple(trial for *_when, trial in sorted(timed, key=lambda each: each[:2]))
-
-
-def _scored(
-    started: str,
-    task: str,
-    mode: str,
-    scenario: str,
-    method: str,
-    score_json: str,
-    outcome_json: str | None,
-) -> CountedTrial:
-    score = decoded(score_json, TrialScore.from_json)
-    found: TrialScore | ProcedureScore = score
-    parts: Mapping[str, float] = score.parts
-    procedure = ""
-    if outcome_json is not None:
-        outcome = decoded(outcome_json, StoredProcedure.from_json)
-        found, parts, procedure = outcome.score, outcome.score.desirabilities, outcome.name
-    played = (task, mode, scenario, method, procedure)
-    return CountedTrial(*played, found.score, found.acceptable, parts, started_utc=started)
-
-
-def _failed(record: AbortedTrial | TrialRecord) -> CountedTrial:
-    phase = record.phase if isinstance(record, AbortedTrial) else ""
-    return CountedTrial(
-        record.task,
-        record.mode,
-        record.scenario,
-        record.method.value,
-        is_aborted=True,
-        is_in_procedure=phase in {each.value for each in PROCEDURE_PHASES},
-        started_utc=record.started_utc,
-    )
+def _as_counted(trial: PastTrial) -> PastTrial:
+    """Return a trial with the score of its procedure if it has one."""
+    done = trial.procedure_score
+    if done is None:
+        return trial
+    found = {"score": done.score, "acceptable": done.acceptable, "parts": done.desirabilities}
+    return replace(trial, **found)

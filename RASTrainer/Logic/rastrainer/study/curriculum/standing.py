@@ -8,61 +8,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from statistics import fmean
 
 from rastrainer.number_text import fixed
-from rastrainer.protocol import AssignmentState, RegistrationMethod
+from rastrainer.protocol import AssignmentState
 from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.database.values import day_of, moment
 from rastrainer.study.protocol.steps import trial_title
 from rastrainer.study_messages import WHOLE_WAY, Assignment, AssignmentStanding, CurriculumMessage
 from rastrainer.trial.scoring import passes
-from rastrainer.trial.trial_feedback import competence_of
+from rastrainer.trial.trial_feedback import PastTrial, competence_of
 
 PassMarkOf = Callable[[Assignment], "float | None"]
 """From an assignment to the study's mark that passes its trials; None where there is none."""
 RECENT = 3
 """How many of its latest trials an assignment is compared by."""
-
-
-@dataclass(frozen=True)
-class CountedTrial:
-    """A trial as a curriculum counts it.
-
-    Attributes:
-        task, mode, scenario: As recorded.
-        method: By what it was registered, or would have been.
-        procedure: That it continued with; "" for touches alone, and for aborted trials, which do
-            not say which.
-        score: Of the procedure where there is one, else of the touches; 0 of an aborted trial.
-        acceptable: Whether it was within all limits of its score.
-        parts: Desirability of each part of the score, 0 to 1.
-        is_aborted: Whether it was aborted after a touch, or can have no score.
-        is_in_procedure: Whether it was aborted in a procedure.
-        started_utc: ISO 8601.
-    """
-
-    task: str
-    mode: str
-    scenario: str = ""
-    method: str = RegistrationMethod.FIDUCIALS.value
-    procedure: str = ""
-    score: float = 0.0
-    acceptable: bool = False
-    parts: Mapping[str, float] = field(default_factory=dict, hash=False)
-    is_aborted: bool = False
-    is_in_procedure: bool = False
-    started_utc: str = ""
-
-    def counts_for(self, assignment: Assignment) -> bool:
-        """Return whether it was played as an assignment asks."""
-        procedure = self.procedure
-        if self.is_aborted and (assignment.procedure or not self.is_in_procedure):
-            procedure = assignment.procedure
-        elif self.is_aborted:
-            return False
-        return assignment.is_played_as(self.scenario, self.task, self.mode, self.method, procedure)
 
 
 @dataclass(frozen=True)
@@ -123,30 +84,45 @@ def by_curriculum(
 
 
 def standing_in(
-    curriculum: Curriculum, trials: Sequence[CountedTrial], pass_mark_of: PassMarkOf
+    curriculum: Curriculum, trials: Sequence[PastTrial], pass_mark_of: PassMarkOf
 ) -> CurriculumStanding:
     """Return where a trainee stands.
 
     Args:
         curriculum: That is meant.
-        trials: Of the trainee, in order of starting.
+        trials: Of the trainee, in order of starting; the score of one with a procedure is that of
+            the procedure.
         pass_mark_of: The study's pass mark, for goals without their own mark.
     """
     reached: dict[str, str] = {}
     standings = []
     for assignment in curriculum.assignments:
-        own = [trial for trial in trials if trial.counts_for(assignment)]
+        own = [trial for trial in trials if _counts_for(trial, assignment)]
         standing = _standing(assignment, own, reached, pass_mark_of)
         if standing.is_reached:
             reached[assignment.name] = standing.reached_utc
         standings.append(standing)
-    played = sum(any(map(trial.counts_for, curriculum.assignments)) for trial in trials)
+    played = sum(
+        any(_counts_for(trial, each) for each in curriculum.assignments) for trial in trials
+    )
     return CurriculumStanding(curriculum, tuple(standings), played)
+
+
+def _counts_for(trial: PastTrial, assignment: Assignment) -> bool:
+    """Return whether a trial was played as an assignment asks."""
+    procedure = trial.procedure
+    if trial.is_aborted and (assignment.procedure or not trial.is_in_procedure):
+        procedure = assignment.procedure
+    elif trial.is_aborted:
+        return False
+    return assignment.is_played_as(
+        trial.scenario, trial.task, trial.mode, trial.method.value, procedure
+    )
 
 
 def _standing(
     assignment: Assignment,
-    own: Sequence[CountedTrial],
+    own: Sequence[PastTrial],
     reached: Mapping[str, str],
     pass_mark_of: PassMarkOf,
 ) -> AssignmentStanding:
@@ -175,8 +151,8 @@ def _standing(
 
 
 def _progress(
-    assignment: Assignment, trials: Sequence[CountedTrial], mark: float
-) -> tuple[CountedTrial | None, int]:
+    assignment: Assignment, trials: Sequence[PastTrial], mark: float
+) -> tuple[PastTrial | None, int]:
     """Return which of the trials reaches the goal, and how far they are now."""
     passed = [passes(trial.score, trial.acceptable, mark) for trial in trials]
     if assignment.is_by_competence:
@@ -198,7 +174,7 @@ def _reached_utc(time: str, gates: Sequence[str]) -> str:
     return max(filter(None, (time, *gates)), key=moment, default="")
 
 
-def _weakest(trials: Sequence[CountedTrial]) -> str:
+def _weakest(trials: Sequence[PastTrial]) -> str:
     """Return the part of the score with the least geometric mean, which costs most; "" if none."""
     names = dict.fromkeys(name for trial in trials for name in trial.parts)
     means = {

@@ -100,28 +100,19 @@ class AbortedTrials:
         ]
         return tuple(sorted(found, key=lambda stored: moment(stored.record.started_utc)))
 
-    def failed(self, pseudonym: str) -> list[AbortedTrial | TrialRecord]:
-        """Return a trainee's trials that count as not passed, though they have no score.
+    def attempts(self, pseudonym: str) -> tuple[PastTrial, ...]:
+        """Return the trials from which progress is computed, as started: scored and failed.
 
-        These are aborted trials with a touch, and trials that can have no score.
+        Aborted trials with a touch have failed, and trials that can have no score.
         """
         with self._study.database.reading():
-            aborted = [stored.record for stored in self.of(pseudonym)]
-            unscored = self._study.unscored(pseudonym)
-        return [*(record for record in aborted if record.counts_as_failed), *unscored]
-
-    def attempts(self, pseudonym: str) -> tuple[PastTrial, ...]:
-        """Return what progress is computed from, as started: scored trials and failed ones."""
-        with self._study.database.reading() as connection:
             scored = self._study.past_trials(pseudonym)
-            query = f"SELECT trial_id, started_utc FROM trials WHERE trainee_id = ({TRAINEE_ID})"
-            started = dict(connection.execute(query, (pseudonym,)))
-            timed = [(moment(started[trial.trial_id]), trial) for trial in scored]
-            timed += [
-                (moment(record.started_utc), PastTrial.failed(record))
-                for record in self.failed(pseudonym)
-            ]
-        return tuple(trial for _when, trial in sorted(timed, key=lambda each: each[0]))
+            aborted = [stored.record for stored in self.of(pseudonym)]
+            failed: list[AbortedTrial | TrialRecord]
+            failed = [record for record in aborted if record.counts_as_failed]
+            failed += self._study.unscored(pseudonym)
+        trials = [*scored, *map(PastTrial.failed, failed)]
+        return tuple(sorted(trials, key=lambda trial: moment(trial.started_utc)))
 
     def unexplained(
         self, pseudonym: str, mode: str, task: str, since: datetime

@@ -46,9 +46,6 @@ STUDY_FILE = "study.db"
 TRUTH_LIMIT = 1e6
 MOTION_LIMIT = 1e9
 
-LATEST_SCORE = """
-    SELECT {} FROM scores WHERE scores.trial_id = trials.trial_id ORDER BY scores.id DESC LIMIT 1
-"""
 METHOD = "coalesce(json_extract(record_json, '$.method'), 'fiducials')"
 """By what a trial was registered: its record names only other methods than fiducials."""
 
@@ -354,10 +351,10 @@ class Study(StudyTrainees):
         with self.database.reading() as connection:
             self.trainee(pseudonym)
             rows = connection.execute(
-                "SELECT trial_id, task, mode, completion_time_s, method, latest FROM ("
-                "SELECT trial_id, task, mode, completion_time_s, started_utc, "
-                f"trials.rowid AS stored, {METHOD} AS method, "
-                f"({LATEST_SCORE.format('score_json')}) AS latest "
+                "SELECT * FROM ("
+                "SELECT trial_id, task, mode, completion_time_s, scenario, started_utc, "
+                f"{METHOD} AS method, ({_latest('scores', 'score_json')}) AS latest, "
+                f"({_latest('procedure_outcomes', 'outcome_json')}), trials.rowid AS stored "
                 f"FROM trials WHERE trainee_id = ({TRAINEE_ID}) AND task != ?"
                 ") AS played WHERE latest IS NOT NULL ORDER BY started_utc, stored",
                 (pseudonym, TRIAL_RUN),
@@ -394,7 +391,7 @@ class Study(StudyTrainees):
             rows = connection.execute(
                 f"""
                 SELECT trials.trial_id, pseudonym, completion_time_s,
-                    ({LATEST_SCORE.format("score")}), {METHOD}, true_tre_mm
+                    ({_latest("scores", "score")}), {METHOD}, true_tre_mm
                 FROM trials
                 JOIN trainees ON trainees.id = trainee_id
                 LEFT JOIN truths ON truths.trial_id = trials.trial_id
@@ -410,11 +407,35 @@ def _registration(value: Any) -> StoredRegistration:
     return record_from_json(StoredRegistration, value, "The stored registration")
 
 
+def _latest(table: str, column: str) -> str:
+    """Return the query for the latest result of a trial."""
+    own = f"WHERE {table}.trial_id = trials.trial_id ORDER BY {table}.id DESC LIMIT 1"
+    return f"SELECT {column} FROM {table} {own}"
+
+
 def _past_trial(
-    trial_id: str, task: str, mode: str, seconds: float, method: str, latest: str
+    trial_id: str,
+    task: str,
+    mode: str,
+    seconds: float,
+    scenario: str,
+    started_utc: str,
+    method: str,
+    score_json: str,
+    outcome_json: str | None,
+    _rowid: int,
 ) -> PastTrial:
-    score, how = decoded(latest, TrialScore.from_json), RegistrationMethod(method)
-    return PastTrial(trial_id, task, mode, seconds, score.score, score.acceptable, method=how)
+    score = decoded(score_json, TrialScore.from_json)
+    done = None if outcome_json is None else decoded(outcome_json, StoredProcedure.from_json)
+    return PastTrial(
+        *(trial_id, task, mode, seconds, score.score, score.acceptable),
+        method=RegistrationMethod(method),
+        scenario=scenario,
+        started_utc=started_utc,
+        parts=score.parts,
+        procedure="" if done is None else done.name,
+        procedure_score=None if done is None else done.score,
+    )
 
 
 def other_trial(trial_id: str) -> InputError:
