@@ -39,13 +39,7 @@ _STAMPS = """
 
 @dataclass(frozen=True)
 class CurriculumChoice:
-    """One choice of a curriculum.
-
-    Attributes:
-        trainee: Pseudonym; "" for everybody.
-        curriculum: That was chosen; None for none.
-        stored_utc: ISO 8601.
-    """
+    """One choice of a curriculum, or of none; the trainee is "" for everybody."""
 
     trainee: str
     curriculum: Curriculum | None
@@ -63,8 +57,13 @@ class CurriculumStore:
 
         What was chosen last counts: a choice for everybody ends those for single trainees.
         """
-        if curriculum is not None:
-            self._check_marks(curriculum)
+        marks = _marks(self._study)
+        for each in () if curriculum is None else curriculum.assignments:
+            if each.mark is None and marks(each) is None:
+                raise InputError(
+                    f"The assignment {each.name} could never be reached: this study's pass mark is "
+                    "for trials registered by fiducials. Give the assignment its own mark."
+                )
         text = None if curriculum is None else json_text(curriculum.to_json())
         with self._study.database.writing() as connection:
             if pseudonym:
@@ -73,15 +72,6 @@ class CurriculumStore:
                 "INSERT INTO curriculum_choices (trainee_id, curriculum_json, stored_utc) "
                 f"VALUES (({TRAINEE_ID}), ?, ?)",
                 (pseudonym, text, utc_now()),
-            )
-
-    def _check_marks(self, curriculum: Curriculum) -> None:
-        untried = standing_in(curriculum, (), _marks(self._study))
-        without = [each.name for each in untried.standings if each.mark is None]
-        if without:
-            raise InputError(
-                f"The assignment {without[0]} could never be reached: this study's pass mark "
-                "is for trials registered by fiducials. Give the assignment its own mark."
             )
 
     def choices(self) -> tuple[CurriculumChoice, ...]:
@@ -138,5 +128,5 @@ def _as_counted(trial: PastTrial) -> PastTrial:
     done = trial.procedure_score
     if done is None:
         return trial
-    found = {"score": done.score, "acceptable": done.acceptable, "parts": done.desirabilities}
-    return replace(trial, **found)
+    parts = done.desirabilities
+    return replace(trial, score=done.score, acceptable=done.acceptable, parts=parts)

@@ -72,7 +72,7 @@ def _list(value: Any) -> Any:
 
 @dataclass(frozen=True)
 class StepAnswers:
-    """The answers to a step's questionnaire, one for each item, in order; `number` is the step's"""
+    """The answers to the questionnaire of a step, one for each item, in order."""
 
     trainee: str
     number: Annotated[int, whole_number(1, MAX_STEPS)]

@@ -225,19 +225,16 @@ class StudyProgress:
 
     def answers(self) -> tuple[QuestionnaireAnswers, ...]:
         """Return all answered questionnaires, by place and step."""
-        return tuple(
-            QuestionnaireAnswers(
-                pseudonym,
-                step,
-                answers := tuple(entry.details["answers"]),
-                find_questionnaire(step.questionnaire).score(answers),
-                entry.stored_utc,
-            )
-            for pseudonym in self.enrolled()
-            for progress in (self.progress(pseudonym),)
-            for step, entry in zip(progress.steps, progress.entries, strict=False)
-            if step.kind == StepKind.QUESTIONNAIRE and entry.outcome == DONE
-        )
+        found = []
+        for name in self.enrolled():
+            progress = self.progress(name)
+            for step, entry in zip(progress.steps, progress.entries, strict=False):
+                if step.kind == StepKind.QUESTIONNAIRE and entry.outcome == DONE:
+                    given = tuple(entry.details["answers"])
+                    scores = find_questionnaire(step.questionnaire).score(given)
+                    utc = entry.stored_utc
+                    found.append(QuestionnaireAnswers(name, step, given, scores, utc))
+        return tuple(found)
 
     def _check_trial(
         self, pseudonym: str, progress: StepProgress, step: StudyStep, trial_id: str
