@@ -20,9 +20,7 @@ class StoredAbortedTrial:
     """An aborted trial, and why it was repeated.
 
     Attributes:
-        record: As delivered by the simulator.
-        step: The study step that it belonged to; "" if none.
-        repeat_reason: Why that step was repeated; "" if no reason was given.
+        step: The study's step that was repeated because of it; "" if none.
     """
 
     record: AbortedTrial

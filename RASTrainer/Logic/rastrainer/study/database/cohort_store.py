@@ -23,12 +23,10 @@ class IncompleteStudyError(InputError):
 
 @dataclass(frozen=True)
 class CohortState:
-    """The progress of a virtual cohort.
+    """The progress of a virtual cohort, in trials.
 
     Attributes:
-        planned: Number of trials of the whole cohort.
-        stored: Number of finished, stored trials.
-        stuck: Number of trials in which the virtual trainee did not reach a fiducial.
+        stuck: Those in which the virtual trainee did not reach a fiducial.
         is_finished: Whether all trials were played, also if trainees were deleted since.
     """
 
@@ -56,12 +54,7 @@ class CohortStore:
         self._study, self._database = study, study.database
 
     def start(self, plan: Mapping[str, Any], planned_trials: int) -> None:
-        """Store the plan; the same plan again, to resume, changes nothing.
-
-        Args:
-            plan: Everything that the trials follow from; JSON.
-            planned_trials: Number of trials.
-        """
+        """Store the plan, from which all trials follow; the same again changes nothing."""
         with self._database.writing() as connection:
             row = connection.execute("SELECT plan_json FROM cohort").fetchone()
             if row is None:
@@ -101,14 +94,7 @@ class CohortStore:
             )
 
     def add(self, analysis: TrialAnalysis) -> None:
-        """Store a finished trial with all results in one transaction.
-
-        Args:
-            analysis: Record, fits, target errors, truth and score.
-
-        Raises:
-            ValueError: the truth is unknown.
-        """
+        """Store a finished trial with all results, the truth included, in one transaction."""
         record, truth = analysis.record, analysis.truth
         if truth is None:
             raise ValueError("A virtual trial is stored with its truth.")

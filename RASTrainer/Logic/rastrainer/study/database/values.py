@@ -80,13 +80,7 @@ def decoded(written: str, read: Callable[[Any], Value]) -> Value:
 
 @dataclass(frozen=True)
 class Trainee:
-    """A trainee, known only by a pseudonym.
-
-    Attributes:
-        consent: Whether the trainee consents to research.
-        archived: Whether the trainee is hidden from the list.
-        created_utc: ISO 8601.
-    """
+    """A trainee, known only by a pseudonym; archived ones are hidden from the list."""
 
     pseudonym: str
     consent: bool
@@ -126,7 +120,6 @@ class StoredRegistration:
 
     @classmethod
     def of(cls, registration: Registration, error: TargetError | None) -> StoredRegistration:
-        """Return a registration and its target error for storage."""
         return cls(
             kind=registration.kind,
             labels=registration.labels,
@@ -154,12 +147,7 @@ class TrialOutcome(NamedTuple):
 
 @dataclass(frozen=True)
 class StoredProcedure:
-    """The stored outcome of a procedure.
-
-    Attributes:
-        analysis: Its errors, as `ProcedureAnalysis.to_json`.
-        score: From them.
-    """
+    """The stored outcome of a procedure; its errors are as of `ProcedureAnalysis.to_json`."""
 
     analysis: Mapping[str, Any]
     score: ProcedureScore
@@ -178,7 +166,6 @@ class StoredProcedure:
 
     @classmethod
     def from_json(cls, value: Mapping[str, Any]) -> StoredProcedure:
-        """Return the outcome that `to_json` described."""
         return cls(dict(value["analysis"]), ProcedureScore.from_json(value["score"]))
 
     @property
@@ -197,16 +184,13 @@ class StoredProcedure:
 
 @dataclass(frozen=True)
 class StoredTrial:
-    """A trial with its latest results.
+    """A trial with its latest results, as far as they are known.
 
     Attributes:
-        record: As delivered by the simulator.
         registrations: By kind.
-        score: None until scored.
-        true_tre_mm: True error at the target; None until revealed.
-        head_to_world: 16 numbers row by row, RAS to `World`, mm; None until revealed.
-        motion: Motion metrics by name, with units; may be empty.
-        procedure: Outcome of the procedure; None until scored, or of touches alone.
+        true_tre_mm: True error at the target.
+        head_to_world: 16 numbers row by row, RAS to `World`, mm.
+        motion: Motion metrics by name, with units.
     """
 
     record: TrialRecord

@@ -21,14 +21,11 @@ MIN_REASON_LENGTH, MAX_REASON_LENGTH = 10, 500
 
 @dataclass(frozen=True)
 class StepEntry:
-    """The outcome of a step.
+    """The outcome of a step, `done` or `skipped`.
 
     Attributes:
-        step: Its name.
-        outcome: `done` or `skipped`.
         details: `trialId` of a trial, `answers` of a questionnaire, `minutes` of a trial run or a
             break, `reason` of a skipped step.
-        stored_utc: ISO 8601.
     """
 
     step: str
@@ -43,7 +40,6 @@ class StepProgress:
 
     Attributes:
         entries: Of the first steps, in order.
-        enrolled_utc: Time of enrollment, ISO 8601.
         practiced_s: Time already practiced in the next step, if it is a trial run, in s.
         unexplained: Aborted trials of the next step; repeating it needs a reason.
     """
