@@ -145,13 +145,6 @@ def read_fields(path: Path) -> Fields:
     return Fields(values, path)
 
 
-def fields_of(value: Any, what: str) -> Fields:
-    """Return the fields of decoded JSON; `what` names it in errors, such as "study protocol"."""
-    if not isinstance(value, dict):
-        raise InputError(f"A {what} must be one JSON object.")
-    return Fields(value, Path(what))
-
-
 def known_keys(value: Any, keys: Mapping[str, json_checks.Argument], what: str) -> dict[str, Any]:
     """Return an object's values as `json_checks.checked_keys` does, where it has no other keys.
 
