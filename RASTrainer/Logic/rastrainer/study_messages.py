@@ -56,7 +56,7 @@ def identifier(value: Any) -> str:
 
 
 def skin_amounts(value: Any) -> dict[str, float]:
-    """Accept how far the skin shifts (RMS) and is indented, mm; what is left out is 0.
+    """Accept how far the skin shifts (RMS) and is indented, mm; a missing amount is 0.
 
     Raises:
         ValueError: anything else; the words follow "must be".
@@ -83,7 +83,7 @@ _Minutes = Annotated[float, number(0, 43_200, "min")]
 
 @dataclass(frozen=True)
 class StudyStep:
-    """A step of a trainee through a study; texts are empty where there is no such thing.
+    """A step of a trainee through a study; texts that do not apply are empty.
 
     Attributes:
         trainee: Pseudonym.
@@ -125,7 +125,7 @@ class StudyStep:
         return cls(**arguments)
 
     def arguments(self) -> dict[str, Any]:
-        """Return the command arguments, without empty ones."""
+        """Return the command arguments, without defaults."""
         return record_to_json(self)
 
     @property
@@ -186,7 +186,7 @@ class Assignment:
     def is_played_as(
         self, scenario: str, task: str, mode: str, method: str, procedure: str
     ) -> bool:
-        """Return whether such a trial counts for it."""
+        """Return whether a trial of this kind counts for the assignment."""
         return (
             self.scenario in ("", scenario)
             and self.mode in ("", mode)
@@ -202,7 +202,7 @@ class AssignmentStanding(Assignment):
         mark: Score that passes a trial; None without one.
         done: Trials in a row that pass now, or percent of the way to competence.
         needed: How many there have to be.
-        played: Trials, aborted ones included.
+        played: Number of trials, including aborted trials.
         mean: Of the latest scores; None before the first.
         missing: Names of the assignments that it waits for.
         weakest: Part of the score that cost most in the latest trials; "" before the first.
@@ -238,7 +238,7 @@ def _some_assignments(value: Any) -> Any:
 
 @dataclass(frozen=True)
 class CurriculumMessage:
-    """What a trainee's menu shows of a curriculum.
+    """A trainee's standing in a curriculum, as the menu shows it.
 
     Attributes:
         trainee: Pseudonym.
@@ -258,7 +258,7 @@ class CurriculumMessage:
         return cls(**arguments)
 
     def arguments(self) -> dict[str, Any]:
-        """Return the command arguments, without empty ones."""
+        """Return the command arguments, without defaults."""
         return record_to_json(self)
 
     @property

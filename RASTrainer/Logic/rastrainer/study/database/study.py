@@ -47,7 +47,7 @@ TRUTH_LIMIT = 1e6
 MOTION_LIMIT = 1e9
 
 METHOD = "coalesce(json_extract(record_json, '$.method'), 'fiducials')"
-"""By what a trial was registered: its record names only other methods than fiducials."""
+"""The method by which a trial was registered: its record leaves out fiducials, the default."""
 
 _STAMPED_TRIALS = f"""
     SELECT trial_id, rowid, stored_utc,
@@ -72,7 +72,7 @@ class Study(StudyTrainees):
     """
 
     _read_trials: Mapping[str, tuple[tuple, StoredTrial]] = {}
-    """Of the trainee whose history was read last, each with a stamp that changes with it."""
+    """History of the last trainee, each trial with a stamp that changes with it."""
 
     @classmethod
     def open(
@@ -239,7 +239,7 @@ class Study(StudyTrainees):
         score: TrialScore | None = None,
         procedure: ProcedureOutcome | None = None,
     ) -> None:
-        """Add results of a stored trial; the latest ones count."""
+        """Add results of a stored trial; the latest results count."""
         with self.database.writing() as connection:
             self._check_exists(trial_id)
             for registration in registrations:
@@ -284,7 +284,7 @@ class Study(StudyTrainees):
             )
 
     def set_motion(self, trial_id: str, motion: Mapping[str, float]) -> None:
-        """Store the motion metrics of a trial by name; only the first ones count."""
+        """Store the motion metrics of a trial by name; later metrics change nothing."""
         check_value = json_checks.number(-MOTION_LIMIT, MOTION_LIMIT)
         with self.database.writing() as connection:
             self._check_exists(trial_id)
@@ -334,7 +334,7 @@ class Study(StudyTrainees):
         )
 
     def history(self, pseudonym: str) -> tuple[StoredTrial, ...]:
-        """Return all trials of a trainee in order of starting; only changed ones are read again."""
+        """Return all trials of a trainee in order of starting; only changed trials are read again."""
         with self.database.reading() as connection:
             self.trainee(pseudonym)
             known = self._read_trials

@@ -136,7 +136,7 @@ _TLX_SCALES = (
     ("frustration", "Frustration"),
 )
 _TLX_ANCHORS = {"performance": ("perfect", "failure")}
-"""Of the scale that does not run from very low to very high."""
+"""Performance does not run from very low to very high."""
 
 
 def _tlx_scores(answers: Sequence[int]) -> tuple[float, ...]:

@@ -1,4 +1,4 @@
-"""Steps of a study in words, which trials count for them, and the answers to questionnaires.
+"""Instructions for steps of a study, objections to their trials, and answers to questionnaires.
 
 Slicer sends the next step (`StudyStep`); the simulator answers (`StepAnswered`).
 """
@@ -55,7 +55,7 @@ def trial_title(task: str, mode: str, method: str, procedure: str) -> str:
     Args:
         task: Its name.
         mode: Display mode; "" for any.
-        method: By what it is registered; nothing is said of fiducials.
+        method: Of registration; fiducials, the default, are not mentioned.
         procedure: That it continues with; "" for none.
     """
     name = task.replace("-", " ").capitalize()

@@ -1,7 +1,7 @@
 """A study's protocol and every trainee's progress, stored in the study's file.
 
 The module in Slicer and the simulator's flow ask `progress` for the next step and report completed
-ones. Everything is stored before it is reported, so it survives interruptions.
+steps. Everything is stored before it is reported, so it survives interruptions.
 """
 
 from __future__ import annotations

@@ -109,10 +109,10 @@ class StudyProtocol:
         repetitions: How often each task is done in each mode, round by round.
         trial_run_min: Length of the trial run at the start of each mode; 0 for none.
         break_between_modes_min, break_between_tasks_min: At least so long; 0 for none.
-        references: Of the score, by task; a task without one has that of the scenario.
-        pass_mark: Score that passes; None where the protocol sets none and the default holds.
+        references: Of the score, by task; by default, the scenario's.
+        pass_mark: Score that passes; None for the default.
         guidance: To the next point; "" leaves it to the simulator's setting.
-        ghost: For the trials; "" for none, whatever the simulator's setting.
+        ghost: For the trials; "" for none, even if the simulator's setting has one.
         tutorial: "" leaves it to the simulator's setting.
         procedures: By task, the procedure that its trials continue with; without one, a trial ends
             with the registration.
