@@ -1,4 +1,4 @@
-"""Instructions for steps of a study, objections to their trials, and answers to questionnaires.
+"""Instructions for steps of a study, objections to trials, and answers to questionnaires.
 
 Slicer sends the next step (`StudyStep`); the simulator answers (`StepAnswered`).
 """
