@@ -334,7 +334,7 @@ class Study(StudyTrainees):
         )
 
     def history(self, pseudonym: str) -> tuple[StoredTrial, ...]:
-        """Return all trials of a trainee in order of starting; only changed trials are read again."""
+        """Return all trials of a trainee in order of starting; unchanged trials are kept."""
         with self.database.reading() as connection:
             self.trainee(pseudonym)
             known = self._read_trials
