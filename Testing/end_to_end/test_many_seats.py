@@ -47,8 +47,9 @@ PROTOCOL = {
     "allows": ["commands", "chosen seed", "repeated seed", "other speed", "pauses", "other view"],
     "taskOrder": "fixed",
     "repetitions": 1,
-    "trialRun": {"minutes": 0},
-    "breaks": {"betweenModesMinutes": 0, "betweenTasksMinutes": 0},
+    "trialRunMin": 0,
+    "breakBetweenModesMin": 0,
+    "breakBetweenTasksMin": 0,
     "questionnaires": [{"name": "sus", "when": "after-mode", "modes": []}],
 }
 PATIENCE_S = 600.0

@@ -10,12 +10,12 @@ import pytest
 from rastrainer.igtl.client import Client
 from rastrainer.number_text import with_units
 from rastrainer.protocol import PROTOCOL_VERSION
-from rastrainer.study.curriculum.curriculum import Assignment, Curriculum
-from rastrainer.study.curriculum.curriculum_message import CurriculumMessage
+from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
-from rastrainer.study.curriculum.standing import CountedTrial, standing_in
+from rastrainer.study.curriculum.standing import standing_in
 from rastrainer.study.database.study import Study
-from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.study_messages import Assignment, StudyStep
+from rastrainer.trial.trial_feedback import PastTrial
 from Testing.domain.trial.trial_records import gentle_score, make_record
 from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.end_to_end.study_side import STUDY, StudySide
@@ -50,12 +50,12 @@ TWO = Curriculum(
     "C",
     (Assignment("one", "task-1"), Assignment("two", "task-2", after=("one",))),
 )
-PASSED = CountedTrial("task-1", "desktop", score=80.0, acceptable=True)
+PASSED = PastTrial("", "task-1", "desktop", 60.0, 80.0, acceptable=True)
 
 
 def curriculum(*trials):
     standing = standing_in(TWO, trials, lambda _version: 70.0)
-    return CurriculumMessage.of("P08", standing).arguments()
+    return standing.message("P08").arguments()
 
 
 def states(screen):
@@ -99,7 +99,7 @@ def test_the_trainees_menu_offers_what_slicer_sends_of_a_study_and_of_a_curricul
         refused = slicer.send_command(
             "Curriculum", {"trainee": "P08", "assignments": [{}]}, timeout=60
         )
-        assert 'An assignment needs the key "name"' in refused.error
+        assert 'assignments[0] needs the key "name"' in refused.error
         # The Slicer that comes next may have another study: what this one sent is forgotten.
         slicer.close()
         screen_where(view, lambda screen: screen["menu"]["name"] == "experiment")

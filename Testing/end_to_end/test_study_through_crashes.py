@@ -30,8 +30,9 @@ SHORT = {
     "modeOrder": "fixed",
     "tasks": ["task-1", "task-2"],
     "allows": ["commands", "chosen seed", "repeated seed", "other speed", "pauses", "other view"],
-    "trialRun": {"minutes": 0.2},
-    "breaks": {"betweenModesMinutes": 0, "betweenTasksMinutes": 0.05},
+    "trialRunMin": 0.2,
+    "breakBetweenModesMin": 0,
+    "breakBetweenTasksMin": 0.05,
     "questionnaires": [
         {"name": "nasa-tlx", "when": "before-mode", "modes": []},
         {"name": "sus", "when": "after-mode", "modes": []},

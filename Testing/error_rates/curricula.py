@@ -10,14 +10,15 @@ import numpy as np
 
 from rastrainer.number_text import fixed
 from rastrainer.protocol import AssignmentState, GoalKind
-from rastrainer.study.curriculum.curriculum import Assignment, Curriculum
+from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.standing import (
     AssignmentStanding,
-    CountedTrial,
     CurriculumStanding,
     standing_in,
 )
+from rastrainer.study_messages import Assignment
 from rastrainer.trial.scoring import PASS_MARK
+from rastrainer.trial.trial_feedback import PastTrial
 from Testing.error_rates.measured import Measured, share_of
 
 GOALS_HEADER = ("goal, and trainee", "called reached")
@@ -97,11 +98,11 @@ def _is_reached(assignment: Assignment, failing: np.ndarray, random: np.random.G
     return _stand(Curriculum("c", "C", (assignment,)), played).reached == 1
 
 
-def _trial(task: str, score: float) -> CountedTrial:
-    return CountedTrial(task, "desktop", score=score, acceptable=True)
+def _trial(task: str, score: float) -> PastTrial:
+    return PastTrial("", task, "desktop", 60.0, score, acceptable=True)
 
 
-def _stand(curriculum: Curriculum, trials: Sequence[CountedTrial]) -> CurriculumStanding:
+def _stand(curriculum: Curriculum, trials: Sequence[PastTrial]) -> CurriculumStanding:
     return standing_in(curriculum, trials, lambda _version: PASS_MARK)
 
 
@@ -153,7 +154,7 @@ def weakest(sets: int) -> list[Measured]:
             skill = _skill(random)
             played = [_play(task, skill, random) for task in range(TASKS) for _ in range(count)]
             best = next_best(_stand(CURRICULUM, played), random)
-            chosen = int(best.assignment.name) - 1
+            chosen = int(best.name) - 1
             hits.append(chosen == int(np.argmin(skill)))
             missed.append(skill[chosen] - skill.min())
             by_chance.append(skill.mean() - skill.min())
@@ -180,13 +181,13 @@ def course(choose: Choice, seed: int) -> Course:
     """Return the course of a learner with their own weak tasks."""
     random = np.random.default_rng((6, seed))
     skill = _skill(random)
-    played: list[CountedTrial] = []
+    played: list[PastTrial] = []
     after_some = float(skill.min())
     while len(played) < MOST_TRIALS:
         standing = _stand(CURRICULUM, played)
         if standing.reached == TASKS:
             break
-        chosen = int(choose(standing, random).assignment.name) - 1
+        chosen = int(choose(standing, random).name) - 1
         played.append(_play(chosen, skill, random))
         gain = np.full(TASKS, TRANSFER)
         gain[chosen] = LEARNING
@@ -216,6 +217,6 @@ def _skill(random: np.random.Generator) -> np.ndarray:
     return START + random.normal(0, TRAINEE_SD) + random.normal(0, TASK_SD, TASKS)
 
 
-def _play(task: int, skill: np.ndarray, random: np.random.Generator) -> CountedTrial:
+def _play(task: int, skill: np.ndarray, random: np.random.Generator) -> PastTrial:
     score = float(np.clip(random.normal(skill[task], TRIAL_SD), 1.0, 100.0))
     return _trial(f"task-{task + 1}", score)

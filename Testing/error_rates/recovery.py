@@ -10,13 +10,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rastrainer.number_text import fixed
-from rastrainer.protocol import FIDUCIAL_COUNT
+from rastrainer.protocol import FIDUCIAL_COUNT, StepKind
 from rastrainer.registration.target_error import COMMON_BIAS_SD_MM
 from rastrainer.report.variation import StudyVariation, study_variation, view_bias
 from rastrainer.statistics.intervals import Estimate, scipy_module
-from rastrainer.study.protocol.steps import Step, StepKind, steps_for
-from rastrainer.study.protocol.study_protocol import StudyProtocol
+from rastrainer.study.protocol.study_protocol import StudyProtocol, steps_for
 from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.study_messages import StudyStep
 from rastrainer_simulator.virtual.outcome_model import DOF, OutcomeModel, draw
 from rastrainer_simulator.virtual.population import pseudonym
 from Testing.error_rates.measured import Measured, share_of
@@ -85,11 +85,12 @@ def draw_protocol_study(
     return StudyData("Simulated outcomes", rows, has_order=True)
 
 
-def _trials(protocol: StudyProtocol, trainee: int) -> Iterator[tuple[int, int, Step]]:
+def _trials(protocol: StudyProtocol, trainee: int) -> Iterator[tuple[int, int, StudyStep]]:
     """Yield mode index, slot and step of each trial of a trainee, in order."""
     for step in steps_for(protocol, trainee):
         if step.kind is StepKind.TRIAL:
-            slot = (step.round - 1) * len(protocol.tasks) + protocol.tasks.index(step.task)
+            round_ = int(step.name.split("/")[1]) - 1
+            slot = round_ * len(protocol.tasks) + protocol.tasks.index(step.task)
             yield protocol.modes.index(step.mode), slot, step
 
 

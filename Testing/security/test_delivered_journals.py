@@ -13,7 +13,6 @@ from rastrainer.journal.journal_file import NO_LINE, encode_line, read_journal
 from rastrainer.json_records import record_from_json
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic.trial_logic import TrialLogic
-from rastrainer.study.curriculum.curriculum_store import counted_trials
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.journal_check import check_journal
@@ -74,8 +73,7 @@ def received(folder, port, scenario, **protocol):
         ((name,),) = [[each.pseudonym for each in study.trainees()]]
         (trial,) = study.history(name)
         (attempt,) = AbortedTrials(study).attempts(name)
-        (counted,) = counted_trials_of(study, name)
-    assert attempt.is_aborted == counted.is_aborted == (trial.score is None)
+    assert attempt.is_aborted == (trial.score is None)
     return trial.score, problems
 
 
@@ -83,11 +81,6 @@ def is_revealed(path):
     with Study.open(path) as study:
         histories = [study.history(each.pseudonym) for each in study.trainees()]
         return any(trial.true_tre_mm is not None for trials in histories for trial in trials)
-
-
-def counted_trials_of(study, name):
-    with study.database.reading() as connection:
-        return counted_trials(connection, name)
 
 
 def test_a_trial_that_was_played_is_scored(played, scenario, tmp_path, capsys):
@@ -115,7 +108,7 @@ def test_an_invented_trial_in_a_real_simulator_is_scored_only_by_a_study_that_wa
     records.mkdir()
     write_finished_trials(records, range(1))
     with SimulatorProcess(records, "--no-views") as simulator:
-        score, problems = received(tmp_path, simulator.port, scenario, checks_journals=is_checked)
+        score, problems = received(tmp_path, simulator.port, scenario, check_journals=is_checked)
     assert (score is None) == is_checked
     assert [("was not scored: Its journal" in problem) for problem in problems] == [
         True

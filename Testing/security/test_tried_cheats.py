@@ -18,7 +18,7 @@ from rastrainer.journal.journal_file import read_journal
 from rastrainer.json_records import record_from_json
 from rastrainer.protocol import FREE, PROTOCOL_VERSION, DeviceName
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.study_messages import StudyStep
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.ops.instructor_pin import InstructorPin
 from Testing.end_to_end.finished_trials import COLIN

@@ -8,12 +8,12 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_from_json
+from rastrainer.protocol import StepKind
 from rastrainer.slicer.logic.study_logic import StudyLogic
 from rastrainer.slicer.logic.trainee_logic import TraineeLogic
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import moment
-from rastrainer.study.protocol.steps import StepKind
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
@@ -183,7 +183,7 @@ def test_a_stored_trial_is_counted_even_if_it_arrived_while_slicer_was_closed(
 
 
 def test_a_break_ends_after_the_protocols_minutes_for_any_trainee(lab):
-    lab.begin(tasks=["task-1"], questionnaires=[], trialRun={"minutes": 0})
+    lab.begin(tasks=["task-1"], questionnaires=[], trialRunMin=0)
     lab.skip("the headset's battery was empty")
     assert lab.next == "desktop/break"
     lab.spend_in_step(9.9)
@@ -203,7 +203,7 @@ def test_a_trial_of_a_step_with_a_procedure_is_started_with_it(lab):
         modes=["desktop"],
         tasks=["task-1"],
         questionnaires=[],
-        trialRun={"minutes": 0},
+        trialRunMin=0,
         procedures={"task-1": "dbs"},
     )
     lab.logic.startTrial("task-1", "desktop", procedure="biopsy")
@@ -245,7 +245,7 @@ def test_only_the_step_that_was_asked_about_is_skipped(enrolled):
 
 
 def test_a_break_that_another_slicer_has_ended_ends_no_other_step(lab):
-    lab.begin(tasks=["task-1"], questionnaires=[], trialRun={"minutes": 5})
+    lab.begin(tasks=["task-1"], questionnaires=[], trialRunMin=5)
     while lab.next != "desktop/break":
         lab.skip("this is not what is tested")
     lab.trainees.choose("")
@@ -409,7 +409,7 @@ def test_answers_that_do_not_belong_to_the_step_are_not_stored(enrolled, wrong):
 
 
 def test_a_simulator_that_connects_later_is_sent_the_elapsed_time_of_a_break(lab):
-    lab.begin(tasks=["task-1"], questionnaires=[], trialRun={"minutes": 0})
+    lab.begin(tasks=["task-1"], questionnaires=[], trialRunMin=0)
     lab.skip("the headset's battery was empty")
     lab.room.run_until(lambda: sent_step(lab).get("minutes") == 10.0)
     lab.spend_in_step(4.0)
@@ -452,7 +452,7 @@ def test_a_study_trial_is_started_with_the_method_of_its_protocol(lab):
     lab.begin(
         modes=["desktop"],
         questionnaires=[],
-        trialRun={"minutes": 0},
+        trialRunMin=0,
         methods={"task-1": "landmarks-surface"},
         skin={"task-1": skin},
     )

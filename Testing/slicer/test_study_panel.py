@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from rastrainer.json_records import record_from_json
+from rastrainer.protocol import StepKind
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.questionnaires import SSQ
-from rastrainer.study.protocol.steps import StepKind
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.trial.aborted_trial import AbortedTrial
 from Testing.domain.trial.trial_records import make_aborted
@@ -52,11 +52,13 @@ def test_a_study_begins_with_a_protocol_only_after_confirmation(panel, tmp_path)
     assert "practice freely" in panel.text("protocolText")
     with pytest.raises(AssertionError, match="Choose the file of a protocol first"):
         panel.press("beginStudyButton")
-    (tmp_path / "wrong.json").write_text(json.dumps({"formatVersion": 1, "steps": []}))
+    (tmp_path / "wrong.json").write_text(
+        json.dumps({"formatVersion": 1, "scoreVersion": "1", "steps": []})
+    )
     panel.type("protocolPathLineEdit", str(tmp_path / "wrong.json"))
     panel.answer("Begin the study", "Yes")
     panel.press("beginStudyButton")
-    assert "steps must be left out" in panel.messages[-1].text
+    assert 'there is no "steps"' in panel.messages[-1].text
     panel.type("protocolPathLineEdit", str(SHIPPED))
     panel.answer("Begin the study", "No")
     panel.press("beginStudyButton")

@@ -15,7 +15,6 @@ from aiohttp import web
 from playwright.sync_api import sync_playwright
 
 from rastrainer.protocol import Phase
-from rastrainer.study.curriculum.curriculum_message import CurriculumMessage
 from rastrainer_simulator.board.class_table import ClassReader, ClassStanding
 from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
 from rastrainer_simulator.net.views.outgoing import seat as seat_text
@@ -36,7 +35,7 @@ SAY = Texts().say
 def assignments(found: ClassStanding, trainee: str) -> str:
     """Return where a trainee stands, as the seat reports it."""
     words = AssignmentTexts(Texts(), lambda task: SAY(f"task.{task}"), str.capitalize)
-    return words.in_brief(CurriculumMessage.of(trainee, found.standings[trainee]))
+    return words.in_brief(found.standings[trainee].message(trainee))
 
 
 def seat(

@@ -6,58 +6,43 @@ simulator. The table in docs/openigtlink.md is made of the entries by `tools/com
 
 from __future__ import annotations
 
-import contextlib
 import json
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, cast
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import (
     MAX_RECORD_VALUES,
     decode_message_object,
-    list_of,
     number,
     numbers,
     one_of,
     plain_object,
     pseudonym,
     text,
-    texts,
     trial_id,
     whole_number,
 )
 from rastrainer.json_records import record_fields, record_from_json
 from rastrainer.protocol import (
-    ALL_DONE,
     COMMANDED_ABORTS,
     FEED_LIMIT_MM_S,
     FINISHED_PHASES,
-    FREE,
-    MAX_ASSIGNMENTS,
-    MAX_GATES,
     MAX_JOURNAL_BYTES,
     OPEN_PHASES,
     PROCEDURE_PHASES,
     PROTOCOL_VERSION,
-    REPEAT,
-    SKIN_KEYS,
-    SKIN_LIMIT_MM,
     SPEED_LIMIT_MM_S,
     STAND_OFF_LIMIT_MM,
     WORLD_LIMIT_MM,
     AbortReason,
-    AssignmentState,
-    GhostRule,
-    GoalKind,
-    Guidance,
     Mode,
     Phase,
     Rate,
-    StepKind,
-    TutorialRule,
 )
+from rastrainer.study_messages import CurriculumMessage, Skin, StudyStep
 
 _Numbers = tuple[float, ...]
 _Position = Annotated[_Numbers, numbers(3, WORLD_LIMIT_MM, "mm")]
@@ -65,24 +50,6 @@ _TrialId = Annotated[str, trial_id]
 _Mode = Annotated[str, one_of(*(mode.value for mode in Mode))]
 _Name = Annotated[str, text(40, 0)]
 """Name of a procedure, a method or an assignment; empty for none."""
-
-
-def skin_amounts(value: Any) -> dict[str, float]:
-    """Accept how far the skin shifts (RMS) and is indented, mm; a missing amount is 0.
-
-    Raises:
-        ValueError: anything else; the words follow "must be".
-    """
-    check = number(0, SKIN_LIMIT_MM)
-    with contextlib.suppress(ValueError):
-        if isinstance(value, Mapping) and set(value) <= set(SKIN_KEYS):
-            return {key: check(amount) for key, amount in value.items()}
-    raise ValueError(
-        f"an object of {' and '.join(SKIN_KEYS)}, each a number from 0 to {SKIN_LIMIT_MM:g} mm"
-    )
-
-
-_Skin = Annotated[Mapping[str, float], skin_amounts]
 
 
 @dataclass(frozen=True)
@@ -141,7 +108,7 @@ class StartTaskArguments:
         _Name, "`fiducials`, `landmarks`, `surface` or `landmarks-surface`; fiducials if empty"
     ] = ""
     skin: Annotated[
-        _Skin,
+        Skin,
         "how the [skin shifts](registration-methods.md#the-skin-moves); if empty, as the scenario "
         "specifies",
     ] = field(default_factory=dict)
@@ -238,71 +205,6 @@ class PlanTargetArguments:
         _Numbers | None, numbers(3, WORLD_LIMIT_MM, "mm"), "the entry point of a trajectory"
     ] = None
     name: str = "target"
-
-
-@dataclass(frozen=True)
-class StudyStepArguments:
-    """States the next step that a study requires of a trainee.
-
-    From then on, the trainee's own menu starts nothing else, until a `StudyStep` of kind `free`.
-    """
-
-    trainee: str
-    kind: Annotated[
-        str,
-        one_of(*(kind.value for kind in StepKind), ALL_DONE, FREE, REPEAT),
-        "`repeat`: a trial was aborted, and nobody has given a reason for repeating it yet",
-    ]
-    number: Annotated[int, whole_number(1, 100_000)] = 0
-    count: Annotated[int, whole_number(1, 100_000)] = 0
-    task: str = ""
-    mode: _Mode = ""
-    questionnaire: str = ""
-    minutes: Annotated[float, number(0, 43_200, "min")] = 0.0
-    over: Annotated[float, number(0, 43_200, "min"), "how many of the minutes have elapsed"] = 0.0
-    guidance: Annotated[str, one_of(*(choice.value for choice in Guidance))] = ""
-    ghost: Annotated[str, one_of(*(rule.value for rule in GhostRule))] = ""
-    procedure: _Name = ""
-    tutorial: Annotated[str, one_of(*(rule.value for rule in TutorialRule))] = ""
-    method: _Name = ""
-    skin: _Skin = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class AssignmentArguments:
-    """A trainee's progress in an assignment of a curriculum."""
-
-    name: Annotated[str, text(40)]
-    task: Annotated[str, text(40)]
-    goal: GoalKind
-    state: AssignmentState
-    needed: Annotated[int, whole_number(1, 100)]
-    scenario: _Name = ""
-    mode: Annotated[str, one_of("", *(mode.value for mode in Mode))] = ""
-    method: _Name = ""
-    procedure: _Name = ""
-    done: Annotated[int, whole_number(0, 100)] = 0
-    mark: Annotated[float, number(0, 100)] = 0.0
-    played: Annotated[int, whole_number(0, 1_000_000)] = 0
-    missing: Annotated[tuple[str, ...], texts(0, MAX_GATES)] = ()
-    weakest: Annotated[str, text(20, 0)] = ""
-
-
-@dataclass(frozen=True)
-class CurriculumArguments:
-    """States where a trainee stands in a [curriculum](how-to/set-a-curriculum.md)."""
-
-    trainee: str
-    title: Annotated[str, text(80, 0)] = ""
-    next: Annotated[_Name, "name of the assignment to practice next"] = ""
-    assignments: Annotated[
-        tuple[AssignmentArguments, ...],
-        list_of(0, MAX_ASSIGNMENTS, "assignments"),
-        "each with `name`, `task`, `goal` (`score`, `competent`), `state` (`locked`, `open`, "
-        "`reached`), `needed`, *`scenario`*, *`mode`*, *`method`*, *`procedure`*, *`done`*, "
-        "*`mark`*, *`played`*, *`missing`* (names of what a locked one waits for), *`weakest`* "
-        "(part of the score); none if the trainee has no curriculum",
-    ] = ()
 
 
 @dataclass(frozen=True)
@@ -563,8 +465,17 @@ class CommandName:
         refused=_BEFORE_REGISTRATION,
         is_stateless=True,
     )
-    STUDY_STEP = CommandEntry("StudyStep", StudyStepArguments)
-    CURRICULUM = CommandEntry("Curriculum", CurriculumArguments)
+    STUDY_STEP = CommandEntry(
+        "StudyStep",
+        "States the next step that a study requires of a trainee. From then on, the trainee's own "
+        "menu starts nothing else, until a `StudyStep` of kind `free`.",
+        arguments=StudyStep,
+    )
+    CURRICULUM = CommandEntry(
+        "Curriculum",
+        "States where a trainee stands in a [curriculum](how-to/set-a-curriculum.md).",
+        arguments=CurriculumMessage,
+    )
     GET_TRIAL = CommandEntry(
         "GetTrial",
         GetTrialArguments,
@@ -609,7 +520,7 @@ def check_arguments(command: str, arguments: Mapping[str, Any]) -> dict[str, Any
     if arguments and not fields(kind):
         raise InputError(f"{command} takes no arguments.")
     record = record_from_json(kind, arguments, command, only_known=True)
-    return {each.key: getattr(record, each.name) for each in record_fields(kind)}
+    return {each.key: getattr(record, each.name) for each in record_fields(cast("Any", kind))}
 
 
 def decode_json_object(body: str) -> dict[str, Any]:

@@ -13,16 +13,15 @@ from aiohttp import hdrs, web
 
 from rastrainer.errors import InputError
 from rastrainer.study.curriculum.curriculum import Curriculum
-from rastrainer.study.curriculum.curriculum_message import AssignmentMessage
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import (
-    AssignmentStanding,
     CurriculumStanding,
     by_curriculum,
 )
 from rastrainer.study.database.database import LockWait, StudyBusyError, StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import utc_now
+from rastrainer.study_messages import AssignmentStanding
 from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
 from rastrainer_simulator.ops.study_thread import StudyThread
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
@@ -219,8 +218,7 @@ def _table(
 
 
 def _column(standing: AssignmentStanding, words: AssignmentTexts) -> dict[str, Any]:
-    message = AssignmentMessage.of(standing)
-    return {"name": message.name, "label": words.label(message), "goal": words.goal(message)}
+    return {"name": standing.name, "label": words.label(standing), "goal": words.goal(standing)}
 
 
 def _row(name: str, standing: CurriculumStanding, words: AssignmentTexts) -> dict[str, Any]:
@@ -228,7 +226,7 @@ def _row(name: str, standing: CurriculumStanding, words: AssignmentTexts) -> dic
     return {
         "trainee": name,
         "reached": standing.reached,
-        "next": "" if best is None else words.label(AssignmentMessage.of(best)),
+        "next": "" if best is None else words.label(best),
         "cells": [_cell(each, words) for each in standing.standings],
     }
 
@@ -236,7 +234,7 @@ def _row(name: str, standing: CurriculumStanding, words: AssignmentTexts) -> dic
 def _cell(standing: AssignmentStanding, words: AssignmentTexts) -> dict[str, Any]:
     return {
         "state": standing.state.value,
-        "progress": words.progress(AssignmentMessage.of(standing)),
+        "progress": words.progress(standing),
         "done": standing.done,
         "needed": standing.needed,
         "reachedUtc": standing.reached_utc,

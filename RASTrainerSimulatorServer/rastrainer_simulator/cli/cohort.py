@@ -10,8 +10,11 @@ from rastrainer.errors import InputError
 from rastrainer.number_text import significant
 from rastrainer.protocol import Mode
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.study.protocol.steps import mode_order
-from rastrainer.study.protocol.study_protocol import StudyProtocol, read_study_protocol
+from rastrainer.study.protocol.study_protocol import (
+    StudyProtocol,
+    mode_order,
+    read_study_protocol,
+)
 from rastrainer.trial.score_reference import score_reference
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli import arg

@@ -53,11 +53,11 @@ def follow_curriculum(arguments: argparse.Namespace) -> int:
 def _table(name: str, standing: CurriculumStanding) -> str:
     rows = [
         (
-            each.assignment.name,
-            title_of(each.assignment),
+            each.name,
+            title_of(each),
             short_progress_of(each),
             goal_of(each),
-            ", ".join(each.assignment.after),
+            ", ".join(each.after),
             str(each.played),
             "–" if each.mean is None else fixed(each.mean, 0),
         )

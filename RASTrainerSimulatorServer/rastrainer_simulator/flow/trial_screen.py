@@ -15,7 +15,7 @@ from rastrainer.protocol import (
     Phase,
     StepKind,
 )
-from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.study_messages import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.arm_screen import (
     BACK_WITHIN,

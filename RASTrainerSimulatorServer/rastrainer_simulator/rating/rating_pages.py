@@ -20,12 +20,11 @@ from rastrainer_simulator.texts.texts import Texts
 class RatingWork:
     """The replays of one rater, and the marks on the forms that are filled in for each.
 
-    Every mark is stored when it is given, so that work can be left and taken up at any time.
+    Every mark is stored when it is given, so that a rater can stop and resume at any time.
 
     Attributes:
         trial_ids: In the rater's order; their places are all that the rater learns about them.
         place: Of the present replay, from 0.
-        forms: Those to be filled in.
     """
 
     def __init__(
@@ -64,14 +63,14 @@ class RatingWork:
         """Give the open domain a mark from 1 to 5."""
         if self.open_domain is not None:
             form, domain = self.open_domain
-            self._tell(form, domain.name, mark)
+            self._store_mark(form, domain.name, mark)
 
     def undo(self) -> bool:
         """Withdraw the last mark of this replay; return whether there was one."""
         names = {domain.name: form for form in self.forms for domain in form.domains}
         given = [domain for domain in self.marks if domain in names]
         if given:
-            self._tell(names[given[-1]], given[-1], None)
+            self._store_mark(names[given[-1]], given[-1], None)
         return bool(given)
 
     def go_to_next(self) -> bool:
@@ -95,7 +94,7 @@ class RatingWork:
                     return form, domain
         return None
 
-    def _tell(self, form: RatingForm, domain: str, mark: int | None) -> None:
+    def _store_mark(self, form: RatingForm, domain: str, mark: int | None) -> None:
         trial_id = self.trial_id
         self._store.give(str(uuid.uuid4()), self._rater, trial_id, form, domain, mark)
         self._marks[trial_id] = self._store.marks(self._rater, trial_id)

@@ -18,8 +18,7 @@ from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.journal.journal_file import JournalReading
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
 from rastrainer.scenario.scenario import task_by_method
-from rastrainer.study.curriculum.curriculum_message import CurriculumMessage
-from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.study_messages import CurriculumMessage, StudyStep
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.setup import load_setup

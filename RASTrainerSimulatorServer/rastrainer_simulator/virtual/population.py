@@ -11,9 +11,8 @@ from datetime import datetime, timedelta, timezone
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.protocol import SPEED_LIMIT_MM_S, Mode
-from rastrainer.study.protocol.steps import StepKind, steps_for
-from rastrainer.study.protocol.study_protocol import StudyProtocol
+from rastrainer.protocol import SPEED_LIMIT_MM_S, Mode, StepKind
+from rastrainer.study.protocol.study_protocol import StudyProtocol, steps_for
 from rastrainer_simulator.virtual.scripted_trainee import Skill
 
 NAMESPACE = uuid.UUID("2b1f9c1e-52dd-5f0c-9c51-5261546f686f")

@@ -22,7 +22,7 @@ from rastrainer.procedure.record import (
     MAX_TOUCHED_CHECKPOINTS,
 )
 from rastrainer.protocol import FIDUCIAL_COUNT, PROCEDURE_PHASES
-from rastrainer.study.database.study_trials import RECORD_LIMIT_BYTES
+from rastrainer.study.database.values import RECORD_LIMIT_BYTES
 from rastrainer.trial.procedure_outcome import ProcedureMeasures, ProcedureOutcome, score_procedure
 from rastrainer.trial.record import TrialRecord
 from Testing.domain.procedure.made_up_procedure import (

@@ -3,9 +3,9 @@
 from dataclasses import replace
 from pathlib import Path
 
+from rastrainer.protocol import StepKind
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.questionnaires import find_questionnaire
-from rastrainer.study.protocol.steps import StepKind
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from Testing.domain.trial.trial_records import gentle_score, make_record

@@ -10,23 +10,27 @@ import pytest
 
 from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
-from rastrainer.protocol import ALL_DONE, PLAYED_METHODS, RegistrationMethod
-from rastrainer.study.database.study import Study
-from rastrainer.study.protocol.steps import (
+from rastrainer.protocol import (
+    ALL_DONE,
+    FREE,
+    PLAYED_METHODS,
+    RegistrationMethod,
     StepKind,
-    StudyStep,
-    mode_order,
-    steps_for,
-    task_order,
-    williams_design,
 )
+from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.steps import instruction
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import (
+    mode_order,
     pass_mark_of,
     protocol_text,
     read_study_protocol,
+    steps_for,
     study_protocol_from_json,
+    task_order,
+    williams_design,
 )
+from rastrainer.study_messages import StudyStep
 from rastrainer.trial.scoring import PASS_MARK
 from Testing.domain.trial.trial_records import make_record
 
@@ -85,8 +89,8 @@ def test_the_shipped_protocol_is_that_of_the_paper():
     assert len(trials) == 10
     assert [step.kind for step in steps].count(StepKind.BREAK) == 1
     assert len({step.name for step in steps}) == len(steps)
-    assert steps[1].sentence == "Get to know the trial run with the headset for 5 minutes."
-    assert trials[0].sentence == "Play Task 1 with the headset."
+    assert instruction(steps[1]) == "Get to know the trial run with the headset for 5 minutes."
+    assert instruction(trials[0]) == "Play Task 1 with the headset."
     assert study_protocol_from_json(json.loads(protocol_text(shipped))) == shipped
 
 
@@ -166,7 +170,7 @@ def test_every_step_survives_the_study_step_command(study):
             break
         progress.skip("T001", progress.progress("T001").next_step.name, "only sent in this test")
     assert kinds == {*(kind.value for kind in StepKind), ALL_DONE}
-    free = StudyStep("T001")
+    free = StudyStep("T001", FREE)
     assert (
         StudyStep.from_arguments(check_arguments(CommandName.STUDY_STEP, free.arguments())) == free
     )
@@ -174,7 +178,7 @@ def test_every_step_survives_the_study_step_command(study):
 
 def test_a_protocol_may_set_the_pass_mark():
     shipped = json.loads(SHIPPED.read_text())
-    assert "passMark" not in shipped["scoring"]
+    assert "passMark" not in shipped
     silent = protocol()
     assert silent.pass_mark is None
     assert [pass_mark_of(silent, method) for method in PLAYED_METHODS] == [PASS_MARK] * len(
@@ -182,14 +186,14 @@ def test_a_protocol_may_set_the_pass_mark():
     )
     assert pass_mark_of(None, RegistrationMethod.FIDUCIALS) == PASS_MARK
     assert study_protocol_from_json(json.loads(protocol_text(silent))) == silent
-    own = protocol(scoring=shipped["scoring"] | {"passMark": 62})
+    own = protocol(passMark=62)
     assert own.pass_mark == pass_mark_of(own, RegistrationMethod.FIDUCIALS) == 62.0
     # A mark is made of trials registered by fiducials.
     assert pass_mark_of(own, RegistrationMethod.SURFACE) is None
     assert pass_mark_of(own, RegistrationMethod.FIDUCIALS, is_procedure=True) is None
     assert study_protocol_from_json(json.loads(protocol_text(own))) == own
     with pytest.raises(InputError, match="passMark must be a number from 1 to 100"):
-        protocol(scoring=shipped["scoring"] | {"passMark": 0})
+        protocol(passMark=0)
 
 
 def test_a_protocol_may_set_the_guidance_to_the_next_point_and_a_ghost(study):
@@ -232,7 +236,7 @@ def test_a_protocol_may_name_a_procedure_for_the_trials_of_a_task():
     assert {(step.kind, step.task, step.procedure) for step in steps} == {
         ("trial", "task-1", "dbs")
     }
-    assert "Task 1 with the procedure dbs" in steps[0].sentence
+    assert "Task 1 with the procedure dbs" in instruction(steps[0])
     sent = StudyStep("P07", "trial", task="task-1", procedure="dbs").arguments()
     assert StudyStep.from_arguments(check_arguments("StudyStep", sent)).procedure == "dbs"
     with pytest.raises(InputError, match=r"procedures.task-9 must be one of the study's tasks"):
@@ -259,7 +263,7 @@ def test_nothing_is_skipped_silently(study):
 
 def test_only_the_right_trial_of_the_right_trainee_counts_and_only_once(study):
     progress = StudyProgress(study)
-    progress.set_protocol(protocol(questionnaires=[], trialRun={"minutes": 0}, repetitions=2))
+    progress.set_protocol(protocol(questionnaires=[], trialRunMin=0, repetitions=2))
     progress.enroll("T001")
     step = progress.progress("T001").next_step
     study.add_trial(trial_of(step, 1, trainee="T002"))
@@ -304,7 +308,7 @@ def test_a_trial_run_or_a_break_ends_early_only_with_a_reason(study):
 
 def test_trials_are_counted_automatically_in_protocol_order_since_enrollment(study):
     progress = StudyProgress(study)
-    progress.set_protocol(protocol(questionnaires=[], trialRun={"minutes": 0}, repetitions=2))
+    progress.set_protocol(protocol(questionnaires=[], trialRunMin=0, repetitions=2))
     first = steps_for(progress.protocol(), 0)[0]
     study.add_trial(trial_of(first, 1))
     progress.enroll("T001")
@@ -364,8 +368,8 @@ def test_the_sequence_number_of_a_deleted_trainee_is_reused(study):
         ({"tasks": ["Task 1"]}, "tasks must be names"),
         ({"repetitions": 2.5}, "repetitions must be a whole number from 1 to 50"),
         ({"repetitions": True}, "repetitions must be a whole number"),
-        ({"trialRun": {"minutes": "five"}}, "trialRun.minutes must be a number"),
-        ({"breaks": {}}, "breaks.betweenModesMinutes must be"),
+        ({"trialRunMin": "five"}, "trialRunMin must be a number"),
+        ({"breakBetweenModesMin": -1}, "breakBetweenModesMin must be"),
         (
             {"questionnaires": [{"name": "mmpi", "when": "after-all", "modes": []}]},
             r"questionnaires\[0\].name must be a questionnaire .*there are sus",
@@ -378,12 +382,12 @@ def test_the_sequence_number_of_a_deleted_trainee_is_reused(study):
             {"questionnaires": [{"name": "sus", "when": "after-all", "modes": ["hmd"]}]},
             "belongs to no mode",
         ),
-        ({"scoring": {"version": "0", "references": {}}}, "scoring.version must be 1"),
+        ({"scoreVersion": "0"}, "scoreVersion must be 1"),
         (
-            {"scoring": {"version": "1", "references": {"task-9": {}}}},
+            {"references": {"task-9": {"timeS": 100, "treMm": 1}}},
             "references.task-9 must be one of the study's tasks",
         ),
-        ({"taskorder": "fixed"}, "taskorder must be left out"),
+        ({"taskorder": "fixed"}, 'there is no "taskorder"; use name, title'),
     ],
 )
 def test_an_invalid_protocol_is_refused_in_one_sentence_that_names_the_field(
@@ -410,7 +414,7 @@ def test_a_protocol_may_set_how_the_trials_of_a_task_are_registered():
         ("task-4", "fiducials"),
         ("task-5", "fiducials"),
     }
-    sentences = {step.task: step.sentence for step in trials}
+    sentences = {step.task: instruction(step) for step in trials}
     assert sentences["task-2"].startswith("Play Task 2 by a trace over the skin ")
     assert sentences["task-3"].startswith("Play Task 3 by landmarks of the face ")
     assert sentences["task-4"].startswith("Play Task 4 ")
@@ -429,7 +433,8 @@ def test_a_protocol_may_set_how_the_skin_shifts_in_the_trials_of_a_task_without_
     assert study_protocol_from_json(json.loads(protocol_text(own))) == own
     trials = {step.task: step for step in steps_for(own, 0) if step.kind is StepKind.TRIAL}
     assert trials["task-2"].skin == {"shiftMm": 2.0, "indentationMm": 0.5}
-    assert trials["task-2"].sentence == trials["task-1"].sentence.replace("Task 1", "Task 2")
+    first, second = (instruction(trials[task]) for task in ("task-1", "task-2"))
+    assert second == first.replace("Task 1", "Task 2")
     assert trials["task-2"].is_played_on(2.0, 0.5)
     assert not trials["task-2"].is_played_on(0.0, 0.0)
     assert not trials["task-3"].is_played_on(2.0, 0.0)
@@ -439,23 +444,18 @@ def test_a_protocol_may_set_how_the_skin_shifts_in_the_trials_of_a_task_without_
     assert "skin" not in StudyStep("P07", "trial", task="task-1").arguments()
 
 
+AMOUNTS = "skin.task-1 must be an object of shiftMm and indentationMm, each a number from 0 to 20"
+
+
 @pytest.mark.parametrize(
     ("skin", "said"),
     [
         pytest.param({"task-9": {}}, r"skin.task-9 must be one of the study's tasks", id="task"),
         pytest.param({"task-1": 2}, r"skin.task-1 must be an object", id="number"),
-        pytest.param(
-            {"task-1": {"shiftMm": -1}}, r"shiftMm must be a number from 0 to 20", id="negative"
-        ),
-        pytest.param(
-            {"task-1": {"shiftMm": float("nan")}}, r"shiftMm must be a number", id="not a number"
-        ),
-        pytest.param(
-            {"task-1": {"indentationMm": 21}}, r"indentationMm must be a number", id="too deep"
-        ),
-        pytest.param(
-            {"task-1": {"shift": 2}}, r"shift must be left out; a skin has shiftMm", id="name"
-        ),
+        pytest.param({"task-1": {"shiftMm": -1}}, AMOUNTS, id="negative"),
+        pytest.param({"task-1": {"shiftMm": float("nan")}}, AMOUNTS, id="not a number"),
+        pytest.param({"task-1": {"indentationMm": 21}}, AMOUNTS, id="too deep"),
+        pytest.param({"task-1": {"shift": 2}}, AMOUNTS, id="name"),
     ],
 )
 def test_a_protocol_with_an_impossible_skin_shift_is_refused_with_a_message(skin, said):

@@ -6,10 +6,9 @@ from datetime import datetime, timezone
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.protocol import REPEAT
+from rastrainer.protocol import REPEAT, StepKind
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
-from rastrainer.study.protocol.steps import StepKind
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from Testing.domain.study.played_study import STUDIES

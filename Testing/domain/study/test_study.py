@@ -17,7 +17,6 @@ from rastrainer.registration.target_error import target_error
 from rastrainer.study.database.schema import study_tables
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import DeletedTrialError
-from rastrainer.study.database.study_trials import find
 from rastrainer.study.database.values import StoredRegistration
 from rastrainer.study.tidy_csv import write_history
 from rastrainer.study.trainee_data import export_trainee
@@ -91,13 +90,13 @@ def test_a_trial_is_checked_before_anything_is_computed_from_it(study):
 
 
 def test_only_changed_trials_are_read_again(study, study_place, monkeypatch):
-    read = []
+    read, find = [], study.trial
 
-    def watched(connection, trial_id):
+    def watched(trial_id):
         read.append(trial_id)
-        return find(connection, trial_id)
+        return find(trial_id)
 
-    monkeypatch.setattr("rastrainer.study.database.study_trials.find", watched)
+    monkeypatch.setattr(study, "trial", watched)
     trials = [str(uuid.UUID(int=number)) for number in (1, 2)]
     for number in (1, 2):
         study.add_trial(record(number))
@@ -231,17 +230,12 @@ def test_the_history_is_in_the_order_of_starting(study):
     assert [t.record.started_utc[8:10] for t in study.history("T-001")] == ["17", "18", "19"]
 
 
-def test_the_cohort_is_every_registered_trial_except_trial_runs(study, results):
-    registrations, errors, score = results
-    study.add_trial(record(1), registrations, errors, score)
-    study.add_trial(record(2, task="trial-run"), registrations)
-    study.add_trial(record(3))
-    study.add_trial(record(4, mode="hmd", trainee="b"), registrations)
-    study.add_results(record(1)["trialId"], [registrations[0].without("1")])
-    (desktop,) = study.cohort("desktop")
-    assert (desktop.subject, desktop.task, desktop.completion_time_s) == ("T-001", "task-1", 110.0)
-    assert desktop.rmse_mm == registrations[0].without("1").fre_mm
-    assert {trial.mode for trial in study.cohort()} == {"desktop", "hmd"}
+def test_the_latest_registration_of_a_trial_counts(study, results):
+    registrations = results[0]
+    study.add_trial(record(1), registrations)
+    again = registrations[0].without("1")
+    study.add_results(record(1)["trialId"], [again])
+    assert study.trial(record(1)["trialId"]).registrations[again.kind].fre_mm == again.fre_mm
 
 
 def test_deleting_a_trainee_leaves_no_row_of_theirs(study, results):
@@ -254,7 +248,7 @@ def test_deleting_a_trainee_leaves_no_row_of_theirs(study, results):
             rows = str(connection.execute(f"SELECT * FROM {table.name}").fetchall())
             assert "Vanishing Heron" not in rows
             assert record(1)["trialId"] not in rows
-    assert [trial.subject for trial in study.cohort()] == ["staying"]
+    assert len(study.history("staying")) == 1
     assert study.trial(record(2)["trialId"]).score == results[2]
 
 

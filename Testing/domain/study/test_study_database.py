@@ -1,5 +1,6 @@
 """The study's file with concurrent processes, kills, damage and foreign files."""
 
+import contextlib
 import os
 import random
 import resource
@@ -27,6 +28,27 @@ def check(path):
         return connection.execute("PRAGMA integrity_check").fetchone()[0]
     finally:
         connection.close()
+
+
+def test_changes_within_a_transaction_are_part_of_it(tmp_path):
+    path = tmp_path / "study.db"
+    with Study.open(path) as study, Study.open(path) as other:
+        with contextlib.suppress(ZeroDivisionError), study.database.writing():
+            study.create_trainee("A")
+            assert study.trainee("A").pseudonym == "A"
+            raise ZeroDivisionError
+        assert study.trainees() == ()
+        with study.database.writing():
+            study.create_trainee("B")
+            assert other.trainees() == ()
+        assert [trainee.pseudonym for trainee in other.trainees()] == ["B"]
+
+
+def test_nothing_is_changed_within_a_transaction_for_reading(tmp_path):
+    with Study.open(tmp_path / "study.db") as study:
+        with pytest.raises(RuntimeError, match="for reading"), study.database.reading():
+            study.create_trainee("A")
+        study.create_trainee("A")
 
 
 def test_concurrent_writers_lose_and_duplicate_nothing(study_place):

@@ -12,9 +12,9 @@ from playwright.sync_api import sync_playwright
 
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
-from rastrainer.study.curriculum.curriculum_message import CurriculumMessage
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.database.study import Study
+from rastrainer.study_messages import CurriculumMessage
 from rastrainer_simulator.assets import asset_path
 from Testing.domain.trial.trial_records import gentle_score, make_record
 from Testing.end_to_end.module.few_colors import reduce_colors
@@ -68,7 +68,7 @@ def keep_panel(folder: Path) -> CurriculumMessage:
     host.find("curriculumCollapsibleButton").grab().save(str(picture))
     reduce_colors(picture)
     with Study.open_for_reading(path) as study:
-        message = CurriculumMessage.of("T001", CurriculumStore(study).standing("T001"))
+        message = CurriculumStore(study).standing("T001").message("T001")
     host.close()
     return message
 

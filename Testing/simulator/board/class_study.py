@@ -8,16 +8,15 @@ from datetime import datetime, timedelta, timezone
 from pathlib import Path
 from typing import Any
 
-from rastrainer.json_records import record_from_json
 from rastrainer.protocol import TRACED_METHODS
-from rastrainer.study.curriculum.curriculum import Assignment, Curriculum, read_curriculum
-from rastrainer.study.curriculum.curriculum_store import CurriculumStore, counted_trials
+from rastrainer.study.curriculum.curriculum import Curriculum, read_curriculum
+from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import standing_in
-from rastrainer.study.database import study_trainees, study_trials
-from rastrainer.study.database.database import Connection, StudyPlace
+from rastrainer.study.database.aborted_trials import AbortedTrials
+from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import day_of
-from rastrainer.trial.record import TrialRecord
+from rastrainer.study_messages import Assignment
 from rastrainer.trial.scoring import PASS_MARK
 from Testing.domain.trial.trial_records import gentle_score, make_record, make_traced
 
@@ -33,27 +32,27 @@ def play_class(
     with Study.open(place) as study:
         CurriculumStore(study).choose(follows)
         # In one transaction: a trial alone costs a sync of the disk.
-        with study.database.writing() as connection:
+        with study.database.writing():
             for name in names:
-                study_trainees.create(connection, name, consent=True)
-                _practice(connection, name, follows, rng.randint(0, trials), rng)
+                study.create_trainee(name, consent=True)
+                _practice(study, name, follows, rng.randint(0, trials), rng)
 
 
 def _practice(
-    connection: Connection, name: str, follows: Curriculum, trials: int, rng: random.Random
+    study: Study, name: str, follows: Curriculum, trials: int, rng: random.Random
 ) -> None:
     tempo_s = rng.uniform(90.0, 190.0)
     for number in range(trials):
-        standing = standing_in(follows, counted_trials(connection, name), lambda _: PASS_MARK)
+        standing = standing_in(follows, AbortedTrials(study).attempts(name), lambda _: PASS_MARK)
         best = standing.next_best
-        if best is None or best.assignment.procedure:
+        if best is None or best.procedure:
             return
         seconds = tempo_s * (number + 1) ** -0.3 * rng.uniform(0.8, 1.25)
-        _play(connection, name, best.assignment, seconds, number, rng)
+        _play(study, name, best, seconds, number, rng)
 
 
 def _play(
-    connection: Connection,
+    study: Study,
     name: str,
     assignment: Assignment,
     seconds: float,
@@ -71,10 +70,7 @@ def _play(
         completedUtc=started,
         method=assignment.method,
     )
-    score = gentle_score(seconds, 0.25)
-    record = record_from_json(TrialRecord, value)
-    study_trials.add(connection, record, value)
-    study_trials.add_results(connection, record.trial_id, (), {}, score)
+    study.add_trial(value, score=gentle_score(seconds, 0.25))
 
 
 def as_in_narrow_columns(cell: dict[str, Any]) -> str:

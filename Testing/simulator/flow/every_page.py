@@ -8,10 +8,9 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from rastrainer.procedure.record import UsedRegistration
-from rastrainer.protocol import MAX_ASSIGNMENTS, Phase
-from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
-from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.protocol import MAX_ASSIGNMENTS, AssignmentState, GoalKind, Phase
 from rastrainer.study.ratings import FORMS
+from rastrainer.study_messages import AssignmentStanding, CurriculumMessage, StudyStep
 from rastrainer.trial.trial_feedback import PastTrial
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.pages import (
@@ -221,11 +220,14 @@ def names_of_pages(base: type = SessionPage) -> set[str]:
 
 def with_curriculum(session) -> None:
     """Give the trainee a curriculum with as many assignments as there may be, and long titles."""
-    assignment = AssignmentMessage(
-        *("long", "task-5", "competent", "open", 100), mode="hmd", method="landmarks-surface"
+    assignment = AssignmentStanding(
+        *("long", "task-5", "", "hmd", "landmarks-surface"),
+        goal=GoalKind.COMPETENT,
+        state=AssignmentState.OPEN,
+        needed=100,
     )
     others = [
-        replace(assignment, name=f"n{number}", state=state)
+        replace(assignment, name=f"n{number}", state=AssignmentState(state))
         for number, state in enumerate(("reached", "locked") * ((MAX_ASSIGNMENTS - 1) // 2))
     ]
     longest = replace(assignment, procedure="biopsy", played=3, mark=70.0, weakest="distance")

@@ -6,30 +6,49 @@ from dataclasses import replace
 
 import pytest
 
-from rastrainer.protocol import TRIAL_RUN, AssignmentState, GoalKind
-from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
-from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.protocol import FREE, TRIAL_RUN, AssignmentState, GoalKind
+from rastrainer.study_messages import AssignmentStanding, CurriculumMessage, StudyStep
 from rastrainer_simulator.flow.pages.result import FinishedPage
 from rastrainer_simulator.flow.session.assigned_training import MAX_TRAINEES, Curricula
 from rastrainer_simulator.flow.session.session import REACHED_S
 from rastrainer_simulator.presentation.screen import Tone
 from Testing.simulator.flow.trainee import STEP_S
 
-LOCKED, OPEN, REACHED = (state.value for state in AssignmentState)
-SCORE, COMPETENT = (kind.value for kind in GoalKind)
+LOCKED, OPEN, REACHED = AssignmentState
+SCORE, COMPETENT = GoalKind
+
+
+def toward(goal, state, needed):
+    return {"goal": goal, "state": state, "needed": needed}
+
+
 TOLD = CurriculumMessage(
     "P07",
     "First steps",
     "two",
     (
-        AssignmentMessage("one", "task-1", SCORE, REACHED, 2, done=2, mark=70.0, played=3),
-        AssignmentMessage(
-            "two", "task-2", SCORE, OPEN, 3, done=1, mark=72.5, played=2, weakest="time"
+        AssignmentStanding(
+            "one", "task-1", **toward(SCORE, REACHED, 2), done=2, mark=70.0, played=3
         ),
-        AssignmentMessage("three", "task-3", COMPETENT, LOCKED, 100, mark=70.0, missing=("two",)),
-        AssignmentMessage("four", "task-4", SCORE, OPEN, 1, mode="hmd", mark=70.0),
-        AssignmentMessage("five", "task-9", SCORE, OPEN, 1, procedure="none", mark=70.0),
-        AssignmentMessage("six", "task-4", SCORE, OPEN, 1, scenario="elsewhere", mark=70.0),
+        AssignmentStanding(
+            "two",
+            "task-2",
+            goal=SCORE,
+            state=OPEN,
+            needed=3,
+            done=1,
+            mark=72.5,
+            played=2,
+            weakest="time",
+        ),
+        AssignmentStanding(
+            "three", "task-3", **toward(COMPETENT, LOCKED, 100), mark=70.0, missing=("two",)
+        ),
+        AssignmentStanding("four", "task-4", **toward(SCORE, OPEN, 1), mode="hmd", mark=70.0),
+        AssignmentStanding("five", "task-9", **toward(SCORE, OPEN, 1), procedure="none", mark=70.0),
+        AssignmentStanding(
+            "six", "task-4", **toward(SCORE, OPEN, 1), scenario="elsewhere", mark=70.0
+        ),
     ),
 )
 
@@ -120,7 +139,7 @@ def test_a_study_takes_precedence_over_a_curriculum(menu, outside):
     menu.step(20)
     assert "assignments" not in [item.name for item in menu.menu.items]
     assert menu.item("task-3").is_enabled
-    outside.services.study.take(StudyStep("P07"))
+    outside.services.study.take(StudyStep("P07", FREE))
     menu.step(20)
     assert menu.item("assignments").is_enabled
 

@@ -9,8 +9,8 @@ import pytest
 
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.journal.recording import read_track
-from rastrainer.protocol import OPEN_PHASES
-from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.protocol import FREE, OPEN_PHASES
+from rastrainer.study_messages import StudyStep
 from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.core.simulation import Simulation
@@ -92,7 +92,7 @@ def place(lab):
     if lab.state.training.phase in OPEN_PHASES:
         assert lab.submit("Abort").ok
     lab.prefer(ghost="off", expert="")
-    lab.outside.services.study.take(StudyStep("P07"))
+    lab.outside.services.study.take(StudyStep("P07", FREE))
 
 
 def on_the_head(head_to_world, tool_to_world):

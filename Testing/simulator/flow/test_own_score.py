@@ -9,8 +9,8 @@ import pytest
 
 from rastrainer.journal.folder import journals_of
 from rastrainer.journal.journal_file import read_journal
-from rastrainer.protocol import Phase
-from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.protocol import FREE, Phase
+from rastrainer.study_messages import StudyStep
 from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
@@ -203,7 +203,7 @@ def test_without_slicer_the_simulator_registers_and_scores_a_procedure(trainee, 
     trainee.until_menu("waiting")
     trainee.step(150)
     assert entries_of(outside, trial, "registration") == []
-    outside.services.study.take(StudyStep("P07"))
+    outside.services.study.take(StudyStep("P07", FREE))
     trainee.until_menu("result")
     (submitted,) = entries_of(outside, trial, "registration")
     assert submitted == used["arguments"]

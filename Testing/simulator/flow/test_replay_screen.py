@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from rastrainer.journal.recording import read_track
-from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.protocol import FREE
+from rastrainer.study_messages import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
@@ -304,7 +305,7 @@ def test_the_result_says_what_a_study_asks_for_next_and_offers_nothing_else(resu
         "Show the trial again",
         "Experiment menu",
     ]
-    study.take(StudyStep("P07"))
+    study.take(StudyStep("P07", FREE))
     result.step(20)
     assert not any(paragraph.startswith("Step") for paragraph in result.menu.paragraphs)
 

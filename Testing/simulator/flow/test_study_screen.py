@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from rastrainer.protocol import RegistrationMethod
-from rastrainer.study.protocol.steps import StepAnswers, StudyStep
+from rastrainer.protocol import FREE, RegistrationMethod
+from rastrainer.study.protocol.steps import StepAnswers
+from rastrainer.study_messages import StudyStep
 from rastrainer_simulator.flow.session.assigned_training import ANSWERED, MAX_TRAINEES, StudySteps
 from rastrainer_simulator.flow.session.chosen_trial import registration_method, start_task
 
@@ -97,7 +98,7 @@ def test_other_trainees_and_those_no_longer_in_the_study_practice_freely(menu, g
     tell(menu, guide, StudyStep("P08", "all-done", 9, 9))
     assert enabled(menu) == ["trial-run"]
     tell(menu, guide, TASK_2)
-    tell(menu, guide, StudyStep("P07"))
+    tell(menu, guide, StudyStep("P07", FREE))
     assert enabled(menu) == ["trial-run"]
 
 
@@ -241,7 +242,7 @@ def test_a_study_trial_is_registered_by_the_method_of_its_protocol(menu, guide):
     assert (method.value, method.is_enabled) == ("trace over the skin", False)
     tell(menu, guide, TASK_2)
     assert registration_method(session, "task-2") is RegistrationMethod.FIDUCIALS
-    tell(menu, guide, StudyStep("P07"))
+    tell(menu, guide, StudyStep("P07", FREE))
     assert registration_method(session, "task-2") is chosen
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rastrainer.protocol import TRIAL_RUN
-from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.study_messages import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.chosen_trial import FIRST_ID

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rastrainer.journal.journal_file import read_journal
-from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.study_messages import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow import trial_screen

@@ -11,7 +11,7 @@ import pytest
 
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.json_records import record_to_json
-from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.study_messages import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.arm import start_tip
 from rastrainer_simulator.flow.session.session import TUTORIAL_VIEW

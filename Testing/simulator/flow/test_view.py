@@ -5,7 +5,7 @@ import pytest
 
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.protocol import StepKind
-from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.study_messages import StudyStep
 from rastrainer_simulator.flow.session.trial_view import turned
 from rastrainer_simulator.presentation.presenter import Hello
 from rastrainer_simulator.record.trial_archive import SUFFIX

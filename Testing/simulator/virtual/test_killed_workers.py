@@ -283,9 +283,8 @@ def test_a_stopped_command_leaves_a_study_that_the_same_command_resumes(
 
 
 REST_OF_PROTOCOL = (
-    '"repetitions": 1, "trialRun": {"minutes": 0}, '
-    '"breaks": {"betweenModesMinutes": 0, "betweenTasksMinutes": 0}, "questionnaires": [], '
-    '"scoring": {"version": "1", "passMark": 70, "references": {}}'
+    '"scoreVersion": "1", "repetitions": 1, "trialRunMin": 0, '
+    '"breakBetweenModesMin": 0, "breakBetweenTasksMin": 0, "passMark": 70'
 )
 
 

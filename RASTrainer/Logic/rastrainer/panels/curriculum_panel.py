@@ -14,7 +14,6 @@ from rastrainer.panels.widgets import fillTable, setText, setUsable
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.translation import _
 from rastrainer.study.curriculum.standing import (
-    AssignmentStanding,
     CurriculumStanding,
     advice_of,
     progress_of_assignment,
@@ -22,6 +21,7 @@ from rastrainer.study.curriculum.standing import (
     state_of,
     title_of,
 )
+from rastrainer.study_messages import AssignmentStanding
 
 
 class CurriculumPanel:
@@ -104,17 +104,17 @@ class CurriculumPanel:
 
 def _row(standing: AssignmentStanding) -> tuple[str, str, str]:
     return (
-        title_of(standing.assignment),
+        title_of(standing),
         short_progress_of(standing),
         "–" if standing.mean is None else fixed(standing.mean, 0),
     )
 
 
 def _tip(standing: AssignmentStanding) -> str:
-    name, state = standing.assignment.name, state_of(standing)
+    name, state = standing.name, state_of(standing)
     return f"{name}: {state}, {progress_of_assignment(standing)}"
 
 
 def _next(standing: CurriculumStanding) -> str:
     best = standing.next_best
-    return "–" if best is None else title_of(best.assignment)
+    return "–" if best is None else title_of(best)

@@ -23,6 +23,7 @@ from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.next_step import NextAction, NextStep, Section, WorkflowState, nextStep
 from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
+from rastrainer.study.protocol.steps import instruction
 from rastrainer.trial.analysis import TrialAnalysis
 
 
@@ -153,7 +154,7 @@ class NextStepPanel:
             isResultShown=self._isResultShown,
             studyStep=None if study is None else study.kind,
             needsRepeatReason=bool(self._repeatSentence),
-            studySentence=self._repeatSentence or ("" if study is None else study.sentence),
+            studySentence=self._repeatSentence or ("" if study is None else instruction(study)),
         )
 
     def _show(self, now: WorkflowState, step: NextStep) -> None:

@@ -21,6 +21,7 @@ from rastrainer.panels.widgets import (
     setUsable,
     textLabel,
 )
+from rastrainer.protocol import StepKind
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.study_logic import TRIALS
 from rastrainer.slicer.signal import Listening
@@ -31,7 +32,8 @@ from rastrainer.study.protocol.questionnaires import (
     find_questionnaire,
 )
 from rastrainer.study.protocol.step_progress import SKIPPED, StepEntry, StepProgress
-from rastrainer.study.protocol.steps import Step, StepKind
+from rastrainer.study.protocol.steps import instruction
+from rastrainer.study_messages import StudyStep
 
 TIMED = (StepKind.TRIAL_RUN, StepKind.BREAK)
 
@@ -205,17 +207,17 @@ class StudyPanel:
         if self._progress is not None and self._progress.next_step is not None:
             self._showStartButton(self._progress.next_step)
 
-    def _showStartButton(self, step: Step) -> None:
+    def _showStartButton(self, step: StudyStep) -> None:
         reason = self._session.training.obstacle
-        setUsable(self._ui.startStepButton, not reason, step.sentence, reason)
+        setUsable(self._ui.startStepButton, not reason, instruction(step), reason)
 
 
 def _row(progress: StepProgress, number: int) -> tuple[str, str, str]:
     step = progress.steps[number]
     if number < len(progress.entries):
-        return str(number + 1), _outcome(progress.entries[number]), step.sentence
+        return str(number + 1), _outcome(progress.entries[number]), instruction(step)
     isNext = number == len(progress.entries)
-    return str(number + 1), _("next") if isNext else "", step.sentence
+    return str(number + 1), _("next") if isNext else "", instruction(step)
 
 
 def _outcome(entry: StepEntry) -> str:

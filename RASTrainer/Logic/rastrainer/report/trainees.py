@@ -25,6 +25,7 @@ from rastrainer.study.curriculum.standing import (
 from rastrainer.study.outcomes import CLUSTER_METRICS, MAIN_OUTCOMES, MOTION_OUTCOMES, mode_title
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES, Scale
 from rastrainer.study.study_data import StudyData
+from rastrainer.study_messages import AssignmentStanding
 
 NAMES = "ABCDE"
 MAX_NAMED = 12
@@ -147,10 +148,11 @@ def _of_curriculum(curriculum: Curriculum, found: Mapping[str, CurriculumStandin
         ]
         for name, standing in found.items()
     ]
-    goals = []
-    for each in first.standings:
-        after = ", ".join(each.assignment.after)
-        gate = f"; after {after}" if after else ""
-        what = f"{title_of(each.assignment)}, {goal_of(each)}{gate}"
-        goals.append(f"{each.assignment.name}: {what}")
+    goals = [f"{each.name}: {_goal(each)}" for each in first.standings]
     return page.heading(curriculum.title) + page.table([header], rows) + page.bullets(goals)
+
+
+def _goal(standing: AssignmentStanding) -> str:
+    after = ", ".join(standing.after)
+    gate = f"; after {after}" if after else ""
+    return f"{title_of(standing)}, {goal_of(standing)}{gate}"

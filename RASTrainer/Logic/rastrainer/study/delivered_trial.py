@@ -39,7 +39,6 @@ class DeliveredTrial:
     """A trial that is stored in the study.
 
     Attributes:
-        record: the trial.
         analysis: its registration, or None if not to be scored now.
         problem: why it cannot be registered; empty otherwise.
     """
@@ -64,7 +63,6 @@ def store_delivered(
         is_being_scored: whether its registration or score is being sent to the simulator.
 
     Raises:
-        InputError: the record is invalid, or cannot be stored.
         DeletedTrialError: it was deleted with its trainee.
     """
     record = record_from_json(TrialRecord, value)
@@ -89,7 +87,7 @@ def score_references(study: Study) -> Mapping[str, ScoreReference] | None:
 def checks_journals(study: Study) -> bool:
     """Return whether the protocol of a study asks for trials with their journals."""
     protocol = StudyProgress(study).protocol()
-    return protocol is not None and protocol.checks_journals
+    return protocol is not None and protocol.check_journals
 
 
 def scored_with_journal(

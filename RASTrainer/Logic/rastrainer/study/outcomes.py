@@ -101,17 +101,9 @@ MOTION_METRICS: dict[str, Outcome] = {
             better=1,
             source="Cotin et al. 2002; path along the skin: Dijkstra 1959 on the mesh",
         ),
+        Outcome("mean_speed_mm_s", "Mean speed", f"Mean speed of the tip ({FILTER}).", unit="mm/s"),
         Outcome(
-            "mean_speed_mm_s",
-            "Mean speed",
-            f"Mean speed of the tip ({FILTER}).",
-            unit="mm/s",
-        ),
-        Outcome(
-            "peak_speed_mm_s",
-            "Peak speed",
-            f"Highest speed of the tip ({FILTER}).",
-            unit="mm/s",
+            "peak_speed_mm_s", "Peak speed", f"Highest speed of the tip ({FILTER}).", unit="mm/s"
         ),
         Outcome(
             "sparc",
@@ -224,11 +216,7 @@ MOTION_METRICS: dict[str, Outcome] = {
             source="after the god object of Zilles and Salisbury 1995",
         ),
         Outcome(
-            "contact_time_s",
-            "Contact time",
-            "Time in contact with the head.",
-            unit="s",
-            better=-1,
+            "contact_time_s", "Contact time", "Time in contact with the head.", unit="s", better=-1
         ),
         Outcome(
             "deepest_contact_mm",
@@ -256,11 +244,7 @@ MOTION_METRICS: dict[str, Outcome] = {
             f"Refused touches within {ACCEPTANCE_MM:g} mm of another fiducial.",
             better=-1,
         ),
-        Outcome(
-            "undone_touches",
-            "Undone touches",
-            "Number of touches that the trainee undid.",
-        ),
+        Outcome("undone_touches", "Undone touches", "Number of touches that the trainee undid."),
         Outcome("camera_switches", "Camera switches", "How often the view was changed."),
         Outcome("pauses", "Pauses", "How often the trial was paused."),
         Outcome(

@@ -9,10 +9,10 @@ import random
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
-from rastrainer import json_checks
 from rastrainer.errors import InputError
 from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study import Study
+from rastrainer.study.database.study_trainees import check_pseudonym
 from rastrainer.study.database.values import utc_now
 
 LOWEST, HIGHEST = 1, 5
@@ -21,12 +21,7 @@ MARKS = range(LOWEST, HIGHEST + 1)
 
 @dataclass(frozen=True)
 class RatingDomain:
-    """One line of a form, marked from 1 to 5.
-
-    Attributes:
-        name: For data files, and the key of its sentences for 1, 3 and 5.
-        title: As published.
-    """
+    """One line of a form, marked from 1 to 5; its name is the key of its sentences, too."""
 
     name: str
     title: str
@@ -40,8 +35,6 @@ class RatingForm:
     in the simulator's texts: the published ones are their authors'.
 
     Attributes:
-        name: For data files.
-        title: For people.
         domains: Those that a replay can show, in their order.
         left_out: Titles of the published domains that it cannot show, with the reason.
         source: Publication of domains and scale.
@@ -110,14 +103,7 @@ def find_form(name: str) -> RatingForm:
 
 @dataclass(frozen=True)
 class Rating:
-    """All marks that a rater gave a trial on one form.
-
-    Attributes:
-        rater: Pseudonym.
-        trial_id: UUID.
-        form: Its name.
-        marks: By domain, each 1 to 5.
-    """
+    """All marks that a rater gave a trial on one form, by domain."""
 
     rater: str
     trial_id: str
@@ -150,10 +136,7 @@ class RatingStore:
             count: How many there shall be at least; fewer if there are no more.
             chance: Draws and shuffles.
         """
-        try:
-            rater = json_checks.pseudonym()(rater)
-        except ValueError as error:
-            raise InputError(f"The name of a rater must be {error}.") from None
+        rater = check_pseudonym(rater, "The name of a rater")
         with self._database.writing() as connection:
             rows = connection.execute("SELECT DISTINCT trial_id FROM rated_replays").fetchall()
             chosen = {trial_id for (trial_id,) in rows}

@@ -18,10 +18,11 @@ from rastrainer.study.database.cohort_store import CohortStore, IncompleteStudyE
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredProcedure, StoredTrial
-from rastrainer.study.protocol.steps import Step
+from rastrainer.study.protocol.steps import objections_to
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers, StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.ratings import Rating, RatingStore
+from rastrainer.study_messages import StudyStep
 from rastrainer.trial.ctps import StudyNotes, Trial, read_notes, read_trials
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore
@@ -31,20 +32,14 @@ from rastrainer.trial.scoring import TrialScore
 class TrialRow:
     """One trial of a report.
 
+    Texts are empty if unknown.
+
     Attributes:
-        trainee: Pseudonym.
-        mode: Such as `desktop`.
-        task: Its name.
         number: Of the trainee's trials in this mode, from 1; 0 for a trial run.
         values: Measurements by name; see `rastrainer.study.outcomes`.
-        trial_id: UUID; "" if unknown.
-        started_utc: ISO 8601; "" if unknown.
-        scenario: Its name; "" if unknown.
-        score_version: Of our score; "" if none.
         acceptable: Whether it was within all limits of its score; False without a score.
-        completed_utc: Time of the last kept touch, ISO 8601; "" if unknown.
-        procedure: Outcome of its procedure; None of touches alone, or if it is not scored.
-        method: By which it was registered, a `RegistrationMethod`.
+        completed_utc: Time of the last kept touch, ISO 8601.
+        procedure: None of touches alone, or if it is not scored.
     """
 
     trainee: str
@@ -67,12 +62,10 @@ class StudyData:
     """The data of a report.
 
     Attributes:
-        title: For people.
         trials: Without trial runs; for trainees in a protocol, those of its steps.
         mean_ct_s: Mean completion times for CTPS instead of the trials' own, by mode.
         notes: On a published study, or None.
         protocol: None if trainees practiced freely.
-        answers: Answered questionnaires.
         skipped: Trainee, step and reason of each skipped step.
         outside_protocol: Number of trials outside the protocol, which are left out.
         objections: Trainee, trial and reasons of those of them that broke a rule of the protocol.
@@ -84,7 +77,6 @@ class StudyData:
         undelivered: First and last numbers of trials that never arrived, by their simulator's
             series.
         standings: Of active trainees in their curricula, by pseudonym.
-        ratings: Forms that raters have filled in for replays of the trials.
     """
 
     title: str
@@ -145,7 +137,6 @@ def read_study_data(place: StudyPlace, allow_incomplete: bool = False) -> StudyD
 
     Raises:
         IncompleteStudyError: the cohort is incomplete.
-        InputError: the file is unusable, or has no trials of consenting trainees.
     """
     if isinstance(place, Path) and not place.is_file():
         raise InputError(f"There is no file {place}.")
@@ -239,11 +230,11 @@ def _from_database(place: StudyPlace) -> StudyData:
         )
 
 
-def _objected(record: TrialRecord, steps: Iterable[Step]) -> tuple[str, str, str] | None:
+def _objected(record: TrialRecord, steps: Iterable[StudyStep]) -> tuple[str, str, str] | None:
     """Return why a trial did not count for the step of its task and mode; None if nothing does."""
     of_task = (s for s in steps if (s.task, s.mode) == (record.task, record.mode))
     step = next(of_task, None)
-    reasons = () if step is None else step.objections(record)
+    reasons = () if step is None else objections_to(step, record)
     what = f"{record.task}, {record.mode}, {record.started_utc}"
     return (record.trainee, what, "; ".join(reasons)) if reasons else None
 
@@ -281,6 +272,7 @@ def _trial_row(stored: StoredTrial, number: int) -> TrialRow:
             values["tre_low_mm"], values["tre_high_mm"] = rigid.tre_interval_mm
     if score is not None:
         values["score"] = score.score
+        # The safety metrics are among the motion metrics.
         values |= _score_parts(score)
     if stored.true_tre_mm is not None:
         values["true_tre_mm"] = stored.true_tre_mm
@@ -309,6 +301,12 @@ def _trial_row(stored: StoredTrial, number: int) -> TrialRow:
 def _procedure_values(procedure: StoredProcedure) -> dict[str, float]:
     """Return the outcomes of a procedure; root mean squares are over its trajectories."""
     analysis, score = procedure.analysis, procedure.score
+    by_hand = [
+        one["targetPointError"]["byHandMm"]
+        for one in procedure.trajectories
+        if not one["selfAligned"]
+    ]
+    rms = math.sqrt(sum(length**2 for length in by_hand) / len(by_hand)) if by_hand else 0.0
     return {
         "procedure_score": score.score,
         "procedure_acceptable": float(score.acceptable),
@@ -316,7 +314,7 @@ def _procedure_values(procedure: StoredProcedure) -> dict[str, float]:
         "procedure_duration_s": analysis["durationS"],
         "procedure_target_rms_mm": analysis["targetPointErrorRmsMm"],
         "procedure_target_by_registration_rms_mm": analysis["targetPointErrorByRegistrationRmsMm"],
-        **_of_hands(procedure),
+        **({"procedure_target_by_hand_rms_mm": rms} if by_hand else {}),
         "procedure_self_aligned": float(procedure.self_aligned),
         "procedure_entry_rms_mm": analysis["entryPointErrorRmsMm"],
         "procedure_angle_rms_deg": analysis["angularDeviationRmsDeg"],
@@ -327,21 +325,7 @@ def _procedure_values(procedure: StoredProcedure) -> dict[str, float]:
     }
 
 
-def _of_hands(procedure: StoredProcedure) -> dict[str, float]:
-    """Return what hands caused on the trajectories that they aligned; nothing without any."""
-    lengths = [
-        one["targetPointError"]["byHandMm"]
-        for one in procedure.trajectories
-        if not one["selfAligned"]
-    ]
-    if not lengths:
-        return {}
-    rms = math.sqrt(sum(length**2 for length in lengths) / len(lengths))
-    return {"procedure_target_by_hand_rms_mm": rms}
-
-
 def _score_parts(score: TrialScore) -> dict[str, float]:
-    """Return the parts of a score; the safety metrics are among the motion metrics."""
     parts = {
         "score_tre_mm": score.measures.tre_mm,
         "score_common_bias_mm": score.measures.common_bias_mm,

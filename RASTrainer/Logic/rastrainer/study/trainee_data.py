@@ -63,7 +63,7 @@ def _protocol_json(progress: StudyProgress, pseudonym: str) -> dict[str, Any] | 
 def _trial_json(trial: StoredTrial) -> dict[str, Any]:
     return {
         "record": record_to_json(trial.record),
-        "registrations": {kind: fit.to_json() for kind, fit in trial.registrations.items()},
+        "registrations": {kind: record_to_json(fit) for kind, fit in trial.registrations.items()},
         "score": None if trial.score is None else record_to_json(trial.score, with_defaults=True),
         "true_tre_mm": trial.true_tre_mm,
         "head_to_world": trial.head_to_world,

@@ -26,10 +26,7 @@ class CalibrationPoint:
     """One trial, errors at the scenario's target in mm.
 
     Attributes:
-        trainee, mode, task: Of the trial.
-        expected_mm: Expected TRE, RMS.
-        interval_mm: Interval of the expected TRE.
-        true_mm: True TRE.
+        expected_mm: RMS; `interval_mm` is its 95 % interval.
     """
 
     trainee: str

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.number_text import fixed
-from rastrainer.protocol import RegistrationMethod
+from rastrainer.protocol import PROCEDURE_PHASES, RegistrationMethod
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import CommonBias
 from rastrainer.statistics.competence import LcCusum, lc_cusum, lc_cusum_limit
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.advice import Advice, TouchFinding, advise, touch_findings
+from rastrainer.trial.procedure_outcome import ProcedureScore
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import (
     COMMON_BIAS_LIMIT_MM,
@@ -37,18 +38,21 @@ the risk of the trials that there really are."""
 
 @dataclass(frozen=True)
 class PastTrial:
-    """A scored trial, as a trainee's progress is computed from it.
+    """A trial as a trainee's progress, and standing in a curriculum, are computed from it.
 
     Attributes:
-        trial_id: UUID.
-        task, mode: As recorded.
-        completion_time_s: As recorded.
-        score: The latest, above 0 up to 100.
+        score: The latest, above 0 up to 100; 0 of an aborted trial.
         acceptable: Whether it was within all limits of its score.
         is_aborted: Whether it was aborted after a touch, or can have no score: not passed, without
             time or score.
         method: By which it was registered, or would have been; trials are compared with those of
             the same method.
+        started_utc: ISO 8601.
+        parts: Desirability of each part of the score, 0 to 1.
+        procedure: That it continued with; "" for touches alone, and for aborted trials, which do
+            not say which.
+        procedure_score: None for touches alone.
+        is_in_procedure: Whether it was aborted in a procedure.
     """
 
     trial_id: str
@@ -59,6 +63,12 @@ class PastTrial:
     acceptable: bool
     is_aborted: bool = False
     method: RegistrationMethod = RegistrationMethod.FIDUCIALS
+    scenario: str = ""
+    started_utc: str = ""
+    parts: Mapping[str, float] = field(default_factory=dict, hash=False)
+    procedure: str = ""
+    procedure_score: ProcedureScore | None = None
+    is_in_procedure: bool = False
 
     @classmethod
     def scored(cls, record: TrialRecord, score: float, acceptable: bool) -> PastTrial:
@@ -85,6 +95,9 @@ class PastTrial:
             acceptable=False,
             is_aborted=True,
             method=record.method,
+            scenario=record.scenario,
+            started_utc=record.started_utc,
+            is_in_procedure=isinstance(record, AbortedTrial) and record.phase in PROCEDURE_PHASES,
         )
 
 

@@ -12,8 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import TRIAL_RUN, Mode, StepKind, TutorialRule
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.scenario import method_of, playable_methods
-from rastrainer.study.curriculum.curriculum_message import AssignmentMessage
-from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.study_messages import AssignmentStanding, StudyStep
 from rastrainer.trial.scoring import PASS_MARK
 from rastrainer_simulator.flow.pages.own_trials import OwnTrialsPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage, stepped
@@ -326,7 +325,7 @@ class AssignmentsPage(SessionPage):
         if self.session.curriculum is None:
             self.back()
 
-    def _assignment(self, each: AssignmentMessage) -> PageRow:
+    def _assignment(self, each: AssignmentStanding) -> PageRow:
         words = self.session.assignment_texts
         reason = assignment_obstacle(self.session, each)
         return self.button(
@@ -338,7 +337,7 @@ class AssignmentsPage(SessionPage):
             help=reason or f"{words.title(each)}. {words.goal(each)}",
         )
 
-    def _begin(self, each: AssignmentMessage) -> None:
+    def _begin(self, each: AssignmentStanding) -> None:
         session = self.session
         session.mode = each.mode or session.mode
         session.method, session.procedure = method_of(each.method), each.procedure

@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial
 
 from rastrainer.study.protocol.questionnaires import QuestionnaireItem, find_questionnaire
-from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.study_messages import StudyStep
 from rastrainer_simulator.flow.pages.session_page import SessionPage, stepped
 from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.session import TrainingSession

@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from rastrainer.protocol import FREE, StepKind
-from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
-from rastrainer.study.protocol.steps import StepAnswers, StudyStep
+from rastrainer.study.protocol.steps import StepAnswers
+from rastrainer.study_messages import FIDUCIALS, AssignmentStanding, CurriculumMessage, StudyStep
 from rastrainer_simulator.texts.texts import Texts
 
 MAX_TRAINEES = 1000
@@ -117,7 +117,7 @@ class AssignmentTexts:
         self._task_title = task_title
         self._procedure_title = procedure_title
 
-    def title(self, each: AssignmentMessage) -> str:
+    def title(self, each: AssignmentStanding) -> str:
         by = f"study.by {each.method}"
         words = [self._task_title(each.task)]
         words += [self._say(by)] if by in self._texts else []
@@ -128,18 +128,18 @@ class AssignmentTexts:
         procedure = self._procedure_title(each.procedure)
         return self._say("assignments.with procedure", trial=trial, procedure=procedure)
 
-    def label(self, each: AssignmentMessage) -> str:
+    def label(self, each: AssignmentStanding) -> str:
         """Return a short title for a row: the task, and the first that is special about it."""
         if each.procedure:
             special = self._procedure_title(each.procedure)
-        elif f"method.{each.method}" in self._texts:
+        elif each.method != FIDUCIALS:
             special = self._say(f"method.{each.method}")
         else:
             special = self._say(f"mode.{each.mode}") if each.mode else ""
         title = self._task_title(each.task)
         return f"{title} · {special}" if special else title
 
-    def progress(self, each: AssignmentMessage) -> str:
+    def progress(self, each: AssignmentStanding) -> str:
         """Return the trainee's progress, in few characters."""
         if each.is_reached:
             return self._say("assignments.reached")
@@ -148,7 +148,7 @@ class AssignmentTexts:
         key = "assignments.percent" if each.is_by_competence else "assignments.count"
         return self._say(key, done=each.done, needed=each.needed)
 
-    def goal(self, each: AssignmentMessage) -> str:
+    def goal(self, each: AssignmentStanding) -> str:
         if not each.mark:
             return self._say("assignments.no mark")
         if each.is_by_competence:
@@ -156,7 +156,7 @@ class AssignmentTexts:
         key = "assignments.one trial" if each.needed == 1 else "assignments.trials"
         return self._say(key, needed=each.needed, mark=each.mark)
 
-    def gate(self, curriculum: CurriculumMessage, each: AssignmentMessage) -> str:
+    def gate(self, curriculum: CurriculumMessage, each: AssignmentStanding) -> str:
         """Return what a locked assignment waits for."""
         missing = [found for name in each.missing if (found := curriculum.find(name)) is not None]
         names = self._texts.listed(self.title(one) for one in missing) or "–"

@@ -14,7 +14,7 @@ from rastrainer.protocol import (
     TutorialRule,
 )
 from rastrainer.scenario.scenario import method_of, playable_methods
-from rastrainer.study.curriculum.curriculum_message import AssignmentMessage
+from rastrainer.study_messages import AssignmentStanding
 from rastrainer_simulator.flow.session.preferences import faded_guidance
 from rastrainer_simulator.flow.session.session import TrainingSession
 
@@ -105,7 +105,7 @@ def obstacle(session: TrainingSession, task: str) -> str:
     return _missing_before(session, task, is_assigned=bool(own))
 
 
-def assignment_obstacle(session: TrainingSession, each: AssignmentMessage) -> str:
+def assignment_obstacle(session: TrainingSession, each: AssignmentStanding) -> str:
     """Return why the trainee cannot start a trial of an assignment; "" if nothing prevents it."""
     unready, curriculum = _unready(session), session.curriculum
     if unready or curriculum is None:

@@ -14,9 +14,8 @@ from rastrainer.journal.folder import journals_of
 from rastrainer.procedure.geometry import BoneAhead
 from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Mode, RegistrationMethod
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
-from rastrainer.study.protocol.steps import StudyStep
+from rastrainer.study_messages import AssignmentStanding, CurriculumMessage, StudyStep
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.flow.session.assigned_training import (
     AssignmentTexts,
@@ -185,7 +184,7 @@ class TrainingSession:
         return self._services.curricula.of(self.trainee_id)
 
     @property
-    def next_assignment(self) -> AssignmentMessage | None:
+    def next_assignment(self) -> AssignmentStanding | None:
         """The assignment to practice next; None if all are reached, or without a curriculum."""
         curriculum = self.curriculum
         return None if curriculum is None else curriculum.find(curriculum.next)

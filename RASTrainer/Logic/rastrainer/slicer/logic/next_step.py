@@ -8,12 +8,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from enum import Enum
 
-from rastrainer.protocol import OPEN_PHASES, Phase
+from rastrainer.protocol import OPEN_PHASES, Phase, StepKind
 from rastrainer.slicer.link.link_status import LinkState, LinkStatus
 from rastrainer.slicer.logic.training_logic import LOADING, tutorialSentence
 from rastrainer.slicer.program.simulator_program import ProgramState
 from rastrainer.slicer.translation import _
-from rastrainer.study.protocol.steps import StepKind
 
 
 class NextAction(str, Enum):

@@ -7,13 +7,13 @@ from dataclasses import replace
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.protocol import TRIAL_RUN
+from rastrainer.protocol import TRIAL_RUN, StepKind
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.trainee_logic import TraineeLogic
 from rastrainer.slicer.logic.training_logic import TrainingLogic
 from rastrainer.study.protocol.step_progress import StepProgress
-from rastrainer.study.protocol.steps import Step, StepKind
 from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer.study_messages import StudyStep
 
 KEPT_EVERY_S = 5.0
 """Most practice time that a crash may lose."""
@@ -111,7 +111,7 @@ class PracticeWatch:
         if ended is not None:
             self._changed(ended[0])
 
-    def _requestedStep(self) -> tuple[StepProgress, Step] | None:
+    def _requestedStep(self) -> tuple[StepProgress, StudyStep] | None:
         """Return the progress of the practicing trainee, and the trial run that the study requests.
 
         None if it requests no such run.

@@ -11,6 +11,7 @@ from typing import Any
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
+from rastrainer.protocol import FREE, StepKind
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.practice_watch import PracticeWatch
 from rastrainer.slicer.logic.trainee_logic import TraineeLogic
@@ -19,9 +20,10 @@ from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.step_progress import StepProgress
-from rastrainer.study.protocol.steps import Step, StepAnswers, StepKind, StudyStep
+from rastrainer.study.protocol.steps import StepAnswers, instruction
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol, read_study_protocol
+from rastrainer.study_messages import StudyStep
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
 
@@ -116,7 +118,7 @@ class StudyLogic:
     def minutesElapsed(self, progress: StepProgress) -> float:
         """Return how much of the chosen trainee's trial run or break is over; min."""
         step, minutes = progress.next_step, progress.minutes_elapsed(self._now())
-        if step is None or step.kind is not StepKind.TRIAL_RUN:
+        if step is None or step.kind != StepKind.TRIAL_RUN:
             return minutes
         return minutes + self._watch.unsavedS(self._trainees.chosen, step.mode) / 60.0
 
@@ -179,7 +181,7 @@ class StudyLogic:
         """Start the trial that comes next."""
         step = self._next()
         if step.kind not in TRIALS:
-            raise InputError(_("No trial comes next. {step}").format(step=step.sentence))
+            raise InputError(_("No trial comes next. {step}").format(step=instruction(step)))
         self.startTrial(step.task, step.mode)
 
     def answer(self, answers: Sequence[int]) -> None:
@@ -215,7 +217,7 @@ class StudyLogic:
             raise InputError(_("Enroll the trainee in the study first."))
         return progress
 
-    def _next(self) -> Step:
+    def _next(self) -> StudyStep:
         step = self._progress().next_step
         if step is None:
             raise InputError(_("All steps of the study are done."))
@@ -256,7 +258,7 @@ class StudyLogic:
         with contextlib.suppress(InputError):
             enrolled = StudyProgress(self._trainees.study).enrolled()
             for name in [name for name in self._sentSteps if name not in enrolled]:
-                self._send(StudyStep(name))
+                self._send(StudyStep(name, FREE))
                 del self._sentSteps[name]
                 self._breaks.pop(name, None)
             isSame = self._trainees.study is self._ledStudy

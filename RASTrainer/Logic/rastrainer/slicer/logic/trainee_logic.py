@@ -15,13 +15,13 @@ from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.curriculum.curriculum import Curriculum, read_curriculum
-from rastrainer.study.curriculum.curriculum_message import CurriculumMessage
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import CurriculumStanding
 from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAbortedTrial
 from rastrainer.study.database.database import StudyBusyError
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial, Trainee
+from rastrainer.study_messages import CurriculumMessage
 from rastrainer.work_progress import Progress, no_progress
 
 if TYPE_CHECKING:
@@ -295,7 +295,7 @@ class CurriculumLogic:
         self.changed.emit()
 
     def _tell(self, name: str, standing: CurriculumStanding | None) -> None:
-        message = CurriculumMessage.of(name, standing)
+        message = CurriculumMessage(name) if standing is None else standing.message(name)
         self._standings.pop(name, None)
         if standing is not None:
             self._standings[name] = standing

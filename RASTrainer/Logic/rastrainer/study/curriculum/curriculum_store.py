@@ -6,33 +6,18 @@ that were aborted or can have no score.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, replace
 
 from rastrainer.errors import InputError
-from rastrainer.json_records import record_from_json
-from rastrainer.protocol import PROCEDURE_PHASES, TRIAL_RUN
 from rastrainer.study.curriculum.curriculum import Curriculum, curriculum_from_json
-from rastrainer.study.curriculum.standing import (
-    CountedTrial,
-    CurriculumStanding,
-    PassMarkOf,
-    standing_in,
-)
-from rastrainer.study.database import study_trainees
-from rastrainer.study.database.aborted_trials import stored_of
-from rastrainer.study.database.database import Connection
+from rastrainer.study.curriculum.standing import CurriculumStanding, PassMarkOf, standing_in
+from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import TRAINEE_ID
-from rastrainer.study.database.study_trials import METHOD, decoded, json_text, unscored
-from rastrainer.study.database.values import StoredProcedure, moment, utc_now
+from rastrainer.study.database.values import decoded, json_text, utc_now
 from rastrainer.study.protocol.study_progress import StudyProgress
-from rastrainer.study.protocol.study_protocol import StudyProtocol, pass_mark_of
-from rastrainer.trial.aborted_trial import AbortedTrial
-from rastrainer.trial.procedure_outcome import ProcedureScore
-from rastrainer.trial.record import TrialRecord
-from rastrainer.trial.scoring import TrialScore
+from rastrainer.study.protocol.study_protocol import pass_mark_of
+from rastrainer.trial.trial_feedback import PastTrial
 
 _STAMPS = """
     SELECT pseudonym,
@@ -54,13 +39,7 @@ _STAMPS = """
 
 @dataclass(frozen=True)
 class CurriculumChoice:
-    """One choice of a curriculum.
-
-    Attributes:
-        trainee: Pseudonym; "" for everybody.
-        curriculum: That was chosen; None for none.
-        stored_utc: ISO 8601.
-    """
+    """One choice of a curriculum, or of none; the trainee is "" for everybody."""
 
     trainee: str
     curriculum: Curriculum | None
@@ -78,26 +57,21 @@ class CurriculumStore:
 
         What was chosen last counts: a choice for everybody ends those for single trainees.
         """
-        if curriculum is not None:
-            self._check_marks(curriculum)
+        marks = _marks(self._study)
+        for each in () if curriculum is None else curriculum.assignments:
+            if each.mark is None and marks(each) is None:
+                raise InputError(
+                    f"The assignment {each.name} could never be reached: this study's pass mark is "
+                    "for trials registered by fiducials. Give the assignment its own mark."
+                )
         text = None if curriculum is None else json_text(curriculum.to_json())
         with self._study.database.writing() as connection:
             if pseudonym:
-                study_trainees.find(connection, pseudonym)
+                self._study.trainee(pseudonym)
             connection.execute(
                 "INSERT INTO curriculum_choices (trainee_id, curriculum_json, stored_utc) "
                 f"VALUES (({TRAINEE_ID}), ?, ?)",
                 (pseudonym, text, utc_now()),
-            )
-
-    def _check_marks(self, curriculum: Curriculum) -> None:
-        protocol = StudyProgress(self._study).protocol()
-        untried = standing_in(curriculum, (), _marks(protocol))
-        without = [each.assignment.name for each in untried.standings if each.mark is None]
-        if without:
-            raise InputError(
-                f"The assignment {without[0]} could never be reached: this study's pass mark "
-                "is for trials registered by fiducials. Give the assignment its own mark."
             )
 
     def choices(self) -> tuple[CurriculumChoice, ...]:
@@ -112,7 +86,18 @@ class CurriculumStore:
 
     def standing(self, pseudonym: str) -> CurriculumStanding | None:
         """Return the standing of a trainee; None without a curriculum."""
-        return self._standing(pseudonym, StudyProgress(self._study).protocol())
+        with self._study.database.reading() as connection:
+            row = connection.execute(
+                "SELECT curriculum_json FROM curriculum_choices "
+                f"WHERE trainee_id = ({TRAINEE_ID}) OR trainee_id IS NULL ORDER BY id DESC LIMIT 1",
+                (pseudonym,),
+            ).fetchone()
+            curriculum = None if row is None else _read(row[0])
+            if curriculum is None:
+                return None
+            trials = AbortedTrials(self._study).attempts(pseudonym)
+            counted = [_as_counted(trial) for trial in trials]
+            return standing_in(curriculum, counted, _marks(self._study))
 
     def stamps(self) -> dict[str, tuple[int | None, ...]]:
         """Return for each active trainee numbers that change with where they may stand.
@@ -125,28 +110,12 @@ class CurriculumStore:
 
     def standings(self) -> dict[str, CurriculumStanding]:
         """Return the standing of each active trainee with a curriculum, by pseudonym."""
-        protocol = StudyProgress(self._study).protocol()
         names = [trainee.pseudonym for trainee in self._study.trainees()]
-        found = {name: self._standing(name, protocol) for name in names}
-        return {name: each for name, each in found.items() if each is not None}
-
-    def _standing(
-        self, pseudonym: str, protocol: StudyProtocol | None
-    ) -> CurriculumStanding | None:
-        with self._study.database.reading() as connection:
-            row = connection.execute(
-                "SELECT curriculum_json FROM curriculum_choices "
-                f"WHERE trainee_id = ({TRAINEE_ID}) OR trainee_id IS NULL ORDER BY id DESC LIMIT 1",
-                (pseudonym,),
-            ).fetchone()
-            curriculum = None if row is None else _read(row[0])
-            if curriculum is None:
-                return None
-            trials = counted_trials(connection, pseudonym)
-        return standing_in(curriculum, trials, _marks(protocol))
+        return {name: each for name in names if (each := self.standing(name)) is not None}
 
 
-def _marks(protocol: StudyProtocol | None) -> PassMarkOf:
+def _marks(study: Study) -> PassMarkOf:
+    protocol = StudyProgress(study).protocol()
     return lambda each: pass_mark_of(protocol, each.method, bool(each.procedure))
 
 
@@ -154,73 +123,10 @@ def _read(text: str | None) -> Curriculum | None:
     return None if text is None else decoded(text, curriculum_from_json)
 
 
-def counted_trials(connection: Connection, pseudonym: str) -> tuple[CountedTrial, ...]:
-    """Return a trainee's trials in order of starting; in the caller's transaction."""
-    study_trainees.find(connection, pseudonym)
-    rows = connection.execute(
-        f"SELECT started_utc, trials.stored_utc, task, mode, scenario, {METHOD}, "
-        "(SELECT score_json FROM scores WHERE scores.trial_id = trials.trial_id "
-        "ORDER BY scores.id DESC LIMIT 1), "
-        "(SELECT outcome_json FROM procedure_outcomes "
-        "WHERE procedure_outcomes.trial_id = trials.trial_id "
-        "ORDER BY procedure_outcomes.id DESC LIMIT 1) "
-        f"FROM trials WHERE trainee_id = ({TRAINEE_ID}) AND task != ?",
-        (pseudonym, TRIAL_RUN),
-    )
-    timed = [
-        (moment(started), stored, _scored(started, task, mode, scenario, method, score, outcome))
-        for started, stored, task, mode, scenario, method, score, outcome in rows
-        if score is not None
-    ]
-    timed += [
-        (moment(stored.record.started_utc), "", _failed(stored.record))
-        for stored in stored_of(connection, pseudonym)
-        if stored.record.counts_as_failed
-    ]
-    timed += [
-        (moment(record.started_utc), "", _failed(record))
-        for record in unscored(connection, pseudonym)
-    ]
-    return tuple(trial for *_when, trial in sorted(timed, key=lambda each: each[:2]))
-
-
-def _scored(
-    started: str,
-    task: str,
-    mode: str,
-    scenario: str,
-    method: str,
-    score_json: str,
-    outcome_json: str | None,
-) -> CountedTrial:
-    score = decoded(score_json, partial(record_from_json, TrialScore))
-    found: TrialScore | ProcedureScore = score
-    parts: Mapping[str, float] = score.parts
-    procedure = ""
-    if outcome_json is not None:
-        outcome = decoded(outcome_json, StoredProcedure.from_json)
-        found, parts, procedure = outcome.score, outcome.score.desirabilities, outcome.name
-    return CountedTrial(
-        task,
-        mode,
-        scenario,
-        method,
-        procedure,
-        found.score,
-        found.acceptable,
-        parts,
-        started_utc=started,
-    )
-
-
-def _failed(record: AbortedTrial | TrialRecord) -> CountedTrial:
-    phase = record.phase if isinstance(record, AbortedTrial) else ""
-    return CountedTrial(
-        record.task,
-        record.mode,
-        record.scenario,
-        record.method.value,
-        is_aborted=True,
-        is_in_procedure=phase in {each.value for each in PROCEDURE_PHASES},
-        started_utc=record.started_utc,
-    )
+def _as_counted(trial: PastTrial) -> PastTrial:
+    """Return a trial with the score of its procedure if it has one."""
+    done = trial.procedure_score
+    if done is None:
+        return trial
+    parts = done.desirabilities
+    return replace(trial, score=done.score, acceptable=done.acceptable, parts=parts)

@@ -8,105 +8,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from statistics import fmean
 
 from rastrainer.number_text import fixed
-from rastrainer.protocol import AssignmentState, GoalKind, RegistrationMethod
-from rastrainer.study.curriculum.curriculum import Assignment, Curriculum
+from rastrainer.protocol import AssignmentState
+from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.database.values import day_of, moment
 from rastrainer.study.protocol.steps import trial_title
+from rastrainer.study_messages import WHOLE_WAY, Assignment, AssignmentStanding, CurriculumMessage
 from rastrainer.trial.scoring import passes
-from rastrainer.trial.trial_feedback import competence_of
+from rastrainer.trial.trial_feedback import PastTrial, competence_of
 
 PassMarkOf = Callable[[Assignment], "float | None"]
 """From an assignment to the study's mark that passes its trials; None where there is none."""
 RECENT = 3
 """How many of its latest trials an assignment is compared by."""
-WHOLE_WAY = 100
-
-
-@dataclass(frozen=True)
-class CountedTrial:
-    """A trial as a curriculum counts it.
-
-    Attributes:
-        task, mode, scenario: As recorded.
-        method: By what it was registered, or would have been.
-        procedure: That it continued with; "" for touches alone, and for aborted trials, which do
-            not say which.
-        score: Of the procedure where there is one, else of the touches; 0 of an aborted trial.
-        acceptable: Whether it was within all limits of its score.
-        parts: Desirability of each part of the score, 0 to 1.
-        is_aborted: Whether it was aborted after a touch, or can have no score.
-        is_in_procedure: Whether it was aborted in a procedure.
-        started_utc: ISO 8601.
-    """
-
-    task: str
-    mode: str
-    scenario: str = ""
-    method: str = RegistrationMethod.FIDUCIALS.value
-    procedure: str = ""
-    score: float = 0.0
-    acceptable: bool = False
-    parts: Mapping[str, float] = field(default_factory=dict, hash=False)
-    is_aborted: bool = False
-    is_in_procedure: bool = False
-    started_utc: str = ""
-
-    def counts_for(self, assignment: Assignment) -> bool:
-        """Return whether it was played as an assignment asks."""
-        if (self.task, self.method) != (assignment.task, assignment.method):
-            return False
-        if assignment.mode not in ("", self.mode) or assignment.scenario not in ("", self.scenario):
-            return False
-        if self.is_aborted:
-            return bool(assignment.procedure) or not self.is_in_procedure
-        return self.procedure == assignment.procedure
-
-
-@dataclass(frozen=True)
-class AssignmentStanding:
-    """A trainee's standing in an assignment.
-
-    Attributes:
-        assignment: That is meant.
-        state: Locked, open or reached.
-        done: Trials in a row that pass now, or percent of the way to competence.
-        needed: How many there have to be.
-        mark: Score that passes a trial; None without one.
-        played: Trials, aborted ones included.
-        mean: Of the latest scores; None before the first.
-        missing: Names of the assignments that it waits for.
-        weakest: Part of the score that cost most in the latest trials; "" before the first.
-        reached_utc: Start of the trial by which it was reached, ISO 8601; of a gate's where that
-            was later, "" until then.
-    """
-
-    assignment: Assignment
-    state: AssignmentState
-    done: int
-    needed: int
-    mark: float | None
-    played: int = 0
-    mean: float | None = None
-    missing: tuple[str, ...] = ()
-    weakest: str = ""
-    reached_utc: str = ""
-
-    @property
-    def shortfall(self) -> float:
-        """Points from the latest mean up to the mark; infinite before the first trial.
-
-        Without a mark it is infinitely little: practice leads to no goal there.
-
-        Drawing the mean of few trials toward that of all improved nothing in simulated courses
-        (`Testing/error_rates/curricula.py`).
-        """
-        if self.mark is None:
-            return -math.inf
-        return math.inf if self.mean is None else self.mark - self.mean
 
 
 @dataclass(frozen=True)
@@ -114,8 +31,7 @@ class CurriculumStanding:
     """A trainee's standing in a curriculum.
 
     Attributes:
-        curriculum: That is meant.
-        standings: In its order.
+        standings: In the curriculum's order.
         played: Trials, each once however many assignments it counts for.
     """
 
@@ -125,7 +41,7 @@ class CurriculumStanding:
 
     @property
     def reached(self) -> int:
-        return sum(each.state is AssignmentState.REACHED for each in self.standings)
+        return sum(each.is_reached for each in self.standings)
 
     @property
     def next_best(self) -> AssignmentStanding | None:
@@ -135,7 +51,26 @@ class CurriculumStanding:
         one that was never played comes first, and of equal ones the first of the curriculum.
         """
         is_open = [each for each in self.standings if each.state is AssignmentState.OPEN]
-        return max(is_open, key=lambda each: each.shortfall, default=None)
+        return max(is_open, key=_shortfall, default=None)
+
+    def message(self, trainee: str) -> CurriculumMessage:
+        """Return what the simulator shows a trainee."""
+        best = self.next_best
+        name = "" if best is None else best.name
+        return CurriculumMessage(trainee, self.curriculum.title, name, self.standings)
+
+
+def _shortfall(standing: AssignmentStanding) -> float:
+    """Return the points from the latest mean up to the mark; infinite before the first trial.
+
+    Without a mark it is infinitely little: practice leads to no goal there.
+
+    Drawing the mean of few trials toward that of all improved nothing in simulated courses
+    (`Testing/error_rates/curricula.py`).
+    """
+    if standing.mark is None:
+        return -math.inf
+    return math.inf if standing.mean is None else standing.mark - standing.mean
 
 
 def by_curriculum(
@@ -149,30 +84,45 @@ def by_curriculum(
 
 
 def standing_in(
-    curriculum: Curriculum, trials: Sequence[CountedTrial], pass_mark_of: PassMarkOf
+    curriculum: Curriculum, trials: Sequence[PastTrial], pass_mark_of: PassMarkOf
 ) -> CurriculumStanding:
     """Return where a trainee stands.
 
     Args:
         curriculum: That is meant.
-        trials: Of the trainee, in order of starting.
+        trials: Of the trainee, in order of starting; the score of one with a procedure is that of
+            the procedure.
         pass_mark_of: The study's pass mark, for goals without their own mark.
     """
     reached: dict[str, str] = {}
     standings = []
     for assignment in curriculum.assignments:
-        own = [trial for trial in trials if trial.counts_for(assignment)]
+        own = [trial for trial in trials if _counts_for(trial, assignment)]
         standing = _standing(assignment, own, reached, pass_mark_of)
-        if standing.state is AssignmentState.REACHED:
+        if standing.is_reached:
             reached[assignment.name] = standing.reached_utc
         standings.append(standing)
-    played = sum(any(map(trial.counts_for, curriculum.assignments)) for trial in trials)
+    played = sum(
+        any(_counts_for(trial, each) for each in curriculum.assignments) for trial in trials
+    )
     return CurriculumStanding(curriculum, tuple(standings), played)
+
+
+def _counts_for(trial: PastTrial, assignment: Assignment) -> bool:
+    """Return whether a trial was played as an assignment asks."""
+    procedure = trial.procedure
+    if trial.is_aborted and (assignment.procedure or not trial.is_in_procedure):
+        procedure = assignment.procedure
+    elif trial.is_aborted:
+        return False
+    return assignment.is_played_as(
+        trial.scenario, trial.task, trial.mode, trial.method.value, procedure
+    )
 
 
 def _standing(
     assignment: Assignment,
-    own: Sequence[CountedTrial],
+    own: Sequence[PastTrial],
     reached: Mapping[str, str],
     pass_mark_of: PassMarkOf,
 ) -> AssignmentStanding:
@@ -180,31 +130,32 @@ def _standing(
     mark = pass_mark_of(assignment) if assignment.mark is None else assignment.mark
     reaching, done = (None, 0) if mark is None else _progress(assignment, own, mark)
     missing = tuple(name for name in assignment.after if name not in reached)
-    needed = assignment.trials if assignment.goal is GoalKind.SCORE else WHOLE_WAY
-    unlocked = AssignmentState.OPEN if reaching is None else AssignmentState.REACHED
+    needed = WHOLE_WAY if assignment.is_by_competence else assignment.trials
+    state = AssignmentState.OPEN if reaching is None else AssignmentState.REACHED
+    reached_utc = ""
+    if reaching is not None and not missing:
+        gates = [reached[name] for name in assignment.after]
+        reached_utc = _reached_utc(reaching.started_utc, gates)
     recent = own[-RECENT:]
     return AssignmentStanding(
-        assignment,
-        AssignmentState.LOCKED if missing else unlocked,
-        done if reaching is None else needed,
-        needed,
-        mark,
-        len(own),
-        fmean(trial.score for trial in recent) if recent else None,
-        missing,
-        _weakest([trial for trial in own if not trial.is_aborted][-RECENT:]),
-        ""
-        if reaching is None or missing
-        else _reached_utc(reaching.started_utc, [reached[name] for name in assignment.after]),
+        **{**vars(assignment), "mark": mark},
+        state=AssignmentState.LOCKED if missing else state,
+        done=done if reaching is None else needed,
+        needed=needed,
+        played=len(own),
+        mean=fmean(trial.score for trial in recent) if recent else None,
+        missing=missing,
+        weakest=_weakest([trial for trial in own if not trial.is_aborted][-RECENT:]),
+        reached_utc=reached_utc,
     )
 
 
 def _progress(
-    assignment: Assignment, trials: Sequence[CountedTrial], mark: float
-) -> tuple[CountedTrial | None, int]:
+    assignment: Assignment, trials: Sequence[PastTrial], mark: float
+) -> tuple[PastTrial | None, int]:
     """Return which of the trials reaches the goal, and how far they are now."""
     passed = [passes(trial.score, trial.acceptable, mark) for trial in trials]
-    if assignment.goal is GoalKind.COMPETENT:
+    if assignment.is_by_competence:
         chart = competence_of([not each for each in passed])
         share = chart.scores[-1] / chart.limit if chart.scores else 0.0
         # Rounded down: 100 % is shown only at competence.
@@ -223,7 +174,7 @@ def _reached_utc(time: str, gates: Sequence[str]) -> str:
     return max(filter(None, (time, *gates)), key=moment, default="")
 
 
-def _weakest(trials: Sequence[CountedTrial]) -> str:
+def _weakest(trials: Sequence[PastTrial]) -> str:
     """Return the part of the score with the least geometric mean, which costs most; "" if none."""
     names = dict.fromkeys(name for trial in trials for name in trial.parts)
     means = {
@@ -255,7 +206,7 @@ def title_of(assignment: Assignment) -> str:
 
 def progress_of_assignment(standing: AssignmentStanding) -> str:
     """Return the progress of a trainee, such as "1 of 3 trials in a row at 70 or more"."""
-    if standing.mark is not None and standing.assignment.goal is GoalKind.COMPETENT:
+    if standing.mark is not None and standing.is_by_competence:
         return f"{standing.done} % of the way to {goal_of(standing)}"
     done = "" if standing.mark is None else f"{standing.done} of "
     return f"{done}{goal_of(standing)}"
@@ -266,7 +217,7 @@ def goal_of(standing: AssignmentStanding) -> str:
     if standing.mark is None:
         return "no pass mark set for its score"
     mark = f"{standing.mark:g} or more"
-    if standing.assignment.goal is GoalKind.COMPETENT:
+    if standing.is_by_competence:
         return f"competence (LC-CUSUM), a trial passes at {mark}"
     trials = "trial" if standing.needed == 1 else "trials in a row"
     return f"{standing.needed} {trials} at {mark}"
@@ -276,7 +227,7 @@ def short_progress_of(standing: AssignmentStanding) -> str:
     """Return the state for a narrow column: the day (UTC) if reached, the progress if open."""
     if standing.state is not AssignmentState.OPEN:
         return f"{standing.state.value} {day_of(standing.reached_utc)}".rstrip()
-    if standing.assignment.goal is GoalKind.COMPETENT:
+    if standing.is_by_competence:
         return f"{standing.done} %"
     return f"{standing.done} of {standing.needed}"
 
@@ -294,7 +245,7 @@ def advice_of(standing: CurriculumStanding) -> str:
     best = standing.next_best
     if best is None:
         return "All assignments are reached."
-    task = title_of(best.assignment)
+    task = title_of(best)
     if best.mean is None:
         return f"Next: {task}, which has not been played yet."
     part = PARTS.get(best.weakest, "")

@@ -12,13 +12,8 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import decode_finite_json
-from rastrainer.json_records import record_to_json
-from rastrainer.study.database import study_trainees, study_trials
-from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.study_trainees import DeletedTrialError, check_not_deleted
-from rastrainer.study.database.study_trials import json_text
-from rastrainer.study.database.values import utc_now
+from rastrainer.study.database.values import json_text, utc_now
 from rastrainer.trial.analysis import TrialAnalysis
 
 
@@ -28,12 +23,10 @@ class IncompleteStudyError(InputError):
 
 @dataclass(frozen=True)
 class CohortState:
-    """The progress of a virtual cohort.
+    """The progress of a virtual cohort, in trials.
 
     Attributes:
-        planned: Number of trials of the whole cohort.
-        stored: Number of finished, stored trials.
-        stuck: Number of trials in which the virtual trainee did not reach a fiducial.
+        stuck: Those in which the virtual trainee did not reach a fiducial.
         is_finished: Whether all trials were played, also if trainees were deleted since.
     """
 
@@ -58,19 +51,19 @@ class CohortStore:
     """The virtual cohort of one study. One thread may use it."""
 
     def __init__(self, study: Study) -> None:
-        self._database = study.database
+        self._study, self._database = study, study.database
 
     def start(self, plan: Mapping[str, Any], planned_trials: int) -> None:
-        """Store the plan; the same plan again, to resume, changes nothing.
-
-        Args:
-            plan: Everything that the trials follow from; JSON.
-            planned_trials: Number of trials.
-        """
+        """Store the plan, from which all trials follow; the same again changes nothing."""
         with self._database.writing() as connection:
             row = connection.execute("SELECT plan_json FROM cohort").fetchone()
             if row is None:
-                _check_new(connection)
+                for table in ("trainees", "study_protocol"):
+                    if connection.execute(f"SELECT 1 FROM {table}").fetchone() is not None:
+                        raise InputError(
+                            "The folder contains a study that is no virtual cohort; choose an "
+                            "empty folder."
+                        )
                 connection.execute(
                     "INSERT INTO cohort VALUES (1, ?, ?, ?, NULL)",
                     (json_text(plan), planned_trials, utc_now()),
@@ -94,41 +87,30 @@ class CohortStore:
         """Return whether a trial was played: stored, stuck, or deleted since."""
         with self._database.reading() as connection:
             query = "SELECT 1 FROM stuck_trials WHERE trial_id = ?"
-            if connection.execute(query, (trial_id,)).fetchone() is not None:
-                return True
-            try:
-                check_not_deleted(connection, trial_id)
-            except DeletedTrialError:
-                return True
-            return study_trials.exists(connection, trial_id)
+            return (
+                connection.execute(query, (trial_id,)).fetchone() is not None
+                or self._study.is_deleted(trial_id)
+                or self._study.has_trial(trial_id)
+            )
 
     def add(self, analysis: TrialAnalysis) -> None:
-        """Store a finished trial with all results in one transaction.
-
-        Args:
-            analysis: Record, fits, target errors, truth and score.
-
-        Raises:
-            ValueError: the truth is unknown.
-        """
+        """Store a finished trial with all results, the truth included, in one transaction."""
         record, truth = analysis.record, analysis.truth
         if truth is None:
             raise ValueError("A virtual trial is stored with its truth.")
-        with self._database.writing() as connection:
-            study_trainees.create_where_missing(connection, record.trainee, consent=True)
+        study = self._study
+        with study.database.writing():
+            study.create_where_missing(record.trainee, consent=True)
             # Not new where a second process plays the same cohort; its trial is the same.
-            if study_trials.add(connection, record, record_to_json(record)):
-                study_trials.add_results(
-                    connection,
+            if study.add_trial(record):
+                study.add_results(
                     record.trial_id,
                     analysis.fits.values(),
                     analysis.target_errors,
                     analysis.score,
                     analysis.procedure,
                 )
-                study_trials.set_truth(
-                    connection, record.trial_id, truth.true_tre_mm, truth.head_to_world
-                )
+                study.set_truth(record.trial_id, truth.true_tre_mm, truth.head_to_world)
 
     def add_stuck(self, trial_id: str) -> None:
         """Note that a trial was played but not finished."""
@@ -142,15 +124,6 @@ class CohortStore:
         with self._database.writing() as connection:
             connection.execute(
                 "UPDATE cohort SET finished_utc = ? WHERE finished_utc IS NULL", (utc_now(),)
-            )
-
-
-def _check_new(connection: Connection) -> None:
-    for table in ("trainees", "study_protocol"):
-        if connection.execute(f"SELECT 1 FROM {table}").fetchone() is not None:
-            raise InputError(
-                "The folder contains a study that is no virtual cohort, or one of an older "
-                "RASTrainer; choose an empty folder."
             )
 
 

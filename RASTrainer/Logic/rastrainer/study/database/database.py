@@ -11,7 +11,7 @@ import os
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
@@ -229,12 +229,13 @@ class StudyDatabase(ABC):
     """
 
     _connection: Any
+    _open: tuple[Connection, bool] | None = None
+    """The open transaction, and whether it may change the study."""
 
     def __init__(self, name: str, place: StudyPlace, lock_wait: LockWait | None) -> None:
         """Connect, and make or check the tables; `lock_wait` is half a minute by default.
 
         Raises:
-            InputError: there is no such place, or it holds something else.
             StudyBusyError: another program has locked it.
         """
         self.name, self.place = name, place
@@ -252,24 +253,41 @@ class StudyDatabase(ABC):
         """Close the connection; nothing is pending outside a transaction."""
         self._connection.close()
 
-    @abstractmethod
     def reading(self) -> AbstractContextManager[Connection]:
-        """Yield the connection for several reads of one state."""
+        """Yield the connection for several reads of one state, or of the open transaction."""
+        return self._joined(may_change=False)
 
-    @abstractmethod
     def writing(self) -> AbstractContextManager[Connection]:
         """Yield the connection for changes in one transaction, once those of others are done.
 
+        Within another one of `writing`, the changes are part of that one.
+
         Raises:
-            InputError: the study cannot be changed.
             StudyBusyError: another program has locked it.
         """
+        return self._joined(may_change=True)
+
+    @contextmanager
+    def _joined(self, may_change: bool) -> Iterator[Connection]:
+        if self._open is not None:
+            connection, may_change_already = self._open
+            if may_change and not may_change_already:
+                raise RuntimeError("A study is changed within a transaction for reading.")
+            yield connection
+            return
+        with self._transaction(may_change) as connection:
+            self._open = connection, may_change
+            try:
+                yield connection
+            finally:
+                self._open = None
 
     @abstractmethod
     def version(self) -> int | None:
         """Return a number that changes when another connection changes the study.
 
-        Never waits for a lock, and is cheap enough to call every second. None if unknown.
+        Never waits for a lock, and is cheap enough to call every second. None if unknown, as during
+        a change.
         """
 
     @abstractmethod
@@ -283,6 +301,10 @@ class StudyDatabase(ABC):
     @abstractmethod
     def _prepare(self) -> None:
         """Make or check the tables."""
+
+    @abstractmethod
+    def _transaction(self, may_change: bool) -> AbstractContextManager[Connection]:
+        """Yield the connection in a new transaction."""
 
     @abstractmethod
     def _sentences(self) -> AbstractContextManager[None]:

@@ -20,7 +20,6 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.study.database.database import (
-    Connection,
     LockWait,
     PostgresAddress,
     Rows,
@@ -79,55 +78,6 @@ _IN_POSTGRES = (
 _JSON_EXTRACT = re.compile(r"json_extract\((\w+), '\$\.([\w.]+)'\)")
 
 
-def check_server(connection: Any, address: PostgresAddress) -> None:
-    """Raise `InputError` if the server keeps texts or promises other than ours."""
-    if _first(connection, "SHOW server_encoding") != "UTF8":
-        raise InputError(f"The database {address} must have the encoding UTF8.")
-    if _first(connection, "SHOW fsync") != "on":
-        raise InputError(
-            f"The server of {address} runs with fsync = off and could lose trials that it has "
-            "acknowledged; switch it on."
-        )
-
-
-def holds_study(connection: Any, address: PostgresAddress) -> bool:
-    """Return whether a database has a study; an empty one has none."""
-    if _first(connection, _COMMANDS):
-        raise InputError(
-            f"The study {address} contains triggers, views, rules or policies, which no study of "
-            "RASTrainer has."
-        )
-    is_study = "SELECT count(*) FROM pg_tables WHERE tablename = 'rastrainer_study'"
-    if not _first(connection, is_study):
-        if _first(connection, _TABLES):
-            raise InputError(f"{address} is the database of another program.")
-        return False
-    rows = connection.execute(
-        "SELECT application_id, user_version FROM rastrainer_study"
-    ).fetchall()
-    if len(rows) != 1 or rows[0][0] != APPLICATION_ID:
-        raise InputError(f"{address} is the database of another program.")
-    check_schema_version(rows[0][1], address)
-    return True
-
-
-def create_tables(connection: Connection, address: PostgresAddress) -> None:
-    """Make the tables in the caller's transaction, unless another process has."""
-    connection.execute("SELECT pg_advisory_xact_lock(?)", (APPLICATION_ID,))
-    if holds_study(connection, address):
-        return
-    connection.execute(_HEADER)
-    header = (APPLICATION_ID, SCHEMA_VERSION)
-    connection.execute("INSERT INTO rastrainer_study VALUES (?, ?, 0)", header)
-    connection.execute(LOCKED)
-    for statement in STATEMENTS:
-        connection.execute(in_postgres(statement))
-
-
-def _first(connection: Any, query: str) -> Any:
-    return connection.execute(query).fetchone()[0]
-
-
 def in_postgres(statement: str) -> str:
     """Return a statement of the schema for PostgreSQL.
 
@@ -182,42 +132,14 @@ class PostgresDatabase(StudyDatabase):
         may_change: bool = True,
         may_create: bool = True,
     ) -> None:
-        """Connect, and create the tables in an empty database.
-
-        Args:
-            address: of the database, which exists.
-            lock_wait: for locks of others; half a minute by default.
-            may_change: False for reading only.
-            may_create: whether an empty database becomes a study.
-
-        Raises:
-            InputError: the server refuses, the database is another program's, of another version
-                of the schema, or holds no study.
-            StudyUnreachableError: the server cannot be reached.
-        """
+        """Connect, and make the tables in an empty database if it may be changed and created."""
         self._address = address
         self._driver = postgres_driver()
         self._own_changes = 0
-        self._may_change, self._may_create = may_change, may_create
+        self._may_change, self._may_create = may_change, may_change and may_create
         super().__init__(address.database, address, lock_wait)
 
-    @contextmanager
-    def reading(self) -> Iterator[PostgresStatements]:
-        """Yield the connection for several reads of one state."""
-        with self._transaction(_READ) as statements:
-            yield statements
-
-    @contextmanager
-    def writing(self) -> Iterator[PostgresStatements]:
-        """Yield the connection for changes in one transaction, once those of others are done."""
-        if not self._may_change:
-            raise InputError(f"The study {self._address} is read-only here.")
-        with self._transaction(f"{self._begin_waiting()}; {LOCKED}") as statements:
-            yield statements
-        self._own_changes += 1
-
     def version(self) -> int | None:
-        """Return a number that changes when another connection changes the study."""
         try:
             with self.reading() as statements:
                 changes = statements.execute("SELECT changes FROM rastrainer_study").fetchone()[0]
@@ -226,7 +148,6 @@ class PostgresDatabase(StudyDatabase):
         return changes - self._own_changes
 
     def continue_numbers(self) -> None:
-        """Number new rows after all copied ones, within a transaction of `writing`."""
         for table in study_tables():
             if table.order in ("id", "rowid") and table.name != "trainee_numbers":
                 self._connection.execute(
@@ -235,7 +156,15 @@ class PostgresDatabase(StudyDatabase):
                 )
 
     @contextmanager
-    def _transaction(self, begin: str) -> Iterator[PostgresStatements]:
+    def _transaction(self, may_change: bool) -> Iterator[PostgresStatements]:
+        if may_change and not self._may_change:
+            raise InputError(f"The study {self._address} is read-only here.")
+        with self._begun(f"{self._begin_waiting()}; {LOCKED}" if may_change else _READ) as found:
+            yield found
+        self._own_changes += may_change
+
+    @contextmanager
+    def _begun(self, begin: str) -> Iterator[PostgresStatements]:
         with self._sentences():
             try:
                 self._begin(begin)
@@ -243,8 +172,10 @@ class PostgresDatabase(StudyDatabase):
                 if self._connection.execute("COMMIT").statusmessage != "COMMIT":
                     raise InputError(f"The study {self._address} did not accept the change.")
             finally:
-                if self._is_in_transaction():
-                    self._connection.execute("ROLLBACK")
+                idle = self._driver.pq.TransactionStatus.IDLE
+                connection = self._connection
+                if not connection.closed and connection.info.transaction_status != idle:
+                    connection.execute("ROLLBACK")
 
     def _begin(self, begin: str) -> None:
         if not self._connection.closed:
@@ -261,10 +192,6 @@ class PostgresDatabase(StudyDatabase):
         # 0 would be forever.
         timeout_ms = max(1, round(1000 * self._lock_wait.timeout_s))
         return f"BEGIN; SET LOCAL lock_timeout = {timeout_ms}"
-
-    def _is_in_transaction(self) -> bool:
-        idle = self._driver.pq.TransactionStatus.IDLE
-        return not self._connection.closed and self._connection.info.transaction_status != idle
 
     def _connect(self) -> Any:
         patience_s = self._lock_wait.timeout_s
@@ -283,14 +210,50 @@ class PostgresDatabase(StudyDatabase):
             ) from None
 
     def _prepare(self) -> None:
-        check_server(self._connection, self._address)
+        if self._first("SHOW server_encoding") != "UTF8":
+            raise InputError(f"The database {self._address} must have the encoding UTF8.")
+        if self._first("SHOW fsync") != "on":
+            raise InputError(
+                f"The server of {self._address} runs with fsync = off and could lose trials that "
+                "it has acknowledged; switch it on."
+            )
         with self.reading():
-            if holds_study(self._connection, self._address):
+            if self._holds_study():
                 return
-        if not (self._may_change and self._may_create):
+        if not self._may_create:
             raise InputError(f"The database {self._address} holds no study.")
-        with self._transaction(self._begin_waiting()) as statements:
-            create_tables(statements, self._address)
+        with self._begun(self._begin_waiting()) as connection:
+            connection.execute("SELECT pg_advisory_xact_lock(?)", (APPLICATION_ID,))
+            # Another process may have been faster.
+            if not self._holds_study():
+                connection.execute(_HEADER)
+                header = (APPLICATION_ID, SCHEMA_VERSION)
+                connection.execute("INSERT INTO rastrainer_study VALUES (?, ?, 0)", header)
+                connection.execute(LOCKED)
+                for statement in STATEMENTS:
+                    connection.execute(in_postgres(statement))
+
+    def _holds_study(self) -> bool:
+        """Return whether the database has a study; an empty one has none."""
+        if self._first(_COMMANDS):
+            raise InputError(
+                f"The study {self._address} contains triggers, views, rules or policies, which no "
+                "study of RASTrainer has."
+            )
+        is_study = "SELECT count(*) FROM pg_tables WHERE tablename = 'rastrainer_study'"
+        rows = []
+        if self._first(is_study):
+            header = "SELECT application_id, user_version FROM rastrainer_study"
+            rows = self._connection.execute(header).fetchall()
+        elif not self._first(_TABLES):
+            return False
+        if len(rows) != 1 or rows[0][0] != APPLICATION_ID:
+            raise InputError(f"{self._address} is the database of another program.")
+        check_schema_version(rows[0][1], self._address)
+        return True
+
+    def _first(self, query: str) -> Any:
+        return self._connection.execute(query).fetchone()[0]
 
     @contextmanager
     def _sentences(self) -> Iterator[None]:

@@ -44,36 +44,17 @@ class SqliteDatabase(StudyDatabase):
     )
 
     def __init__(self, path: str | os.PathLike[str], lock_wait: LockWait | None = None) -> None:
-        """Open the file, or create it with its tables.
-
-        Args:
-            path: of the file.
-            lock_wait: for locks of others; half a minute by default.
-
-        Raises:
-            InputError: no such folder, not a database, another program's, damaged, or of another
-                version of the schema.
-            StudyBusyError: another program has locked it.
-        """
+        """Open the file, or create it with its tables."""
         self.path = Path(path)
-        self._check_place()
+        if "\0" in str(self.path):
+            raise InputError("The name of a study database must not contain a null character.")
+        if self.path.is_dir():
+            raise InputError(f"{self.path} is a folder; a study database is a file.")
+        if not self.path.parent.is_dir():
+            raise InputError(f"There is no folder {self.path.parent} for the study database.")
         super().__init__(self.path.stem, self.path, lock_wait)
 
-    @contextmanager
-    def reading(self) -> Iterator[sqlite3.Connection]:
-        with self._transaction("BEGIN") as connection:
-            yield connection
-
-    @contextmanager
-    def writing(self) -> Iterator[sqlite3.Connection]:
-        with self._transaction("BEGIN IMMEDIATE") as connection:
-            yield connection
-
     def version(self) -> int | None:
-        """Return a number that changes when another connection changes the file.
-
-        Never waits, and is cheap enough to call every second. None if unknown, as during a change.
-        """
         try:
             self._connection.execute("PRAGMA busy_timeout = 0")
             return self._number("data_version")
@@ -84,11 +65,11 @@ class SqliteDatabase(StudyDatabase):
         """Do nothing: SQLite numbers new rows after the last one."""
 
     @contextmanager
-    def _transaction(self, begin: str) -> Iterator[sqlite3.Connection]:
+    def _transaction(self, may_change: bool) -> Iterator[sqlite3.Connection]:
         with self._sentences():
             timeout_ms = 1000 * self._lock_wait.timeout_s
             self._connection.execute(f"PRAGMA busy_timeout = {timeout_ms:.0f}")
-            self._connection.execute(begin)
+            self._connection.execute("BEGIN IMMEDIATE" if may_change else "BEGIN")
             try:
                 yield self._connection
                 self._connection.execute("COMMIT")
@@ -101,14 +82,6 @@ class SqliteDatabase(StudyDatabase):
         # Transactions are explicit: `isolation_level=None`.
         return sqlite3.connect(self.path, timeout=self._lock_wait.timeout_s, isolation_level=None)
 
-    def _check_place(self) -> None:
-        if "\0" in str(self.path):
-            raise InputError("The name of a study database must not contain a null character.")
-        if self.path.is_dir():
-            raise InputError(f"{self.path} is a folder; a study database is a file.")
-        if not self.path.parent.is_dir():
-            raise InputError(f"There is no folder {self.path.parent} for the study database.")
-
     def _keep_private(self) -> None:
         """Make the file and its temporary companions readable by their owner alone."""
         # Only a new file is opened: closing an existing one would release our other locks on it.
@@ -118,23 +91,16 @@ class SqliteDatabase(StudyDatabase):
             keep_others_out(f"{self.path}{suffix}")
 
     def _prepare(self) -> None:
-        self._set_pragmas()
+        for pragma in self._pragmas:
+            self._connection.execute(f"PRAGMA {pragma}")
         # In one transaction: another process may be creating the tables.
         with self.reading():
             self._check_origin()
             is_new = self._number("user_version") == 0
         if is_new:
             self._create_tables()
-        self._check_whole()
-
-    def _set_pragmas(self) -> None:
-        for pragma in self._pragmas:
-            self._connection.execute(f"PRAGMA {pragma}")
-
-    def _check_whole(self) -> None:
-        if self._connection.execute("PRAGMA integrity_check(1)").fetchone() != ("ok",):
-            raise sqlite3.DatabaseError("malformed")
-        if self._connection.execute("PRAGMA foreign_key_check").fetchone() is not None:
+        is_whole = self._connection.execute("PRAGMA integrity_check(1)").fetchone() == ("ok",)
+        if not is_whole or self._connection.execute("PRAGMA foreign_key_check").fetchone():
             raise sqlite3.DatabaseError("malformed")
 
     def _check_origin(self) -> None:

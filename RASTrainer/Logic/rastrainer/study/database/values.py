@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import json
+import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime, timezone
-from typing import Any
+from typing import Annotated, Any, NamedTuple, TypeVar
 
 import numpy as np
 
+from rastrainer.errors import InputError
+from rastrainer.json_checks import decode_finite_json, number, numbers, plain_object, text
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
@@ -16,6 +20,8 @@ from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.procedure_outcome import ProcedureOutcome, ProcedureScore
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore
+
+Value = TypeVar("Value")
 
 
 def utc_now() -> str:
@@ -33,16 +39,49 @@ def moment(utc: str) -> datetime:
     return datetime.fromisoformat(utc.replace("Z", "+00:00"))
 
 
+RECORD_LIMIT_BYTES = 2**20
+_NULL = re.compile(r"(?<!\\)(?:\\\\)*\\u0000")
+
+
+def json_text(value: object) -> str:
+    """Return a value as ASCII JSON; raise `InputError` if that is impossible.
+
+    Null characters and halves of surrogate pairs are refused: PostgreSQL cannot read JSON with
+    them, and a single trial would hide all of its trainee's.
+    """
+    try:
+        written = json.dumps(value, allow_nan=False)
+        if "\\ud" in written:
+            json.dumps(value, ensure_ascii=False).encode()
+        if _NULL.search(written):
+            raise ValueError
+    except (TypeError, ValueError, RecursionError):
+        raise InputError(
+            "What a study stores must be JSON with finite numbers and whole characters, none of "
+            "them null."
+        ) from None
+    return written
+
+
+def record_text(record: Mapping[str, Any]) -> str:
+    """Return a record as ASCII JSON; raise `InputError` if that is impossible or above 1 MiB."""
+    written = json_text(record)
+    if len(written) > RECORD_LIMIT_BYTES:
+        raise InputError("The trial record is larger than 1 MiB, the most that is stored.")
+    return written
+
+
+def decoded(written: str, read: Callable[[Any], Value]) -> Value:
+    """Return decoded stored JSON; raise `InputError` if it is invalid."""
+    try:
+        return read(decode_finite_json(written))
+    except (TypeError, ValueError, KeyError, AttributeError):
+        raise InputError("The study contains a value that RASTrainer did not write.") from None
+
+
 @dataclass(frozen=True)
 class Trainee:
-    """A trainee, known only by a pseudonym.
-
-    Attributes:
-        pseudonym: Unique in the study.
-        consent: Whether the trainee consents to research.
-        archived: Whether the trainee is hidden from the list.
-        created_utc: ISO 8601.
-    """
+    """A trainee, known only by a pseudonym; archived ones are hidden from the list."""
 
     pseudonym: str
     consent: bool
@@ -50,15 +89,17 @@ class Trainee:
     created_utc: str
 
 
+_LIMIT = 1e9
+_Length = Annotated[float, number(0, _LIMIT, "mm")]
+
+
 @dataclass(frozen=True)
 class StoredRegistration:
     """A stored registration of a trial.
 
     Attributes:
-        kind: `rigid`, `similarity` or `affine`.
         labels: Of the points in the fit.
-        matrix: 16 numbers row by row, `World` to RAS, mm.
-        fre_mm: Fiducial registration error.
+        matrix: Row by row, `World` to RAS, mm.
         residuals_mm: One for each label.
         warnings: Each with `code`, `points` and `message`.
         target_mm: Target in RAS; None with the next two if the fit gives no target error.
@@ -67,20 +108,19 @@ class StoredRegistration:
         common_bias_sd_mm: Standard deviation on each axis of the common offset included in both.
     """
 
-    kind: str
-    labels: tuple[str, ...]
-    matrix: tuple[float, ...]
-    fre_mm: float
-    residuals_mm: tuple[float, ...]
-    warnings: tuple[dict[str, Any], ...]
-    target_mm: tuple[float, float, float] | None
-    expected_tre_mm: float | None
-    tre_interval_mm: tuple[float, float] | None
-    common_bias_sd_mm: float = 0.0
+    kind: Annotated[str, text(20)]
+    labels: tuple[Annotated[str, text()], ...]
+    matrix: Annotated[tuple[float, ...], numbers(16, _LIMIT)]
+    fre_mm: _Length
+    residuals_mm: tuple[_Length, ...]
+    warnings: tuple[Annotated[dict[str, Any], plain_object], ...]
+    target_mm: Annotated[tuple[float, float, float] | None, numbers(3, _LIMIT)]
+    expected_tre_mm: Annotated[float | None, number(0, _LIMIT)]
+    tre_interval_mm: Annotated[tuple[float, float] | None, numbers(2, _LIMIT)]
+    common_bias_sd_mm: _Length = 0.0
 
     @classmethod
     def of(cls, registration: Registration, error: TargetError | None) -> StoredRegistration:
-        """Return a registration and its target error for storage."""
         return cls(
             kind=registration.kind,
             labels=registration.labels,
@@ -94,30 +134,9 @@ class StoredRegistration:
             common_bias_sd_mm=0.0 if error is None else error.common_bias_sd_mm,
         )
 
-    def to_json(self) -> dict[str, Any]:
-        return dict(vars(self))
 
-    @classmethod
-    def from_json(cls, value: dict[str, Any]) -> StoredRegistration:
-        """Return the registration that `to_json` described."""
-        fields: dict[str, Any] = {
-            name: tuple(item) if isinstance(item, list) else item for name, item in value.items()
-        }
-        return cls(**fields)
-
-
-@dataclass(frozen=True)
-class TrialOutcome:
-    """Outcomes for comparing trials.
-
-    Attributes:
-        trial_id: UUID.
-        trainee: Pseudonym.
-        completion_time_s: As recorded.
-        score: The latest, or None.
-        method: By what it was registered.
-        true_tre_mm: None until revealed.
-    """
+class TrialOutcome(NamedTuple):
+    """Outcomes for comparing trials: the latest score, and the true error once it is revealed."""
 
     trial_id: str
     trainee: str
@@ -129,12 +148,7 @@ class TrialOutcome:
 
 @dataclass(frozen=True)
 class StoredProcedure:
-    """The stored outcome of a procedure.
-
-    Attributes:
-        analysis: Its errors, as `ProcedureAnalysis.to_json`.
-        score: From them.
-    """
+    """The stored outcome of a procedure; its errors are as of `ProcedureAnalysis.to_json`."""
 
     analysis: Mapping[str, Any]
     score: ProcedureScore
@@ -175,16 +189,13 @@ class StoredProcedure:
 
 @dataclass(frozen=True)
 class StoredTrial:
-    """A trial with its latest results.
+    """A trial with its latest results, as far as they are known.
 
     Attributes:
-        record: As delivered by the simulator.
         registrations: By kind.
-        score: None until scored.
-        true_tre_mm: True error at the target; None until revealed.
-        head_to_world: 16 numbers row by row, RAS to `World`, mm; None until revealed.
-        motion: Motion metrics by name, with units; may be empty.
-        procedure: Outcome of the procedure; None until scored, or of touches alone.
+        true_tre_mm: True error at the target.
+        head_to_world: 16 numbers row by row, RAS to `World`, mm.
+        motion: Motion metrics by name, with units.
     """
 
     record: TrialRecord

@@ -13,12 +13,8 @@ from rastrainer.errors import InputError
 class QuestionnaireItem:
     """One item: a name for data files, and its topic.
 
-    The published wording is its authors'; a lab shows it from its own licensed or printed form.
-
-    Attributes:
-        name: For data files.
-        topic: Short description.
-        anchors: Meaning of the smallest and the largest answer, if different from the other items.
+    The published wording is its authors'; a lab shows it from its own licensed or printed form. The
+    anchors are the meaning of the smallest and the largest answer, if it has its own.
     """
 
     name: str
@@ -43,12 +39,8 @@ class Questionnaire:
 
     Attributes:
         name: For files and protocols, such as "sus".
-        title: For people.
-        items: In order.
-        lowest: Smallest answer.
-        highest: Largest answer.
-        anchors: Meaning of the smallest and the largest answer, except for items with their own.
-        scales: The scores.
+        lowest, highest: Answers.
+        anchors: Their meaning, except for items with their own.
         source: Publication of items and scoring.
         formula: From the checked answers to a score for each scale.
         marks_apart: Distance of the marks in a form; answers between them are valid too.
@@ -71,11 +63,7 @@ class Questionnaire:
         return range(self.lowest, self.highest + 1, self.marks_apart)
 
     def score(self, answers: Sequence[int] | Mapping[str, int]) -> dict[str, float]:
-        """Return the score on each scale.
-
-        Args:
-            answers: One integer for each item, in order or by name.
-        """
+        """Return the score on each scale; answers are in order or by name."""
         values = self.formula(self.checked(answers))
         return {scale.name: value for scale, value in zip(self.scales, values, strict=True)}
 
@@ -148,7 +136,7 @@ _TLX_SCALES = (
     ("frustration", "Frustration"),
 )
 _TLX_ANCHORS = {"performance": ("perfect", "failure")}
-"""Of the scale that does not run from very low to very high."""
+"""Performance does not run from very low to very high."""
 
 
 def _tlx_scores(answers: Sequence[int]) -> tuple[float, ...]:

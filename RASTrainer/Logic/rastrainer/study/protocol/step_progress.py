@@ -1,26 +1,18 @@
-"""A trainee's progress through a study's steps, and which stored trials belong to the next ones.
-
-A trial, finished or aborted, belongs to a step if it was started after enrollment and after the
-last counted trial.
-"""
+"""A trainee's progress through a study's steps."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import is_number
-from rastrainer.protocol import ALL_DONE, REPEAT, RegistrationMethod
-from rastrainer.study.database.aborted_trials import unexplained
-from rastrainer.study.database.database import Connection
-from rastrainer.study.database.study_trainees import TRAINEE_ID
-from rastrainer.study.database.study_trials import decoded, find_record
-from rastrainer.study.database.values import moment
+from rastrainer.protocol import ALL_DONE, REPEAT, StepKind
 from rastrainer.study.protocol.questionnaires import find_questionnaire
-from rastrainer.study.protocol.steps import Step, StepKind, StudyStep
+from rastrainer.study.protocol.steps import instruction
+from rastrainer.study_messages import StudyStep
 from rastrainer.trial.aborted_trial import AbortedTrial
 
 DONE, SKIPPED = "done", "skipped"
@@ -29,14 +21,11 @@ MIN_REASON_LENGTH, MAX_REASON_LENGTH = 10, 500
 
 @dataclass(frozen=True)
 class StepEntry:
-    """The outcome of a step.
+    """The outcome of a step, `done` or `skipped`.
 
     Attributes:
-        step: Its name.
-        outcome: `done` or `skipped`.
         details: `trialId` of a trial, `answers` of a questionnaire, `minutes` of a trial run or a
             break, `reason` of a skipped step.
-        stored_utc: ISO 8601.
     """
 
     step: str
@@ -51,31 +40,26 @@ class StepProgress:
 
     Attributes:
         entries: Of the first steps, in order.
-        enrolled_utc: Time of enrollment, ISO 8601.
         practiced_s: Time already practiced in the next step, if it is a trial run, in s.
         unexplained: Aborted trials of the next step; repeating it needs a reason.
     """
 
-    steps: tuple[Step, ...]
+    steps: tuple[StudyStep, ...]
     entries: tuple[StepEntry, ...]
     enrolled_utc: str = ""
     practiced_s: float = 0.0
     unexplained: tuple[AbortedTrial, ...] = ()
 
-    @classmethod
-    def of(
-        cls, steps: Sequence[Step], entries: Sequence[StepEntry], enrolled_utc: str = ""
-    ) -> StepProgress:
-        """Return the progress described by a log."""
-        if [step.name for step in steps[: len(entries)]] != [entry.step for entry in entries]:
+    def __post_init__(self) -> None:
+        done = [entry.step for entry in self.entries]
+        if [step.name for step in self.steps[: len(done)]] != done:
             raise InputError(
                 "The steps done so far do not match this protocol; use the protocol that the "
                 "study was started with."
             )
-        return cls(tuple(steps), tuple(entries), enrolled_utc)
 
     @property
-    def next_step(self) -> Step | None:
+    def next_step(self) -> StudyStep | None:
         """The next step, or None when all are done."""
         return self.steps[len(self.entries)] if len(self.entries) < len(self.steps) else None
 
@@ -89,7 +73,7 @@ class StepProgress:
         step = self.next_step
         if step is None or step.kind not in (StepKind.TRIAL_RUN, StepKind.BREAK):
             return 0.0
-        if step.kind is StepKind.TRIAL_RUN:
+        if step.kind == StepKind.TRIAL_RUN:
             return self.practiced_s / 60.0
         return max(0.0, (now - datetime.fromisoformat(self.since_utc)).total_seconds() / 60.0)
 
@@ -102,7 +86,7 @@ class StepProgress:
     def break_end(self) -> datetime | None:
         """End of the next step if it is a break, else None."""
         step = self.next_step
-        if step is None or step.kind is not StepKind.BREAK:
+        if step is None or step.kind != StepKind.BREAK:
             return None
         return datetime.fromisoformat(self.since_utc) + timedelta(minutes=step.minutes)
 
@@ -120,7 +104,7 @@ class StepProgress:
         step = self.next_step
         if step is None:
             return "All steps of the study are done. Thank you!"
-        return f"Step {len(self.entries) + 1} of {len(self.steps)}: {step.sentence}"
+        return f"Step {len(self.entries) + 1} of {len(self.steps)}: {instruction(step)}"
 
     @property
     def repeat_sentence(self) -> str:
@@ -138,25 +122,12 @@ class StepProgress:
         step, count = self.next_step, len(self.steps)
         if step is None:
             return StudyStep(trainee, ALL_DONE, count, count)
-        return StudyStep(
-            trainee=trainee,
-            kind=REPEAT if self.unexplained else step.kind.value,
-            number=len(self.entries) + 1,
-            count=count,
-            task=step.task,
-            mode=step.mode,
-            questionnaire=step.questionnaire,
-            minutes=step.minutes,
-            over=min(self.minutes_elapsed(now), step.minutes),
-            guidance=step.guidance,
-            ghost=step.ghost,
-            procedure=step.procedure,
-            tutorial=step.tutorial,
-            method="" if step.method == RegistrationMethod.FIDUCIALS.value else step.method,
-            skin=step.skin,
-        )
+        over = min(self.minutes_elapsed(now), step.minutes)
+        kind = REPEAT if self.unexplained else step.kind
+        # What only the study needs stays here.
+        return replace(step, trainee=trainee, kind=kind, over=over, name="", allows=())
 
-    def check_start(self, mode: str, task: str) -> Step:
+    def check_start(self, mode: str, task: str) -> StudyStep:
         """Return the step of a trial to be started."""
         step = self._next()
         if step.kind not in (StepKind.TRIAL, StepKind.TRIAL_RUN) or (step.mode, step.task) != (
@@ -168,14 +139,14 @@ class StepProgress:
             raise InputError(self.repeat_sentence)
         return step
 
-    def check_done(self, step: Step, details: Mapping[str, Any]) -> dict[str, Any]:
+    def check_done(self, step: StudyStep, details: Mapping[str, Any]) -> dict[str, Any]:
         """Return the details to store when a step is done; raise `InputError` if incomplete."""
-        if step.kind is StepKind.QUESTIONNAIRE:
+        if step.kind == StepKind.QUESTIONNAIRE:
             if "answers" not in details:
                 raise InputError("A questionnaire is complete only with its answers.")
             questionnaire = find_questionnaire(step.questionnaire)
             return {"answers": list(questionnaire.checked(details["answers"]))}
-        if step.kind is StepKind.TRIAL:
+        if step.kind == StepKind.TRIAL:
             if not isinstance(details.get("trialId"), str):
                 raise InputError(
                     "A step with a trial is complete only with the UUID of the stored trial."
@@ -188,18 +159,18 @@ class StepProgress:
         self.expected(step_name)
         return {"reason": _checked_reason(reason, "A step can be skipped")}
 
-    def check_repeat(self, reason: str) -> tuple[Step, str]:
+    def check_repeat(self, reason: str) -> tuple[StudyStep, str]:
         """Return the aborted step and the reason to store when it is repeated."""
         if not self.unexplained:
             raise InputError("The next step was not aborted; it needs no reason to be played.")
         return self._next(), _checked_reason(reason, "An aborted trial can be repeated")
 
-    def _next(self) -> Step:
+    def _next(self) -> StudyStep:
         if self.next_step is None:
             raise InputError("All steps of the study are done; nothing comes after them.")
         return self.next_step
 
-    def expected(self, step_name: str) -> Step:
+    def expected(self, step_name: str) -> StudyStep:
         """Return the next step; raise `InputError` unless it has this name."""
         step = self._next()
         if step.name != step_name:
@@ -220,104 +191,12 @@ def _checked_reason(reason: Any, what: str) -> str:
     return reason.strip()
 
 
-def _checked_minutes(step: Step, minutes: Any) -> float:
+def _checked_minutes(step: StudyStep, minutes: Any) -> float:
     if not is_number(minutes) or not step.minutes <= minutes < float("inf"):
-        what = "The trial run" if step.kind is StepKind.TRIAL_RUN else "The break"
+        what = "The trial run" if step.kind == StepKind.TRIAL_RUN else "The break"
         took = f"{minutes:.1f}" if is_number(minutes) else "none"
         raise InputError(
             f"{what} takes {step.minutes:g} minutes, of which {took} have passed; to continue "
             "earlier, skip it and give a reason."
         )
     return float(minutes)
-
-
-def played_next(connection: Connection, pseudonym: str, progress: StepProgress) -> list[StepEntry]:
-    """Return the entries of next steps whose trials are stored but not counted yet.
-
-    It reads in the caller's transaction.
-    """
-    entries = []
-    while (step := progress.next_step) is not None:
-        found = _played_for(connection, pseudonym, progress, step)
-        if found is None:
-            break
-        (stored_utc,) = connection.execute(
-            "SELECT stored_utc FROM trials WHERE trial_id = ?", (found,)
-        ).fetchone()
-        entry = StepEntry(step.name, DONE, {"trialId": found}, stored_utc)
-        entries.append(entry)
-        progress = replace(progress, entries=(*progress.entries, entry))
-    return entries
-
-
-def _played_for(
-    connection: Connection, pseudonym: str, progress: StepProgress, step: Step
-) -> str | None:
-    """Return the UUID of the next step's trial, or None; a repeat needs a reason to count."""
-    counted = set(progress.counted_trials)
-    if step.kind is not StepKind.TRIAL:
-        return None
-    since = _since(connection, pseudonym, progress)
-    found = next(
-        (
-            (when, trial)
-            for when, trial, *played, shift, indentation in _trials_of(connection, pseudonym)
-            if played == [step.mode, step.task, step.procedure, step.method]
-            and step.is_played_on(shift, indentation)
-            and trial not in counted
-            and when >= since
-            and not step.objections(find_record(connection, trial))
-        ),
-        None,
-    )
-    if found is None:
-        return None
-    aborted = aborted_before(connection, pseudonym, progress)
-    is_repeat = any(moment(record.started_utc) <= found[0] for record in aborted)
-    return None if is_repeat else found[1]
-
-
-def _trials_of(connection: Connection, pseudonym: str) -> list[tuple[Any, ...]]:
-    """Return a trainee's finished trials, in order.
-
-    Each is its start, UUID, mode, task, procedure and method, and how far its skin had shifted and
-    was indented, mm.
-    """
-    rows = connection.execute(
-        "SELECT started_utc, trial_id, mode, task, "
-        "coalesce(json_extract(record_json, '$.procedure.procedure'), ''), "
-        "coalesce(json_extract(record_json, '$.method'), ?), "
-        "coalesce(json_extract(record_json, '$.skin.shiftMm'), ''), "
-        "coalesce(json_extract(record_json, '$.skin.indentationMm'), '') "
-        f"FROM trials WHERE trainee_id = ({TRAINEE_ID})",
-        (RegistrationMethod.FIDUCIALS.value, pseudonym),
-    ).fetchall()
-    return sorted(
-        (moment(started), *others, _number(shift), _number(indentation))
-        for started, *others, shift, indentation in rows
-    )
-
-
-def _number(extracted: object) -> float:
-    """Return a number of a record, 0 where it has none."""
-    return decoded(str(extracted or 0), float)
-
-
-def _since(connection: Connection, pseudonym: str, progress: StepProgress) -> datetime:
-    """Return the earliest start of the next step's trial."""
-    counted = set(progress.counted_trials)
-    after = [when for when, trial, *_ in _trials_of(connection, pseudonym) if trial in counted]
-    return max([*after, moment(progress.enrolled_utc)])
-
-
-def aborted_before(
-    connection: Connection, pseudonym: str, progress: StepProgress
-) -> tuple[AbortedTrial, ...]:
-    """Return the aborted trials of the next step without a reason."""
-    step = progress.next_step
-    if step is None or step.kind is not StepKind.TRIAL:
-        return ()
-    # Skipping a step settles its aborted trials.
-    left_out = [moment(entry.stored_utc) for entry in progress.skipped]
-    since = max([_since(connection, pseudonym, progress), *left_out])
-    return unexplained(connection, pseudonym, step.mode, step.task, since)

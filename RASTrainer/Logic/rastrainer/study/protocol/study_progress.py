@@ -1,7 +1,7 @@
 """A study's protocol and every trainee's progress, stored in the study's file.
 
 The module in Slicer and the simulator's flow ask `progress` for the next step and report completed
-ones. Everything is stored before it is reported, so it survives interruptions.
+steps. Everything is stored before it is reported, so it survives interruptions.
 """
 
 from __future__ import annotations
@@ -9,27 +9,25 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from datetime import datetime
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.study.database import study_trainees, study_trials
-from rastrainer.study.database.aborted_trials import explain
-from rastrainer.study.database.database import Connection
-from rastrainer.study.database.study import Study
+from rastrainer.protocol import StepKind
+from rastrainer.study.database.aborted_trials import AbortedTrials
+from rastrainer.study.database.study import METHOD, Study
 from rastrainer.study.database.study_trainees import TRAINEE_ID
-from rastrainer.study.database.study_trials import decoded, json_text
-from rastrainer.study.database.values import utc_now
+from rastrainer.study.database.values import decoded, json_text, moment, utc_now
 from rastrainer.study.protocol.questionnaires import find_questionnaire
-from rastrainer.study.protocol.step_progress import (
-    DONE,
-    SKIPPED,
-    StepEntry,
-    StepProgress,
-    aborted_before,
-    played_next,
+from rastrainer.study.protocol.step_progress import DONE, SKIPPED, StepEntry, StepProgress
+from rastrainer.study.protocol.steps import objections_to
+from rastrainer.study.protocol.study_protocol import (
+    StudyProtocol,
+    steps_for,
+    study_protocol_from_json,
 )
-from rastrainer.study.protocol.steps import Step, StepKind, steps_for
-from rastrainer.study.protocol.study_protocol import StudyProtocol, study_protocol_from_json
+from rastrainer.study_messages import StudyStep
+from rastrainer.trial.aborted_trial import AbortedTrial
 
 
 @dataclass(frozen=True)
@@ -37,22 +35,26 @@ class QuestionnaireAnswers:
     """The answers of a trainee, and their scores."""
 
     trainee: str
-    step: Step
+    step: StudyStep
     answers: tuple[int, ...]
     scores: Mapping[str, float]
     stored_utc: str
 
 
 class StudyProgress:
-    """A study's protocol and the progress of its trainees. For one thread."""
+    """A study's protocol and the progress of its trainees. For one thread.
+
+    A trial, finished or aborted, belongs to a step if it was started after enrollment and after the
+    last counted trial.
+    """
 
     def __init__(self, study: Study) -> None:
-        self._database = study.database
+        self._study, self._database = study, study.database
 
     def set_protocol(self, protocol: StudyProtocol) -> None:
         """Set the study's protocol; the same one again changes nothing."""
         with self._database.writing() as connection:
-            stored = _protocol(connection)
+            stored = self.protocol()
             if stored is None:
                 text = json_text(protocol.to_json())
                 connection.execute("INSERT INTO study_protocol VALUES (1, ?, ?)", (text, utc_now()))
@@ -65,7 +67,14 @@ class StudyProgress:
     def protocol(self) -> StudyProtocol | None:
         """Return the study's protocol, or None if trainees practice freely."""
         with self._database.reading() as connection:
-            return _protocol(connection)
+            row = connection.execute("SELECT protocol_json FROM study_protocol").fetchone()
+        return None if row is None else decoded(row[0], study_protocol_from_json)
+
+    def _require_protocol(self) -> StudyProtocol:
+        protocol = self.protocol()
+        if protocol is None:
+            raise InputError("The study has no protocol yet; start it with a protocol file.")
+        return protocol
 
     def enroll(self, pseudonym: str) -> int:
         """Return a trainee's place, the first free one if not enrolled yet.
@@ -74,22 +83,61 @@ class StudyProgress:
         so the orders stay balanced.
         """
         with self._database.writing() as connection:
-            _require_protocol(connection)
-            study_trainees.find(connection, pseudonym)
-            place = _place(connection, pseudonym)
-            if place is None:
-                taken = {row[0] for row in connection.execute("SELECT place FROM enrollments")}
-                place = next(number for number in range(len(taken) + 1) if number not in taken)
-                connection.execute(
-                    f"INSERT INTO enrollments VALUES (({TRAINEE_ID}), ?, ?)",
-                    (pseudonym, place, utc_now()),
-                )
+            self._require_protocol()
+            self._study.trainee(pseudonym)
+            places = self.enrolled()
+            if pseudonym in places:
+                return places[pseudonym]
+            taken = places.values()
+            place = next(number for number in range(len(taken) + 1) if number not in taken)
+            connection.execute(
+                f"INSERT INTO enrollments VALUES (({TRAINEE_ID}), ?, ?)",
+                (pseudonym, place, utc_now()),
+            )
             return place
+
+    def enrolled(self) -> dict[str, int]:
+        """Return the place of each enrolled trainee, in order."""
+        with self._database.reading() as connection:
+            return dict(
+                connection.execute(
+                    "SELECT pseudonym, place FROM enrollments "
+                    "JOIN trainees ON trainees.id = trainee_id ORDER BY place"
+                ).fetchall()
+            )
 
     def progress(self, pseudonym: str) -> StepProgress:
         """Return the progress of a trainee."""
         with self._database.reading() as connection:
-            return _progress(connection, pseudonym)
+            protocol = self._require_protocol()
+            enrolled = connection.execute(
+                f"SELECT place, stored_utc FROM enrollments WHERE trainee_id = ({TRAINEE_ID})",
+                (pseudonym,),
+            ).fetchone()
+            if enrolled is None:
+                who = json.dumps(str(pseudonym)[:64])
+                raise InputError(f"{who} is not enrolled in the study yet.")
+            place, enrolled_utc = enrolled
+            rows = connection.execute(
+                "SELECT step, outcome, details_json, stored_utc FROM steps "
+                f"WHERE trainee_id = ({TRAINEE_ID}) ORDER BY id",
+                (pseudonym,),
+            ).fetchall()
+            entries = tuple(
+                StepEntry(step, outcome, decoded(details, dict), utc)
+                for step, outcome, details, utc in rows
+            )
+            progress = StepProgress(steps_for(protocol, place), entries, enrolled_utc)
+            step = progress.next_step
+            practiced = connection.execute(
+                f"SELECT seconds FROM practice WHERE trainee_id = ({TRAINEE_ID}) AND step = ?",
+                (pseudonym, "" if step is None else step.name),
+            ).fetchone()
+            return replace(
+                progress,
+                practiced_s=0.0 if practiced is None else practiced[0],
+                unexplained=self._aborted_before(pseudonym, progress),
+            )
 
     def finish(
         self, pseudonym: str, step: str, details: Mapping[str, Any] | None = None
@@ -102,40 +150,45 @@ class StudyProgress:
             details: `trialId` of a stored trial, `answers` of a questionnaire, or `minutes` of a
                 trial run or break.
         """
-        with self._database.writing() as connection:
-            progress = _progress(connection, pseudonym)
+        with self._database.writing():
+            progress = self.progress(pseudonym)
             expected = progress.expected(step)
             checked = progress.check_done(expected, details or {})
-            if expected.kind is StepKind.TRIAL:
-                _check_trial(connection, pseudonym, progress, expected, checked["trialId"])
-            _store(connection, pseudonym, step, DONE, checked)
-            return _progress(connection, pseudonym)
+            if expected.kind == StepKind.TRIAL:
+                self._check_trial(pseudonym, progress, expected, checked["trialId"])
+            return self._store(pseudonym, step, DONE, checked)
 
     def skip(self, pseudonym: str, step: str, reason: str) -> StepProgress:
         """Skip the next step for a reason and return the new progress."""
+        with self._database.writing():
+            checked = self.progress(pseudonym).check_skipped(step, reason)
+            return self._store(pseudonym, step, SKIPPED, checked)
+
+    def _store(
+        self, pseudonym: str, step: str, outcome: str, details: Mapping[str, Any]
+    ) -> StepProgress:
         with self._database.writing() as connection:
-            checked = _progress(connection, pseudonym).check_skipped(step, reason)
-            _store(connection, pseudonym, step, SKIPPED, checked)
-            return _progress(connection, pseudonym)
+            connection.execute(
+                "INSERT INTO steps (trainee_id, step, outcome, details_json, stored_utc) "
+                f"VALUES (({TRAINEE_ID}), ?, ?, ?, ?)",
+                (pseudonym, step, outcome, json_text(dict(details)), utc_now()),
+            )
+            return self.progress(pseudonym)
 
     def explain_repeat(self, pseudonym: str, reason: str) -> StepProgress:
         """Store why the next step is repeated after an abort; return the new progress."""
-        with self._database.writing() as connection:
-            progress = _progress(connection, pseudonym)
+        with self._database.writing():
+            progress = self.progress(pseudonym)
             step, checked = progress.check_repeat(reason)
             for record in progress.unexplained:
-                explain(connection, record.trial_id, step.name, checked)
-            return _progress(connection, pseudonym)
+                AbortedTrials(self._study).explain(record.trial_id, step.name, checked)
+            return self.progress(pseudonym)
 
     def practice(self, pseudonym: str, step: str, seconds: float) -> None:
         """Add to the practiced time of the next step, a trial run."""
         with self._database.writing() as connection:
-            next_step = _progress(connection, pseudonym).next_step
-            if (
-                next_step is None
-                or next_step.name != step
-                or next_step.kind is not StepKind.TRIAL_RUN
-            ):
+            due = self.progress(pseudonym).next_step
+            if due is None or (due.name, due.kind) != (step, StepKind.TRIAL_RUN):
                 raise InputError(f"{step[:80]} is not the next step, or not a trial run.")
             connection.execute(
                 f"INSERT INTO practice VALUES (({TRAINEE_ID}), ?, ?) "
@@ -147,142 +200,132 @@ class StudyProgress:
     def count_played(self, pseudonym: str) -> StepProgress:
         """Count stored trials for the next steps, and return the new progress.
 
-        Trials count if started after enrollment and after the last counted trial, also if they
-        arrive late or an interruption left their step open. A repeat counts once its reason is
-        given.
+        Trials count also if they arrive late or an interruption left their step open. A repeat
+        counts once its reason is given.
         """
-        with self._database.reading() as connection:
-            progress = _progress(connection, pseudonym)
-            if not played_next(connection, pseudonym, progress):
+        with self._database.reading():
+            progress = self.progress(pseudonym)
+            if not self._played_next(pseudonym, progress):
                 return progress
-        with self._database.writing() as connection:
-            progress = _progress(connection, pseudonym)
-            for entry in played_next(connection, pseudonym, progress):
-                _store(connection, pseudonym, entry.step, entry.outcome, dict(entry.details))
-            return _progress(connection, pseudonym)
+        with self._database.writing():
+            progress = self.progress(pseudonym)
+            for entry in self._played_next(pseudonym, progress):
+                progress = self._store(pseudonym, entry.step, entry.outcome, entry.details)
+            return progress
 
     def played(self, pseudonym: str) -> StepProgress:
         """Return the progress that `count_played` would give, without storing it."""
-        with self._database.reading() as connection:
-            progress = _progress(connection, pseudonym)
-            further = played_next(connection, pseudonym, progress)
-            entries = (*progress.entries, *further)
+        with self._database.reading():
+            progress = self.progress(pseudonym)
+            further = self._played_next(pseudonym, progress)
             if not further:
                 return progress
-            progress = replace(progress, entries=entries)
-            return replace(progress, unexplained=aborted_before(connection, pseudonym, progress))
-
-    def enrolled(self) -> dict[str, int]:
-        """Return the place of each enrolled trainee, in order."""
-        with self._database.reading() as connection:
-            return dict(
-                connection.execute(
-                    "SELECT pseudonym, place FROM enrollments "
-                    "JOIN trainees ON trainees.id = trainee_id ORDER BY place"
-                ).fetchall()
-            )
+            progress = replace(progress, entries=(*progress.entries, *further))
+            return replace(progress, unexplained=self._aborted_before(pseudonym, progress))
 
     def answers(self) -> tuple[QuestionnaireAnswers, ...]:
         """Return all answered questionnaires, by place and step."""
-        return tuple(
-            answered
-            for pseudonym in self.enrolled()
-            for answered in _answers(pseudonym, self.progress(pseudonym))
+        found = []
+        for name in self.enrolled():
+            progress = self.progress(name)
+            for step, entry in zip(progress.steps, progress.entries, strict=False):
+                if step.kind == StepKind.QUESTIONNAIRE and entry.outcome == DONE:
+                    given = tuple(entry.details["answers"])
+                    scores = find_questionnaire(step.questionnaire).score(given)
+                    utc = entry.stored_utc
+                    found.append(QuestionnaireAnswers(name, step, given, scores, utc))
+        return tuple(found)
+
+    def _check_trial(
+        self, pseudonym: str, progress: StepProgress, step: StudyStep, trial_id: str
+    ) -> None:
+        record = self._study.record(trial_id)
+        played = (record.trainee, record.mode, record.task, record.method.value)
+        if played != (pseudonym, step.mode, step.task, step.method):
+            raise InputError(
+                f"The trial {trial_id} is not the one that the step {step.name} asks for: it was "
+                f"{record.task} in the mode {record.mode}, registered by {record.method.value}."
+            )
+        skin = record.skin
+        if not step.is_played_on(skin.shift_mm, skin.indentation_mm):
+            raise InputError(
+                f"The trial {trial_id} is not the one that the step {step.name} asks for: its skin "
+                f"had shifted by {skin.shift_mm:g} mm and was indented by "
+                f"{skin.indentation_mm:g} mm."
+            )
+        if objections := objections_to(step, record):
+            raise InputError(
+                f"The trial {trial_id} does not count for the step {step.name}: "
+                f"{'; '.join(objections)}."
+            )
+        if trial_id in progress.counted_trials:
+            raise InputError(f"The trial {trial_id} already counts for an earlier step.")
+
+    def _played_next(self, pseudonym: str, progress: StepProgress) -> list[StepEntry]:
+        """Return the entries of next steps whose trials are stored but not counted yet."""
+        entries = []
+        while (step := progress.next_step) is not None:
+            found = self._played_for(pseudonym, progress, step)
+            if found is None:
+                break
+            entries.append(found)
+            progress = replace(progress, entries=(*progress.entries, found))
+        return entries
+
+    def _played_for(
+        self, pseudonym: str, progress: StepProgress, step: StudyStep
+    ) -> StepEntry | None:
+        """Return the entry of the next step's trial, or None; a repeat needs a reason to count."""
+        if step.kind != StepKind.TRIAL:
+            return None
+        counted, since = progress.counted_trials, self._since(pseudonym, progress)
+        for when, trial, stored_utc, *played, shift, indentation in self._trials_of(pseudonym):
+            if (
+                played == [step.mode, step.task, step.procedure, step.method]
+                and step.is_played_on(shift, indentation)
+                and trial not in counted
+                and when >= since
+                and not objections_to(step, self._study.record(trial))
+            ):
+                aborted = self._aborted_before(pseudonym, progress)
+                if any(moment(record.started_utc) <= when for record in aborted):
+                    return None
+                return StepEntry(step.name, DONE, {"trialId": trial}, stored_utc)
+        return None
+
+    def _trials_of(self, pseudonym: str) -> list[tuple[Any, ...]]:
+        """Return a trainee's finished trials, in order.
+
+        Each is its start, UUID, time of storing, mode, task, procedure and method, and how far its
+        skin had shifted and was indented, mm.
+        """
+        with self._database.reading() as connection:
+            rows = connection.execute(
+                "SELECT started_utc, trial_id, stored_utc, mode, task, "
+                f"coalesce(json_extract(record_json, '$.procedure.procedure'), ''), {METHOD}, "
+                "coalesce(json_extract(record_json, '$.skin.shiftMm'), ''), "
+                "coalesce(json_extract(record_json, '$.skin.indentationMm'), '') "
+                f"FROM trials WHERE trainee_id = ({TRAINEE_ID})",
+                (pseudonym,),
+            ).fetchall()
+        return sorted(
+            (moment(started), *others, *(decoded(str(each or 0), float) for each in skin))
+            for started, *others, shift, indentation in rows
+            for skin in ((shift, indentation),)
         )
 
+    def _since(self, pseudonym: str, progress: StepProgress) -> datetime:
+        """Return the earliest start of the next step's trial."""
+        counted = progress.counted_trials
+        after = [when for when, trial, *_ in self._trials_of(pseudonym) if trial in counted]
+        return max([*after, moment(progress.enrolled_utc)])
 
-def _answers(pseudonym: str, progress: StepProgress) -> list[QuestionnaireAnswers]:
-    found = []
-    for step, entry in zip(progress.steps, progress.entries, strict=False):
-        if step.kind is StepKind.QUESTIONNAIRE and entry.outcome == DONE:
-            answers = tuple(entry.details["answers"])
-            scores = find_questionnaire(step.questionnaire).score(answers)
-            found.append(QuestionnaireAnswers(pseudonym, step, answers, scores, entry.stored_utc))
-    return found
-
-
-def _progress(connection: Connection, pseudonym: str) -> StepProgress:
-    protocol = _require_protocol(connection)
-    place = _place(connection, pseudonym)
-    if place is None:
-        raise InputError(f"{json.dumps(str(pseudonym)[:64])} is not enrolled in the study yet.")
-    (enrolled_utc,) = connection.execute(
-        f"SELECT stored_utc FROM enrollments WHERE trainee_id = ({TRAINEE_ID})", (pseudonym,)
-    ).fetchone()
-    rows = connection.execute(
-        "SELECT step, outcome, details_json, stored_utc FROM steps "
-        f"WHERE trainee_id = ({TRAINEE_ID}) ORDER BY id",
-        (pseudonym,),
-    ).fetchall()
-    entries = [
-        StepEntry(step, outcome, decoded(details, dict), utc)
-        for step, outcome, details, utc in rows
-    ]
-    progress = StepProgress.of(steps_for(protocol, place), entries, enrolled_utc)
-    return replace(
-        progress,
-        practiced_s=_practiced(connection, pseudonym, progress.next_step),
-        unexplained=aborted_before(connection, pseudonym, progress),
-    )
-
-
-def _practiced(connection: Connection, pseudonym: str, step: Step | None) -> float:
-    row = connection.execute(
-        f"SELECT seconds FROM practice WHERE trainee_id = ({TRAINEE_ID}) AND step = ?",
-        (pseudonym, "" if step is None else step.name),
-    ).fetchone()
-    return 0.0 if row is None else row[0]
-
-
-def _protocol(connection: Connection) -> StudyProtocol | None:
-    row = connection.execute("SELECT protocol_json FROM study_protocol").fetchone()
-    return None if row is None else decoded(row[0], study_protocol_from_json)
-
-
-def _require_protocol(connection: Connection) -> StudyProtocol:
-    protocol = _protocol(connection)
-    if protocol is None:
-        raise InputError("The study has no protocol yet; start it with a protocol file.")
-    return protocol
-
-
-def _place(connection: Connection, pseudonym: str) -> int | None:
-    row = connection.execute(
-        f"SELECT place FROM enrollments WHERE trainee_id = ({TRAINEE_ID})", (pseudonym,)
-    ).fetchone()
-    return None if row is None else row[0]
-
-
-def _check_trial(
-    connection: Connection, pseudonym: str, progress: StepProgress, step: Step, trial_id: str
-) -> None:
-    record = study_trials.find_record(connection, trial_id)
-    played = (record.trainee, record.mode, record.task, record.method.value)
-    if played != (pseudonym, step.mode, step.task, step.method):
-        raise InputError(
-            f"The trial {trial_id} is not the one that the step {step.name} asks for: it was "
-            f"{record.task} in the mode {record.mode}, registered by {record.method.value}."
-        )
-    skin = record.skin
-    if not step.is_played_on(skin.shift_mm, skin.indentation_mm):
-        raise InputError(
-            f"The trial {trial_id} is not the one that the step {step.name} asks for: its skin had "
-            f"shifted by {skin.shift_mm:g} mm and was indented by {skin.indentation_mm:g} mm."
-        )
-    if objections := step.objections(record):
-        raise InputError(
-            f"The trial {trial_id} does not count for the step {step.name}: "
-            f"{'; '.join(objections)}."
-        )
-    if any(entry.details.get("trialId") == trial_id for entry in progress.entries):
-        raise InputError(f"The trial {trial_id} already counts for an earlier step.")
-
-
-def _store(
-    connection: Connection, pseudonym: str, step: str, outcome: str, details: dict[str, Any]
-) -> None:
-    connection.execute(
-        "INSERT INTO steps (trainee_id, step, outcome, details_json, stored_utc) "
-        f"VALUES (({TRAINEE_ID}), ?, ?, ?, ?)",
-        (pseudonym, step, outcome, json_text(details), utc_now()),
-    )
+    def _aborted_before(self, pseudonym: str, progress: StepProgress) -> tuple[AbortedTrial, ...]:
+        """Return the aborted trials of the next step without a reason."""
+        step = progress.next_step
+        if step is None or step.kind != StepKind.TRIAL:
+            return ()
+        # Skipping a step settles its aborted trials.
+        left_out = [moment(entry.stored_utc) for entry in progress.skipped]
+        since = max([self._since(pseudonym, progress), *left_out])
+        return AbortedTrials(self._study).unexplained(pseudonym, step.mode, step.task, since)

@@ -1,32 +1,46 @@
-"""The protocol of a study and its file."""
+"""The protocol of a study: its file, and the steps of each trainee in order."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from enum import Enum
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Annotated, Any, Literal
 
 from rastrainer.errors import InputError
-from rastrainer.files.json_fields import Fields, fields_of, read_fields
-from rastrainer.head.trial_head import read_skin
-from rastrainer.json_checks import is_identifier
+from rastrainer.json_checks import (
+    accepted,
+    is_identifier,
+    number,
+    one_of,
+    text,
+    texts,
+    whole_number,
+)
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import (
     PLAYED_METHODS,
+    SKIN_KEYS,
     TRIAL_RUN,
-    GhostRule,
-    Guidance,
     Mode,
     RegistrationMethod,
-    TutorialRule,
+    StepKind,
 )
+from rastrainer.study.protocol.plan_file import plan_from_json, read_plan
 from rastrainer.study.protocol.questionnaires import find_questionnaire
+from rastrainer.study_messages import (
+    FIDUCIALS,
+    GhostChoice,
+    GuidanceRule,
+    StudyStep,
+    TutorialChoice,
+    identifier,
+    skin_amounts,
+)
 from rastrainer.trial.how_played import Allowance
 from rastrainer.trial.scoring import PASS_MARK, SCORE_VERSION, ScoreReference
 
-FORMAT_VERSION = 1
 FIXED, BALANCED = "fixed", "balanced"
 BEFORE_ALL, BEFORE_MODE, AFTER_TASK, AFTER_MODE, AFTER_ALL = OCCASIONS = (
     "before-all",
@@ -36,23 +50,52 @@ BEFORE_ALL, BEFORE_MODE, AFTER_TASK, AFTER_MODE, AFTER_ALL = OCCASIONS = (
     "after-all",
 )
 MAX_STEPS = 1000
+_VERSIONS = {"formatVersion": 1, "scoreVersion": SCORE_VERSION}
 """A study started with an earlier one continues with the present; each score holds its own."""
-Value = TypeVar("Value")
-_KEYS = (
-    *("formatVersion", "name", "title", "modes", "modeOrder", "tasks", "taskOrder"),
-    *("repetitions", "trialRun", "breaks", "questionnaires", "scoring"),
-    *("guidance", "ghost", "tutorial", "procedures", "methods", "skin", "allows"),
-    "checkJournals",
-)
+_MODES = tuple(mode.value for mode in Mode)
+_ALLOWANCES = tuple(each.value for each in Allowance)
+
+
+def _questionnaire(value: Any) -> str:
+    try:
+        return find_questionnaire(text(40)(value)).name
+    except InputError as error:
+        raise ValueError(f"a questionnaire ({error})") from None
+
+
+def _by_task(key: str, check: Callable[[Any], Any]) -> Callable[[Any], dict[str, Any]]:
+    """Accept an object from tasks to values that a check accepts."""
+
+    def read(value: Any) -> dict[str, Any]:
+        if not isinstance(value, Mapping):
+            raise ValueError("an object of tasks")
+        return {task: accepted(check, item, f"{key}.{task[:40]}") for task, item in value.items()}
+
+    return read
+
+
+def _skin(value: Any) -> dict[str, float]:
+    return dict.fromkeys(SKIN_KEYS, 0.0) | skin_amounts(value)
+
+
+def _reference(value: Any) -> ScoreReference:
+    return record_from_json(ScoreReference, value, "A score's reference", only_known=True)
 
 
 @dataclass(frozen=True)
 class ScheduledQuestionnaire:
     """A questionnaire, its occasion, and its modes (empty for all)."""
 
-    questionnaire: str
-    occasion: str
-    modes: tuple[str, ...] = ()
+    name: Annotated[str, _questionnaire]
+    when: Annotated[str, one_of(*OCCASIONS)]
+    modes: Annotated[tuple[str, ...], texts(0, len(_MODES), _MODES)] = ()
+
+    def __post_init__(self) -> None:
+        if self.modes and self.when in (BEFORE_ALL, AFTER_ALL):
+            raise InputError(
+                f"The questionnaire {self.name}: modes must be empty, since {self.when} belongs "
+                "to no mode."
+            )
 
 
 @dataclass(frozen=True)
@@ -61,91 +104,84 @@ class StudyProtocol:
 
     Attributes:
         name: Short; `title` is for people.
-        modes: Conditions, `desktop` and `hmd`.
-        mode_order: `fixed` as listed, or `balanced` over the trainees.
-        tasks: Names of the tasks.
-        task_order: `fixed` or `balanced`.
+        modes: Conditions.
+        mode_order, task_order: As listed, or balanced over the trainees.
         repetitions: How often each task is done in each mode, round by round.
-        trial_run_min: Length of the trial run at the start of each mode, in min; 0 for none.
-        break_between_modes_min: At least so long, in min; 0 for none.
-        questionnaires: When each one is answered.
-        references: Of the score, by task; a task without one has that of the scenario.
-        pass_mark: Score that passes; None where the protocol sets none and the default holds.
-        guidance: A `Guidance` to the next point; "" leaves it to the simulator's setting.
-        ghost: A `GhostRule` for the trials; "" for none, whatever the simulator's setting.
-        tutorial: A `TutorialRule`; "" leaves it to the simulator's setting.
+        trial_run_min: Length of the trial run at the start of each mode; 0 for none.
+        break_between_modes_min, break_between_tasks_min: At least so long; 0 for none.
+        references: Of the score, by task; by default, the scenario's.
+        pass_mark: Score that passes; None for the default.
+        guidance: To the next point; "" leaves it to the simulator's setting.
+        ghost: For the trials; "" for none, even if the simulator's setting has one.
+        tutorial: "" leaves it to the simulator's setting.
         procedures: By task, the procedure that its trials continue with; without one, a trial ends
             with the registration.
-        methods: By task, by what its trials are registered, a `PLAYED_METHODS`; without one, by its
-            fiducials.
-        skins: By task, how far the skin shifts and is indented in its trials, as of `skin_amounts`;
-            without one, as the scenario says.
+        methods: By task, by what its trials are registered; without one, by its fiducials.
+        skin: By task, how far the skin shifts and is indented in its trials; without one, as the
+            scenario says.
         allows: What counts in the trials although it is not how a trainee plays, `Allowance`s.
-        checks_journals: Whether a trial is scored only if it follows from its journal.
+        check_journals: Whether a trial is scored only if it follows from its journal.
     """
 
-    name: str
-    title: str
-    modes: tuple[str, ...]
-    mode_order: str
-    tasks: tuple[str, ...]
-    task_order: str
-    repetitions: int = 1
-    trial_run_min: float = 0.0
-    break_between_modes_min: float = 0.0
-    break_between_tasks_min: float = 0.0
+    name: Annotated[str, identifier]
+    title: Annotated[str, text(120)]
+    modes: Annotated[tuple[str, ...], texts(1, len(_MODES), _MODES)]
+    mode_order: Literal["fixed", "balanced"]
+    tasks: Annotated[tuple[str, ...], texts(1, 20)]
+    task_order: Literal["fixed", "balanced"]
+    repetitions: Annotated[int, whole_number(1, 50)] = 1
+    trial_run_min: Annotated[float, number(0, 120, "min")] = 0.0
+    break_between_modes_min: Annotated[float, number(0, 30 * 24 * 60, "min")] = 0.0
+    break_between_tasks_min: Annotated[float, number(0, 24 * 60, "min")] = 0.0
     questionnaires: tuple[ScheduledQuestionnaire, ...] = ()
-    references: Mapping[str, ScoreReference] = field(default_factory=dict)
-    pass_mark: float | None = None
-    guidance: str = ""
-    ghost: str = ""
-    tutorial: str = ""
-    procedures: Mapping[str, str] = field(default_factory=dict)
-    methods: Mapping[str, str] = field(default_factory=dict)
-    skins: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    allows: tuple[str, ...] = ()
-    checks_journals: bool = True
+    references: Annotated[Mapping[str, ScoreReference], _by_task("references", _reference)] = field(
+        default_factory=dict
+    )
+    pass_mark: Annotated[float | None, number(1, 100)] = None
+    guidance: GuidanceRule = ""
+    ghost: GhostChoice = ""
+    tutorial: TutorialChoice = ""
+    procedures: Annotated[Mapping[str, str], _by_task("procedures", identifier)] = field(
+        default_factory=dict
+    )
+    methods: Annotated[
+        Mapping[str, str], _by_task("methods", one_of(*(method.value for method in PLAYED_METHODS)))
+    ] = field(default_factory=dict)
+    skin: Annotated[Mapping[str, Mapping[str, float]], _by_task("skin", _skin)] = field(
+        default_factory=dict
+    )
+    allows: Annotated[tuple[str, ...], texts(0, len(_ALLOWANCES), _ALLOWANCES)] = ()
+    check_journals: bool = True
+
+    def __post_init__(self) -> None:
+        tasks = ", ".join(self.tasks)
+        for task in self.tasks:
+            if task == TRIAL_RUN or not is_identifier(task):
+                raise InputError(
+                    "The protocol: tasks must be names of tasks, such as task-1; the trial run is "
+                    "not one."
+                )
+        for key in ("references", "procedures", "methods", "skin"):
+            for task in getattr(self, key):
+                if task not in self.tasks and (key, task) != ("references", TRIAL_RUN):
+                    raise InputError(
+                        f"The protocol: {key}.{task[:40]} must be one of the study's tasks, "
+                        f"{tasks}."
+                    )
+        for asked in self.questionnaires:
+            if not set(asked.modes) <= set(self.modes):
+                raise InputError(
+                    f"The protocol: questionnaires must have modes of {', '.join(self.modes)}."
+                )
+        if len(self.modes) * len(self.tasks) * self.repetitions > MAX_STEPS:
+            raise InputError(
+                f"The protocol: repetitions must be so few that there are at most {MAX_STEPS} "
+                "trials."
+            )
 
     def to_json(self) -> dict[str, Any]:
         """Return the object that the file holds."""
-        mark = {} if self.pass_mark is None else {"passMark": self.pass_mark}
-        chosen = {"guidance": self.guidance, "ghost": self.ghost, "tutorial": self.tutorial}
-        by_task: dict[str, dict[str, Any]] = {
-            "procedures": dict(self.procedures),
-            "methods": dict(self.methods),
-            "skin": {task: dict(skin) for task, skin in self.skins.items()},
-        }
-        return {
-            "formatVersion": FORMAT_VERSION,
-            "name": self.name,
-            "title": self.title,
-            "modes": list(self.modes),
-            "modeOrder": self.mode_order,
-            "tasks": list(self.tasks),
-            **{name: value for name, value in chosen.items() if value},
-            **{name: value for name, value in by_task.items() if value},
-            **({"allows": list(self.allows)} if self.allows else {}),
-            "checkJournals": self.checks_journals,
-            "taskOrder": self.task_order,
-            "repetitions": self.repetitions,
-            "trialRun": {"minutes": self.trial_run_min},
-            "breaks": {
-                "betweenModesMinutes": self.break_between_modes_min,
-                "betweenTasksMinutes": self.break_between_tasks_min,
-            },
-            "questionnaires": [
-                {"name": asked.questionnaire, "when": asked.occasion, "modes": list(asked.modes)}
-                for asked in self.questionnaires
-            ],
-            "scoring": {
-                "version": SCORE_VERSION,
-                **mark,
-                "references": {
-                    task: {"timeS": r.time_s, "treMm": r.tre_mm, "limitMm": r.limit_mm}
-                    for task, r in self.references.items()
-                },
-            },
-        }
+        return {**_VERSIONS, **record_to_json(self)}
 
 
 def pass_mark_of(
@@ -164,113 +200,115 @@ def pass_mark_of(
 
 def read_study_protocol(path: Path | str) -> StudyProtocol:
     """Read a protocol file."""
-    return _protocol(read_fields(Path(path)))
+    return read_plan(StudyProtocol, path, _VERSIONS)
 
 
 def study_protocol_from_json(value: Any) -> StudyProtocol:
-    """Return the protocol of a `to_json` object; raise `InputError` if invalid."""
-    return _protocol(fields_of(value, "study protocol"))
+    """Return the protocol of a `to_json` object."""
+    return plan_from_json(StudyProtocol, value, _VERSIONS, "The protocol")
 
 
 def protocol_text(protocol: StudyProtocol) -> str:
     return json.dumps(protocol.to_json(), indent=2, ensure_ascii=False) + "\n"
 
 
-def _protocol(fields: Fields) -> StudyProtocol:
-    fields.check_names(_KEYS, "a protocol")
-    fields.check_format(FORMAT_VERSION)
-    name = fields.identifier("name")
-    modes = fields.texts("modes", 1, len(Mode), choices=tuple(mode.value for mode in Mode))
-    tasks = fields.texts("tasks", 1, 20)
-    if not all(is_identifier(task) and task != TRIAL_RUN for task in tasks):
-        raise fields.error("tasks", "names of tasks, such as task-1; the trial run is not one")
-    breaks, scoring = fields.fields("breaks"), fields.fields("scoring")
-    if scoring.text("version", 20) != SCORE_VERSION:
-        raise scoring.error("version", f"{SCORE_VERSION}, the score that this version computes")
-    protocol = StudyProtocol(
-        name=name,
-        title=fields.text("title", 120),
-        modes=modes,
-        mode_order=fields.one_of("modeOrder", (FIXED, BALANCED)),
-        tasks=tasks,
-        task_order=fields.one_of("taskOrder", (FIXED, BALANCED)),
-        repetitions=fields.whole_number("repetitions", 1, 50),
-        trial_run_min=fields.fields("trialRun").number("minutes", 0, 120),
-        break_between_modes_min=breaks.number("betweenModesMinutes", 0, 30 * 24 * 60),
-        break_between_tasks_min=breaks.number("betweenTasksMinutes", 0, 24 * 60),
-        questionnaires=tuple(
-            _questionnaire(entry, modes) for entry in fields.list_of_fields("questionnaires", 0, 20)
-        ),
-        references=_references(scoring.fields("references"), tasks),
-        pass_mark=scoring.number("passMark", 1, 100) if "passMark" in scoring.names() else None,
-        guidance=_chosen(fields, "guidance", Guidance),
-        ghost=_chosen(fields, "ghost", GhostRule),
-        tutorial=_chosen(fields, "tutorial", TutorialRule),
-        procedures=_by_task(fields, "procedures", tasks, Fields.identifier),
-        methods=_by_task(fields, "methods", tasks, _method),
-        skins=_by_task(
-            fields, "skin", tasks, lambda entries, task: read_skin(entries, task).amounts
-        ),
-        allows=_allowances(fields),
-        checks_journals=fields.yes_or_no("checkJournals", True),
+def steps_for(protocol: StudyProtocol, place: int) -> tuple[StudyStep, ...]:
+    """Return the steps of the trainee at a place, from 0; their trainee is "" here."""
+    steps = tuple(_steps(protocol, place))
+    return tuple(
+        replace(step, number=number, count=len(steps)) for number, step in enumerate(steps, start=1)
     )
-    if len(modes) * len(tasks) * protocol.repetitions > MAX_STEPS:
-        raise fields.error("repetitions", f"so few that there are at most {MAX_STEPS} trials")
-    return protocol
 
 
-def _chosen(fields: Fields, name: str, choices: type[Enum]) -> str:
-    """Return the choice of a field, "" where it is left out."""
-    if name not in fields.names():
-        return ""
-    return fields.one_of(name, tuple(choice.value for choice in choices))
+def mode_order(protocol: StudyProtocol, place: int) -> tuple[str, ...]:
+    return _ordered(protocol.modes, protocol.mode_order, place)
 
 
-def _allowances(fields: Fields) -> tuple[str, ...]:
-    known = tuple(each.value for each in Allowance)
-    given = "allows" in fields.names()
-    return fields.texts("allows", 0, len(known), choices=known) if given else ()
+def task_order(
+    protocol: StudyProtocol, place: int, mode_index: int, round_: int
+) -> tuple[str, ...]:
+    rows = len(williams_design(len(protocol.modes))) if protocol.mode_order == BALANCED else 1
+    row = place // rows + mode_index * protocol.repetitions + round_
+    return _ordered(protocol.tasks, protocol.task_order, row)
 
 
-def _by_task(
-    fields: Fields, name: str, tasks: tuple[str, ...], read: Callable[[Fields, str], Value]
-) -> dict[str, Value]:
-    """Return an optional object from the study's tasks to what `read` finds for each."""
-    if name not in fields.names():
-        return {}
-    entries = fields.fields(name)
-    for task in entries.names():
-        if task not in tasks:
-            raise entries.error(task[:40], f"one of the study's tasks, {', '.join(tasks)}")
-    return {task: read(entries, task) for task in entries.names()}
+def _ordered(names: tuple[str, ...], order: str, row: int) -> tuple[str, ...]:
+    if order != BALANCED:
+        return names
+    design = williams_design(len(names))
+    return tuple(names[index] for index in design[row % len(design)])
 
 
-def _method(entries: Fields, task: str) -> str:
-    return entries.one_of(task, tuple(method.value for method in PLAYED_METHODS))
+def _steps(protocol: StudyProtocol, place: int) -> Iterator[StudyStep]:
+    yield from _questions(protocol, BEFORE_ALL, "", "before-all")
+    for index, mode in enumerate(mode_order(protocol, place)):
+        if index and protocol.break_between_modes_min:
+            yield _step(StepKind.BREAK, f"{mode}/break", minutes=protocol.break_between_modes_min)
+        yield from _in_mode(protocol, place, index, mode)
+    yield from _questions(protocol, AFTER_ALL, "", "after-all")
 
 
-def _questionnaire(entry: Fields, modes: tuple[str, ...]) -> ScheduledQuestionnaire:
-    name = entry.text("name", 40)
-    try:
-        find_questionnaire(name)
-    except InputError as error:
-        raise entry.error("name", f"a questionnaire ({error})") from None
-    occasion = entry.one_of("when", OCCASIONS)
-    chosen = entry.texts("modes", 0, len(modes), choices=modes)
-    if chosen and occasion in (BEFORE_ALL, AFTER_ALL):
-        raise entry.error("modes", f"empty, since {occasion} belongs to no mode")
-    return ScheduledQuestionnaire(name, occasion, chosen)
-
-
-def _references(fields: Fields, tasks: tuple[str, ...]) -> dict[str, ScoreReference]:
-    references = {}
-    for task in fields.names():
-        if task not in (*tasks, TRIAL_RUN):
-            raise fields.error(task[:40], f"one of the study's tasks, {', '.join(tasks)}")
-        entry = fields.fields(task)
-        references[task] = ScoreReference(
-            entry.number("timeS", 1, 1e4),
-            entry.number("treMm", 0.01, 100),
-            entry.number("limitMm", 0.01, 100),
+def _in_mode(protocol: StudyProtocol, place: int, index: int, mode: str) -> Iterator[StudyStep]:
+    yield from _questions(protocol, BEFORE_MODE, mode, f"{mode}/before")
+    if protocol.trial_run_min:
+        yield _step(
+            StepKind.TRIAL_RUN,
+            f"{mode}/{TRIAL_RUN}",
+            mode,
+            task=TRIAL_RUN,
+            minutes=protocol.trial_run_min,
+            guidance=protocol.guidance,
+            tutorial=protocol.tutorial,
         )
-    return references
+    is_first = True
+    for round_ in range(protocol.repetitions):
+        for task in task_order(protocol, place, index, round_):
+            name = f"{mode}/{round_ + 1}/{task}"
+            if not is_first and protocol.break_between_tasks_min:
+                minutes = protocol.break_between_tasks_min
+                yield _step(StepKind.BREAK, f"{name}/break", mode, minutes=minutes)
+            is_first = False
+            yield _step(
+                StepKind.TRIAL,
+                name,
+                mode,
+                task=task,
+                guidance=protocol.guidance,
+                ghost=protocol.ghost,
+                procedure=protocol.procedures.get(task, ""),
+                method=protocol.methods.get(task, FIDUCIALS),
+                skin=protocol.skin.get(task, {}),
+                allows=protocol.allows,
+            )
+            yield from _questions(protocol, AFTER_TASK, mode, name)
+    yield from _questions(protocol, AFTER_MODE, mode, f"{mode}/after")
+
+
+def _questions(
+    protocol: StudyProtocol, occasion: str, mode: str, prefix: str
+) -> Iterator[StudyStep]:
+    for asked in protocol.questionnaires:
+        if asked.when == occasion and (not asked.modes or mode in asked.modes):
+            name = f"{prefix}/{asked.name}"
+            yield _step(StepKind.QUESTIONNAIRE, name, mode, questionnaire=asked.name)
+
+
+def _step(kind: StepKind, name: str, mode: str = "", **others: Any) -> StudyStep:
+    return StudyStep("", kind, name=name, mode=mode, **others)
+
+
+def williams_design(count: int) -> tuple[tuple[int, ...], ...]:
+    """Return the rows of a balanced Latin square of conditions 0 … count − 1.
+
+    Over all rows, every condition is equally often at every position and after every other one. An
+    odd count needs twice as many rows: the square and its mirror image.
+    """
+    first = [0]
+    low, high = 1, count - 1
+    while len(first) < count:
+        first.append(low if len(first) % 2 else high)
+        low, high = (low + 1, high) if len(first) % 2 == 0 else (low, high - 1)
+    square = [tuple((value + row) % count for value in first) for row in range(count)]
+    if count % 2:
+        square += [row[::-1] for row in square]
+    return tuple(square)

@@ -1,0 +1,269 @@
+"""What Slicer tells the simulator of a study: a trainee's next step, and standing in a curriculum.
+
+Both are also what protocol and curriculum plan. A key that stands here is stored, travels and is
+checked by that.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Annotated, Any
+
+from rastrainer.errors import InputError
+from rastrainer.json_checks import (
+    IDENTIFIER_WORDS,
+    is_identifier,
+    number,
+    one_of,
+    text,
+    texts,
+    whole_number,
+)
+from rastrainer.json_records import record_to_json
+from rastrainer.protocol import (
+    ALL_DONE,
+    FREE,
+    MAX_ASSIGNMENTS,
+    MAX_GATES,
+    MAX_GOAL_TRIALS,
+    PLAYED_METHODS,
+    REPEAT,
+    SKIN_KEYS,
+    SKIN_LIMIT_MM,
+    TRIAL_RUN,
+    AssignmentState,
+    GhostRule,
+    GoalKind,
+    Guidance,
+    Mode,
+    RegistrationMethod,
+    StepKind,
+    TutorialRule,
+)
+
+WHOLE_WAY = 100
+"""Percent of the way to competence."""
+FIDUCIALS = RegistrationMethod.FIDUCIALS.value
+
+
+def identifier(value: Any) -> str:
+    """Accept a name for commands and files."""
+    if not isinstance(value, str) or not is_identifier(value):
+        raise ValueError(IDENTIFIER_WORDS)
+    return value
+
+
+def skin_amounts(value: Any) -> dict[str, float]:
+    """Accept how far the skin shifts (RMS) and is indented, mm; a missing amount is 0.
+
+    Raises:
+        ValueError: anything else; the words follow "must be".
+    """
+    check = number(0, SKIN_LIMIT_MM)
+    with contextlib.suppress(ValueError):
+        if isinstance(value, Mapping) and set(value) <= set(SKIN_KEYS):
+            return {key: check(amount) for key, amount in value.items()}
+    raise ValueError(
+        f"an object of {' and '.join(SKIN_KEYS)}, each a number from 0 to {SKIN_LIMIT_MM:g} mm"
+    )
+
+
+_Name = Annotated[str, identifier]
+AnyMode = Annotated[str, one_of(*(mode.value for mode in Mode))]
+PlayedMethod = Annotated[str, one_of(*(method.value for method in PLAYED_METHODS))]
+GuidanceRule = Annotated[str, one_of(*(choice.value for choice in Guidance))]
+GhostChoice = Annotated[str, one_of(*(rule.value for rule in GhostRule))]
+TutorialChoice = Annotated[str, one_of(*(rule.value for rule in TutorialRule))]
+Skin = Annotated[Mapping[str, float], skin_amounts]
+Allowances = tuple[Annotated[str, text(20)], ...]
+_Minutes = Annotated[float, number(0, 43_200, "min")]
+
+
+@dataclass(frozen=True)
+class StudyStep:
+    """A step of a trainee through a study; texts that do not apply are empty.
+
+    Attributes:
+        trainee: Pseudonym.
+        kind: A `StepKind`, `REPEAT` if an aborted trial needs a reason, `ALL_DONE` after the last
+            step, or `FREE` without a study.
+        number, count: Of the step, from 1, and of all steps; 0 if none.
+        minutes: Duration of a trial run, or minimum of a break; 0 if unlimited.
+        over: Minutes elapsed when sent; not compared, since a step is the same whenever it is sent.
+        guidance: "" for the simulator's setting.
+        ghost: Of a trial; "" for none.
+        procedure: That the trial continues with; "" for the touches alone.
+        tutorial: Before a trial run; "" for the simulator's setting.
+        skin: How far the skin shifts and is indented; empty for what the scenario says.
+        name: Unique for the trainee, such as `desktop/2/task-3`; it is stored.
+        allows: What counts although it is not how a trainee plays, `Allowance`s.
+    """
+
+    trainee: str
+    kind: Annotated[str, one_of(*(kind.value for kind in StepKind), ALL_DONE, FREE, REPEAT)]
+    number: Annotated[int, whole_number(1, 100_000)] = 0
+    count: Annotated[int, whole_number(1, 100_000)] = 0
+    task: str = ""
+    mode: AnyMode = ""
+    questionnaire: str = ""
+    minutes: _Minutes = 0.0
+    over: _Minutes = field(default=0.0, compare=False)
+    guidance: GuidanceRule = ""
+    ghost: GhostChoice = ""
+    procedure: Annotated[str, text(40, 0)] = ""
+    tutorial: TutorialChoice = ""
+    method: PlayedMethod = FIDUCIALS
+    skin: Skin = field(default_factory=dict, hash=False)
+    name: Annotated[str, text(160)] = ""
+    allows: Allowances = ()
+
+    @classmethod
+    def from_arguments(cls, arguments: Mapping[str, Any]) -> StudyStep:
+        """Return the step of checked command arguments."""
+        return cls(**arguments)
+
+    def arguments(self) -> dict[str, Any]:
+        """Return the command arguments, without defaults."""
+        return record_to_json(self)
+
+    @property
+    def is_played(self) -> bool:
+        return self.kind in (StepKind.TRIAL.value, StepKind.TRIAL_RUN.value)
+
+    def left_s(self, passed_s: float = 0.0) -> float:
+        """Return the remaining time in s, `passed_s` after it was sent."""
+        return max(0.0, 60.0 * (self.minutes - self.over) - passed_s)
+
+    def is_played_on(self, shift_mm: float, indentation_mm: float) -> bool:
+        """Return whether a trial on such skin is the step's; the scenario's may be any."""
+        amounts = tuple(self.skin.get(key, 0.0) for key in SKIN_KEYS)
+        return not self.skin or amounts == (shift_mm, indentation_mm)
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """A task of a curriculum that is played until a goal is reached.
+
+    Attributes:
+        name: Unique in its curriculum.
+        scenario: Whose task it is; "" for any that has it.
+        mode: "" for any.
+        procedure: That its trials continue with, and whose score counts; "" for touches alone.
+        trials: How many trials in a row are to pass, for a goal by scores.
+        mark: Score that passes; None for the pass mark of the study.
+        after: Names of earlier assignments that have to be reached before this one opens.
+    """
+
+    name: _Name
+    task: _Name
+    scenario: _Name = ""
+    mode: AnyMode = ""
+    method: PlayedMethod = FIDUCIALS
+    procedure: _Name = ""
+    goal: GoalKind = GoalKind.SCORE
+    trials: Annotated[int, whole_number(1, MAX_GOAL_TRIALS)] = 1
+    mark: Annotated[float | None, number(1, 100)] = None
+    after: Annotated[tuple[str, ...], texts(0, MAX_GATES)] = ()
+
+    def __post_init__(self) -> None:
+        if self.task == TRIAL_RUN:
+            raise InputError(
+                f"The assignment {self.name}: task must be a task that is scored; the trial run is "
+                "not."
+            )
+        if self.goal is GoalKind.COMPETENT and self.trials > 1:
+            raise InputError(
+                f"The assignment {self.name}: trials must be left out of the goal competent."
+            )
+
+    @property
+    def is_by_competence(self) -> bool:
+        """Whether its goal is competence by LC-CUSUM; else, trials in a row that pass."""
+        return self.goal is GoalKind.COMPETENT
+
+    def is_played_as(
+        self, scenario: str, task: str, mode: str, method: str, procedure: str
+    ) -> bool:
+        """Return whether a trial of this kind counts for the assignment."""
+        return (
+            self.scenario in ("", scenario)
+            and self.mode in ("", mode)
+            and (self.task, self.method, self.procedure) == (task, method, procedure)
+        )
+
+
+@dataclass(frozen=True)
+class AssignmentStanding(Assignment):
+    """An assignment, and a trainee's standing in it.
+
+    Attributes:
+        mark: Score that passes a trial; None without one.
+        done: Trials in a row that pass now, or percent of the way to competence.
+        needed: How many there have to be.
+        played: Number of trials, including aborted trials.
+        mean: Of the latest scores; None before the first.
+        missing: Names of the assignments that it waits for.
+        weakest: Part of the score that cost most in the latest trials; "" before the first.
+        reached_utc: Start of the trial by which it was reached, ISO 8601; of a gate's where that
+            was later, "" until then.
+    """
+
+    goal: GoalKind = field(kw_only=True)
+    state: AssignmentState = field(kw_only=True)
+    needed: Annotated[int, whole_number(1, 100)] = field(kw_only=True)
+    done: Annotated[int, whole_number(0, 100)] = 0
+    played: Annotated[int, whole_number(0, 1_000_000)] = 0
+    mean: Annotated[float | None, number(0, 100)] = None
+    missing: Annotated[tuple[str, ...], texts(0, MAX_GATES)] = ()
+    weakest: Annotated[str, text(20)] = ""
+    reached_utc: str = ""
+
+    @property
+    def is_locked(self) -> bool:
+        """Whether others have to be reached first."""
+        return self.state is AssignmentState.LOCKED
+
+    @property
+    def is_reached(self) -> bool:
+        return self.state is AssignmentState.REACHED
+
+
+def _some_assignments(value: Any) -> Any:
+    if not isinstance(value, (list, tuple)) or len(value) > MAX_ASSIGNMENTS:
+        raise ValueError(f"a list of up to {MAX_ASSIGNMENTS} assignments")
+    return value
+
+
+@dataclass(frozen=True)
+class CurriculumMessage:
+    """A trainee's standing in a curriculum, as the menu shows it.
+
+    Attributes:
+        trainee: Pseudonym.
+        title: Of the curriculum, for people.
+        next: Name of the assignment to practice next; "" for none.
+        assignments: In their order; none for a trainee without a curriculum.
+    """
+
+    trainee: str
+    title: Annotated[str, text(80)] = ""
+    next: Annotated[str, text(40)] = ""
+    assignments: Annotated[tuple[AssignmentStanding, ...], _some_assignments] = ()
+
+    @classmethod
+    def from_arguments(cls, arguments: Mapping[str, Any]) -> CurriculumMessage:
+        """Return the message of checked command arguments."""
+        return cls(**arguments)
+
+    def arguments(self) -> dict[str, Any]:
+        """Return the command arguments, without defaults."""
+        return record_to_json(self)
+
+    @property
+    def reached(self) -> int:
+        return sum(each.is_reached for each in self.assignments)
+
+    def find(self, name: str) -> AssignmentStanding | None:
+        return next((each for each in self.assignments if each.name == name), None)
