@@ -23,6 +23,7 @@ from Testing.web.place import CarriedTrainee
 FOLDER = Path(__file__).parents[2] / "docs" / "pictures"
 WINDOW = ("--size", "1280x720", "--quality", "low", "--picture-quality", "low")
 COLORS = 96
+RESTING_MM = 0.25
 SLIP_AT, SLIP_M = 6, 0.006
 """After so many touches one is off by this much."""
 
@@ -82,7 +83,7 @@ def keep_trial(trainee: CarriedTrainee, photographer: Photographer, client: Clie
     photographer.keep("first-trial-05-task")
     trainee.approach("1", 0.004)
     photographer.keep("first-trial-06-near")
-    trainee.lower_onto("1")
+    rest_on(trainee, client, "1")
     trainee.until(lambda: trainee.view.state["touch"] == "on skin", "the skin")
     photographer.keep("first-trial-07-on-skin")
     trainee.have_touched(SLIP_AT)
@@ -93,6 +94,14 @@ def keep_trial(trainee: CarriedTrainee, photographer: Photographer, client: Clie
     photographer.keep("first-trial-08-register")
     trainee.choose("register")
     trainee.until_menu("result")
+
+
+def rest_on(trainee: CarriedTrainee, client: Client, label: str) -> None:
+    """Lower the tip onto a point, and hardly press it in."""
+    place, center = MM_PER_M * trainee.place_of(label), MM_PER_M * trainee.head_center
+    onto = place + RESTING_MM * (center - place) / np.linalg.norm(center - place)
+    target = {"positionMm": onto.tolist(), "speedMmS": 20}
+    assert client.send_command("MoveTipTo", target, timeout=60).ok
 
 
 def slip(trainee: CarriedTrainee, client: Client, label: str) -> None:
