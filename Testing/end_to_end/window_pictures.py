@@ -44,10 +44,8 @@ class Photographer:
 
     def keep(self, name: str) -> None:
         """Save what is shown, once the view has arrived."""
-        if self._lab.view.screen.menu is None:
-            # Beside a menu nothing changes, and nothing is drawn again.
-            self._window.wait_for_tick(self._lab.view.state["tick"])
-        time.sleep(TRANSITION_S + 0.5)
+        # Where nothing changes, nothing is drawn again: there is no later picture to wait for.
+        time.sleep(TRANSITION_S + 2.0)
         known = set(self._window.folder.glob("*.png"))
         self._lab.keyboard.tap("F12")
         kept, path = self._window.next_picture(known, DRAWN_S), self._folder / f"{name}.png"
