@@ -237,7 +237,7 @@ class HeldInput:
 
     def release(self, is_silent: bool = False) -> None:
         """Release everything, since the view has left or is silent."""
-        shifts = SHIFT_KEYS & self._keys.keys() if is_silent else set()
+        shifts = set(SHIFT_KEYS.intersection(self._keys)) if is_silent else set()
         for code in tuple(self._keys):
             self.key(code, False, "")
         self._held_in_silence = shifts
