@@ -23,6 +23,7 @@ from Testing.web.place import CarriedTrainee
 FOLDER = Path(__file__).parents[2] / "docs" / "pictures"
 SIZE = (1280, 720)
 COLORS = 96
+NEAR_MM, PRESSED_MM = 12.0, 0.25
 SLIP_AT, SLIP_M = 6, 0.006
 """After so many touches one is off by this much."""
 
@@ -81,9 +82,9 @@ def keep_trial(trainee: CarriedTrainee, photographer: Photographer, client: Clie
     trainee.until(lambda: trainee.view.state["phase"] == "running", "the trial")
     photographer.keep("first-trial-05-task")
     trainee.approach("1", 0.004)
+    carry_over(trainee, client, "1", NEAR_MM, "near")
     photographer.keep("first-trial-06-near")
-    trainee.lower_onto("1")
-    trainee.until(lambda: trainee.view.state["touch"] == "on skin", "the skin")
+    carry_over(trainee, client, "1", -PRESSED_MM, "on skin")
     photographer.keep("first-trial-07-on-skin")
     trainee.have_touched(SLIP_AT)
     label = trainee.view.state["next"]
@@ -93,6 +94,17 @@ def keep_trial(trainee: CarriedTrainee, photographer: Photographer, client: Clie
     photographer.keep("first-trial-08-register")
     trainee.choose("register")
     trainee.until_menu("result")
+
+
+def carry_over(
+    trainee: CarriedTrainee, client: Client, label: str, height_mm: float, stage: str
+) -> None:
+    """Carry the tip so far above a point, and wait for a stage of the touch."""
+    place, center = MM_PER_M * trainee.place_of(label), MM_PER_M * trainee.head_center
+    above = place + height_mm * (place - center) / np.linalg.norm(place - center)
+    target = {"positionMm": above.tolist(), "speedMmS": 20}
+    assert client.send_command("MoveTipTo", target, timeout=60).ok
+    trainee.until(lambda: trainee.view.state["touch"] == stage, stage)
 
 
 def slip(trainee: CarriedTrainee, client: Client, label: str) -> None:

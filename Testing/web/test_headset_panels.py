@@ -207,10 +207,9 @@ def test_the_close_up_looks_along_the_skin_wherever_the_next_touch_is(work):
     assert (place, angle) == (pytest.approx(front), 10)
 
 
-ARROW = """(place) => {
-  const { arrow, camera } = page.headset;
-  const model = { next: (label, target) => target.fromArray(place) };
-  arrow.show(model, camera, "7", place !== null);
+ARROW = """([name, place]) => {
+  const { [name]: arrow, camera } = page.headset;
+  arrow.show(place === null ? null : camera.position.clone().fromArray(place), camera);
   const up = arrow.group.position.clone().set(0, 1, 0).applyQuaternion(arrow.group.quaternion);
   const { x, y, z } = arrow.group.position;
   return { isSeen: arrow.group.visible, way: [up.x, -up.z, up.y], at: [x, -z, y],
@@ -224,15 +223,32 @@ AHEAD = """() => {
 }"""
 
 
-def test_an_arrow_points_to_a_next_point_that_is_out_of_sight(work):
-    assert not work.evaluate(ARROW, work.evaluate(AHEAD % "1"))["isSeen"]
+@pytest.mark.parametrize("name", ["arrow", "toolArrow"])
+def test_arrows_point_to_the_next_point_and_the_tool_where_they_are_out_of_sight(work, name):
+    assert not work.evaluate(ARROW, [name, work.evaluate(AHEAD % "1")])["isSeen"]
     behind = work.evaluate(AHEAD % "-1")
-    arrow = work.evaluate(ARROW, behind)
+    arrow = work.evaluate(ARROW, [name, behind])
     assert arrow["isSeen"]
     assert arrow["isInRoom"], "it is not drawn in the close-up"
     outward = np.subtract(behind, arrow["at"])
     assert arrow["way"] == pytest.approx(list(outward / np.linalg.norm(outward)), abs=1e-5)
-    assert not work.evaluate(ARROW, None)["isSeen"]
+    assert not work.evaluate(ARROW, [name, None])["isSeen"]
+
+
+IN_PHASE = """async (phase) => {
+  page.takeState = () => undefined;
+  page.state = { ...page.state, phase };
+  await frames_(3);
+  delete page.takeState;
+  return page.headset.toolArrow.group.visible;
+}"""
+
+
+def test_who_looks_away_from_the_head_in_a_trial_sees_where_the_tool_is(work):
+    assert not work.evaluate(IN_PHASE, "running")
+    stand(work, yaw=np.pi)
+    assert work.evaluate(IN_PHASE, "running")
+    assert not work.evaluate(IN_PHASE, "idle")
 
 
 def test_hints_and_control_holder_are_on_separate_lines(worn):

@@ -264,10 +264,13 @@ class TrialScreen(ArmScreen):
         return session.texts.say("status.left", time=session.duration(left))
 
     def _is_off_the_path(self) -> bool:
-        """Return whether the tip is off the path between the last point and the next."""
+        """Return whether the tip is off the path between the last point and the next.
+
+        This guides, too: without guidance it is not told.
+        """
         training = self._session.training
         target = self._points.get(training.next_point or "")
-        if not training.touches or target is None:
+        if self.guidance is Guidance.NONE or not training.touches or target is None:
             self._is_beside = False
             return False
         way = PathArc(self._center, training.touches[-1].position, target)

@@ -164,7 +164,7 @@ The first one leads all the way to most next fiducials that are seen with this o
 SHORTEST = 6.0
 SHAFT_WIDTH = 2.0
 HEAD_WIDTH, HEAD_LENGTH = 5.4, 5.5
-APART = 1.5
+APART = 4.0
 BERTH = 4.0
 """Margin by which an arrow passes the rim of a fiducial that it does not lead to."""
 TURNS = tuple(np.radians((0.0, 12.0, -12.0, 24.0, -24.0, 36.0, -36.0)))

@@ -357,7 +357,7 @@ def test_straying_from_the_path_to_the_next_point_is_reported_and_staying_on_it_
     pilot.touch(first, center)
     pilot.touch(second, center)
     found = [screen.instruction.text for screen in pilot.watcher.screens]
-    assert [text for text in found if "off the way" in text] == []
+    assert [text for text in found if "off the path" in text] == []
     aside = np.cross(second - center, truth.in_world(truth.fiducials_ras["3"]) / MM_PER_M - center)
     aside *= 0.09 / np.linalg.norm(aside)
     pilot.steer_to(1.4 * (second - center) + center, 0.02)
@@ -369,6 +369,18 @@ def test_straying_from_the_path_to_the_next_point_is_reported_and_staying_on_it_
     pilot.steer_to(1.4 * (second - center) + center, 0.02)
     pilot.step(20)
     assert pilot.presenter.screen.instruction.text.endswith("Now touch point 3.")
+
+
+def test_straying_from_the_path_is_not_reported_where_guidance_has_faded(pilot):
+    pilot.start("task-4")
+    truth = pilot.loop.truth
+    center = truth.in_world(truth.target) / MM_PER_M
+    pilot.touch(truth.in_world(truth.fiducials["1"]) / MM_PER_M, center)
+    pilot.steer_to(center + np.array([0.0, 0.0, 0.25]), 0.02)
+    for aside in ((0.09, 0.0, 0.25), (-0.09, 0.0, 0.25), (0.0, 0.09, 0.25), (0.0, -0.09, 0.25)):
+        pilot.steer_to(center + np.array(aside), 0.02)
+    found = [screen.instruction.text for screen in pilot.watcher.screens]
+    assert [text for text in found if "off the path" in text] == []
 
 
 def test_a_correct_touch_raises_no_alarm_and_names_the_button(pilot):

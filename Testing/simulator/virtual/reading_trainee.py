@@ -62,6 +62,7 @@ class ReadingTrainee:
         self._pressed_at = self._at
         self._tilt = np.zeros(3)
         self._lowered = 0
+        self._is_told_of_paths = False
         self._places = CandidatePoints()
 
     def play(self, limit_s: float) -> None:
@@ -116,8 +117,9 @@ class ReadingTrainee:
         if self._is_away_from_point:
             self._places.is_not_at(self._at)
         if "off the path" in self._instruction:
+            self._is_told_of_paths = True
             self._places.is_off_path(self._at)
-        elif not self._instruction.startswith(("On", "Too", "Wrong")):
+        elif self._is_told_of_paths and not self._instruction.startswith(("On", "Too", "Wrong")):
             self._places.is_on_path(self._at)
         self._read_status()
 

@@ -35,6 +35,8 @@ TOO_MANY_EVENTS = "The view has not read its events; it may come back."
 NOT_TEXT = "Messages must be text."
 ONLY_WATCHES = f"A spectator drives nothing: it may send {incoming.ALIVE} and nothing else."
 MAX_KEYS = 32
+SHIFT_KEYS = frozenset(("ShiftLeft", "ShiftRight"))
+"""Held with others: the slow motion, by default."""
 CLOSE_S = 3.0
 """How long a view has to read its pending messages, and to confirm the end."""
 _BEFORE_EVENTS = (WELCOME, SCENE, CONTROL, SCREEN, PAIRING, SEAT)
@@ -100,7 +102,7 @@ class ViewSocket:
 
     def release_if_silent(self, silent_s: float) -> None:
         if self.held.is_anything_held and self._clock() - self._last_message > silent_s:
-            self.held.release()
+            self.held.release(is_silent=True)
 
     def has_fallen_silent(self, lost_s: float) -> bool:
         """Return, once, whether a view that reports its frames has not been heard for `lost_s`."""
@@ -191,6 +193,7 @@ class HeldInput:
         self._view = view
         self._presenter = presenter
         self._keys: dict[str, None] = {}
+        self._held_in_silence: set[str] = set()
         self._pad: tuple[int, int] | None = None
         self._has_sticks = False
 
@@ -200,7 +203,14 @@ class HeldInput:
         return bool(self._keys) or self._pad is not None or self._has_sticks
 
     def key(self, code: str, is_down: bool, text: str) -> None:
-        """Process a key; no hand holds more than a few, so further ones are ignored."""
+        """Process a key; no hand holds more than a few, so further ones are ignored.
+
+        A Shift key that was down when the view fell silent, and has not come up since, is held
+        still: what is pressed next must not move fast because a computer draws slowly.
+        """
+        self._held_in_silence.discard(code)
+        if is_down and self._held_in_silence:
+            self.key(self._held_in_silence.pop(), True, "")
         if not is_down:
             self._keys.pop(code, None)
         elif code in self._keys or len(self._keys) < MAX_KEYS:
@@ -225,10 +235,12 @@ class HeldInput:
         self._has_sticks = any(translation) or any(rotation) or is_fine
         self._presenter.on_sticks(self._view, translation, rotation, is_fine, yaw_deg)
 
-    def release(self) -> None:
-        """Release everything."""
+    def release(self, is_silent: bool = False) -> None:
+        """Release everything, since the view has left or is silent."""
+        shifts = set(SHIFT_KEYS.intersection(self._keys)) if is_silent else set()
         for code in tuple(self._keys):
             self.key(code, False, "")
+        self._held_in_silence = shifts
         if self._pad is not None:
             axes, buttons = self._pad
             self.pad((0.0,) * axes, (0.0,) * buttons)

@@ -14,7 +14,7 @@ import { headsetModel } from "./device";
 import { Grab } from "./grab";
 import { Hands } from "./hands";
 import { Placement } from "./placement";
-import { SightArrow } from "./sight_arrow";
+import { type ArrowLook, SightArrow } from "./sight_arrow";
 import { Seating } from "./seating";
 import { WornPoses } from "./worn_poses";
 
@@ -22,6 +22,9 @@ const HIGHEST_HZ = 90;
 const MAX_FOVEATION = 1;
 /** Beyond this the direction of the eyes has no way ahead of its own. */
 const STEEP = 0.9;
+/** In the colors that arrows at the page's edge have; that to the tool is slender, as the tool is. */
+const TO_POINT: ArrowLook = { color: 0xffe14a, down: 0.16, radius: 0.007 };
+const TO_TOOL: ArrowLook = { color: 0x8cc8ff, down: 0.22, radius: 0.003 };
 
 export class Headset {
   private readonly camera = new PerspectiveCamera(70, 1, 0.05, 20);
@@ -29,8 +32,10 @@ export class Headset {
   private readonly panels = new RoomPanels();
   private readonly seating = new Seating();
   private readonly grab = new Grab();
-  private readonly arrow = new SightArrow();
+  private readonly arrow = new SightArrow(TO_POINT);
+  private readonly toolArrow = new SightArrow(TO_TOOL);
   private hasArrow = false;
+  private isWorking = false;
   private readonly hands: Hands;
   private readonly worn: WornPoses;
   private base: XRReferenceSpace | null = null;
@@ -39,6 +44,7 @@ export class Headset {
   private shownNews: SceneNews | null = null;
   private readonly ears = { place: new Vector3(), forward: new Vector3(), up: new Vector3() };
   private readonly tip = new Vector3();
+  private readonly point = new Vector3();
 
   constructor(
     private readonly stage: Stage,
@@ -53,7 +59,7 @@ export class Headset {
     this.camera.layers.enable(STATIC);
     this.placement.rig.add(this.camera);
     scene.add(this.placement.rig, this.panels.room);
-    this.panels.room.add(this.arrow.group);
+    this.panels.room.add(this.arrow.group, this.toolArrow.group);
     this.hands = new Hands(renderer.xr, this.placement.rig, this.panels, connection, this.grab, {
       onChosen: (name) => this.choose(name),
       onHovered: (name) => this.panels.hover(name),
@@ -88,6 +94,7 @@ export class Headset {
   end(): void {
     this.panels.dispose();
     this.arrow.dispose();
+    this.toolArrow.dispose();
     this.hands.release();
     this.placement.rig.removeFromParent();
     this.stage.renderer.xr.enabled = false;
@@ -99,7 +106,8 @@ export class Headset {
   }
 
   showScreen(screen: Screen): void {
-    this.hasArrow = screen.menu === null && screen.has_arrow;
+    this.isWorking = screen.menu === null;
+    this.hasArrow = this.isWorking && screen.has_arrow;
     this.panels.show(screen);
     this.hands.isStepped = this.panels.isStepped;
   }
@@ -148,7 +156,9 @@ export class Headset {
     }
     this.hear(model);
     this.panels.closeUp.draw(this.stage, this.panels.room, state);
-    this.arrow.show(model, this.camera, state.next, this.hasArrow);
+    this.arrow.show(this.hasArrow ? model.next(state.next, this.point) : null, this.camera);
+    const isToolWanted = this.isWorking && state.phase !== "idle";
+    this.toolArrow.show((isToolWanted && model.node("tool")?.position) || null, this.camera);
     model.seeThrough(state.translucent.worn);
     this.stage.renderer.render(this.stage.scene, this.camera);
   }

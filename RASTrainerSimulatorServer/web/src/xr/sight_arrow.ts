@@ -1,31 +1,36 @@
-/** An arrow before the eyes toward a next point that is out of sight. */
+/** An arrow before the eyes toward what is out of sight: the next point, or the tool. */
 
 import { ConeGeometry, CylinderGeometry, Group, Mesh, MeshBasicMaterial, type PerspectiveCamera, Vector3 } from "three";
 
-import type { SceneModel } from "../scene/scene_model";
 import { yUp } from "../scene/viewpoint";
 
-/** A point farther from the middle of the view (rad) is out of sight. */
+/** What is farther from the middle of the view (rad) is out of sight. */
 const IN_SIGHT_RAD = 0.45;
-/** Below the middle of the view, where it covers neither the tip nor a panel: in front and down, m. */
+/** Below the middle of the view, where it covers neither the tip nor a panel: in front, m. */
 const AHEAD_M = 0.6;
-const DOWN_M = 0.16;
 const LENGTH_M = 0.1;
-const COLOR = 0xffe14a;
 /** After the panels. */
 const ORDER = 30;
+
+/** How an arrow looks: how far below the middle of the view it is (m), and the radius of its shaft (m). */
+export interface ArrowLook {
+  color: number;
+  down: number;
+  radius: number;
+}
 
 export class SightArrow {
   /** In the room. */
   readonly group = new Group();
-  private readonly point = new Vector3();
+  private readonly place = new Vector3();
   private readonly eyes = new Vector3();
   private readonly gaze = new Vector3();
   private readonly down = new Vector3();
 
-  constructor() {
-    const material = new MeshBasicMaterial({ color: COLOR, toneMapped: false, depthTest: false });
-    const shaft = new Mesh(new CylinderGeometry(0.007, 0.007, 0.6 * LENGTH_M), material);
+  constructor(private readonly look: ArrowLook) {
+    const { color, radius } = look;
+    const material = new MeshBasicMaterial({ color, toneMapped: false, depthTest: false });
+    const shaft = new Mesh(new CylinderGeometry(radius, radius, 0.6 * LENGTH_M), material);
     const head = new Mesh(new ConeGeometry(0.02, 0.4 * LENGTH_M), material);
     shaft.position.y = -0.2 * LENGTH_M;
     head.position.y = 0.3 * LENGTH_M;
@@ -36,19 +41,18 @@ export class SightArrow {
     this.group.visible = false;
   }
 
-  /** Point at a fiducial, or without one at the place to draw next, for eyes at `camera`. */
-  show(model: SceneModel, camera: PerspectiveCamera, label: string | null, isWanted: boolean): void {
-    const found = isWanted ? model.next(label, this.point) : null;
+  /** Point at a place in World, m, if it is out of the sight of eyes at `camera`; null for none. */
+  show(found: Vector3 | null, camera: PerspectiveCamera): void {
     this.group.visible = false;
     if (found === null) return;
     camera.getWorldPosition(this.eyes);
     camera.getWorldDirection(this.gaze);
-    yUp(this.point);
-    if (this.gaze.angleTo(this.down.subVectors(this.point, this.eyes)) <= IN_SIGHT_RAD) return;
+    yUp(this.place.copy(found));
+    if (this.gaze.angleTo(this.down.subVectors(this.place, this.eyes)) <= IN_SIGHT_RAD) return;
     this.group.visible = true;
-    this.down.setFromMatrixColumn(camera.matrixWorld, 1).multiplyScalar(-DOWN_M);
+    this.down.setFromMatrixColumn(camera.matrixWorld, 1).multiplyScalar(-this.look.down);
     this.group.position.copy(this.eyes).addScaledVector(this.gaze, AHEAD_M).add(this.down);
-    this.group.quaternion.setFromUnitVectors(UP, this.point.sub(this.group.position).normalize());
+    this.group.quaternion.setFromUnitVectors(UP, this.place.sub(this.group.position).normalize());
   }
 
   dispose(): void {

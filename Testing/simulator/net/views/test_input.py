@@ -71,6 +71,28 @@ def test_inputs_held_by_a_view_that_falls_silent_are_released(serve, connect, me
     assert ("view_left", number) not in calls, "it may go on watching"
 
 
+def test_slow_motion_that_is_held_while_a_view_is_silent_goes_on_with_the_next_key(serve, connect):
+    served = serve(silent_s=0.05)
+    view = connect(served)
+    number = view.join()["view"]
+    shift = {**KEY, "code": "ShiftLeft", "text": ""}
+    view.send(shift)
+    served.wait_for_call("on_key", number, "ShiftLeft", False, "")
+    view.send(KEY)
+    calls = served.wait_for_call("on_key", number, "KeyW", True, "w")
+    assert calls[calls.index(("on_key", number, "KeyW", True, "w")) - 1][2:] == (
+        "ShiftLeft",
+        True,
+        "",
+    )
+    for message in ({**shift, "isDown": False}, {**KEY, "isDown": False}, {**KEY, "code": "KeyA"}):
+        view.send(message)
+    calls = served.wait_for_call("on_key", number, "KeyA", True, "w")
+    assert calls[-1] == ("on_key", number, "KeyA", True, "w")
+    pressed = [call for call in calls if call[2:] == ("ShiftLeft", True, "")]
+    assert len(pressed) == 2
+
+
 def test_a_view_that_stops_reporting_frames_counts_as_a_frozen_picture(serve, connect):
     served = serve(lost_s=0.05)
     view = connect(served)
