@@ -16,7 +16,7 @@ from rastrainer.study.protocol.steps import StepKind
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
-from Testing.domain.trial.trial_records import make_aborted
+from Testing.domain.trial.trial_records import gentle_score, make_aborted
 
 SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "published-protocol.json"
 STARTED = "2999-01-01T10:00:00Z"
@@ -173,7 +173,8 @@ def test_a_stored_trial_is_counted_even_if_it_arrived_while_slicer_was_closed(
                 mode="hmd",
                 startedUtc=STARTED,
                 completedUtc=STARTED,
-            )
+            ),
+            score=gentle_score(110.0, 0.5),
         )
     again = Lab(enrolled.room, tmp_path)
     again.trainees.choose("T001")
@@ -342,7 +343,7 @@ def test_a_trial_of_an_unselected_trainee_counts_and_the_simulator_is_sent_the_n
         startedUtc=STARTED,
         completedUtc=STARTED,
     )
-    enrolled.trainees.study.add_trial(record)
+    enrolled.trainees.study.add_trial(record, score=gentle_score(110.0, 0.5))
     enrolled.logic.countTrial(TrialRecord.from_json(record))
     enrolled.room.run_until(lambda: sent_step(enrolled).get("task") == "task-2")
     assert sent_step(enrolled)["trainee"] == "T001"
@@ -361,7 +362,8 @@ def test_a_late_trial_counts_before_the_next_step_is_sent(enrolled, make_record,
                 mode="hmd",
                 startedUtc=STARTED,
                 completedUtc=STARTED,
-            )
+            ),
+            score=gentle_score(110.0, 0.5),
         )
     enrolled.room.link.disconnect()
     before = len(enrolled.room.sent("StudyStep"))

@@ -6,6 +6,7 @@ from typing import Any
 
 import slicer
 
+from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import buttonTitle, shortName, toolTip
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
@@ -40,7 +41,6 @@ from rastrainer.slicer.settings import (
     SLICES_FOLLOW_TOOL,
     SLICES_SHOW_NEXT_POINT,
 )
-from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 from rastrainer.study.outcomes import task_title
 
@@ -70,12 +70,11 @@ NEARNESS = {
 }
 
 
-class TrainingPanel:
-    """Wires the section's widgets to the session."""
+class TrainingPanel(Panel):
+    """The section Training."""
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
-        self._ui = ui
-        self._session = session
+        super().__init__(ui, session)
         self._logic = session.training
         modes = [(_("Desktop screen"), Mode.DESKTOP.value), (_("Headset"), Mode.HMD.value)]
         keepChosen(ui.modeComboBox, modes, session.settings, MODE)
@@ -87,8 +86,8 @@ class TrainingPanel:
         ui.startTrialRunButton.connect("clicked()", self.startTrialRun)
         ui.startTaskButton.connect("clicked()", self.startTask)
         connectAsPressed(ui.pauseButton, lambda: self.resume if self._isPaused() else self.pause)
-        ui.abortButton.connect("clicked()", self.abort)
-        self._listening = Listening(
+        connectClick(ui.abortButton, self.abort, _("The trial was not aborted."))
+        self.listen(
             (self._logic.changed, self.showState),
             (self._logic.answered, self._showMessage),
             (session.trials.problemFound, self._showMessage),
@@ -102,10 +101,6 @@ class TrainingPanel:
         self._showChoices()
         self._moveSlices()
         self.showState()
-
-    def close(self) -> None:
-        """Stop listening to the session."""
-        self._listening.close()
 
     def startTrialRun(self) -> None:
         """Start the trial run, which does not count."""
@@ -126,13 +121,12 @@ class TrainingPanel:
 
     def abort(self) -> None:
         """End the trial without registering it, after asking."""
-        with showErrors(_("The trial was not aborted.")):
-            trial = self._logic.progress
-            question = _("Abort the trial of {name}? Its touches will not be registered.").format(
-                name=shortName(trial.trainee)
-            )
-            if slicer.util.confirmYesNoDisplay(toolTip(question), _("Abort the trial")):
-                self._logic.abort(trial.trialId)
+        trial = self._logic.progress
+        question = _("Abort the trial of {name}? Its touches will not be registered.").format(
+            name=shortName(trial.trainee)
+        )
+        if slicer.util.confirmYesNoDisplay(toolTip(question), _("Abort the trial")):
+            self._logic.abort(trial.trialId)
 
     def _showChoices(self) -> None:
         """Offer what the chosen scenario has; another scenario begins with fiducials alone."""

@@ -14,6 +14,7 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.panels.plain_text import LONGEST_TEXT, shortened, shortName, toolTip, wrappable
 from rastrainer.panels.section_layout import configureLabel
+from rastrainer.panels.shown_errors import guardedAction
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
@@ -234,8 +235,10 @@ class CancelableWork:
             self.isUnderWay = False
             self._showUsable()
 
-    def connectButton(self, button: Any, start: Callable[[], None]) -> None:
-        connectAsPressed(button, lambda: self.cancel if self.isUnderWay else start)
+    def connectButton(self, button: Any, start: Callable[[], None], failure: str) -> None:
+        """Have a click start or cancel work; `failure` says what was not done where it fails."""
+        guarded = guardedAction(start, failure)
+        connectAsPressed(button, lambda: self.cancel if self.isUnderWay else guarded)
 
     def cancel(self) -> None:
         """Cancel the running work, when it next reports its progress."""

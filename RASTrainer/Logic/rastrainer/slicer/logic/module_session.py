@@ -136,9 +136,7 @@ class ModuleSession:
         self.files = scenarioLoader(scene, self.work)
         self.scenarioMaker = ScenarioMaker(scene, self.simulator, cache, places.library, run)
         self.scenarioFiles = ScenarioFiles(self.simulator, cache, places.library)
-        self.training = TrainingLogic(
-            scene, self.link, cache.find, later=self.work.changeScene
-        )
+        self.training = TrainingLogic(scene, self.link, cache.find, later=self.work.changeScene)
         self.slices = SliceFollower(scene, self.training, later=self.work.later)
         self.study = StudyLogic(self.trainees, self.training, self.link)
         self.curriculum = CurriculumLogic(self.trainees, self.link)

@@ -267,6 +267,7 @@ def _played_for(
             and trial not in counted
             and when >= since
             and not step.objections(find_record(connection, trial))
+            and _can_be_scored(connection, trial)
         ),
         None,
     )
@@ -275,6 +276,14 @@ def _played_for(
     aborted = aborted_before(connection, pseudonym, progress)
     is_repeat = any(moment(record.started_utc) <= found[0] for record in aborted)
     return None if is_repeat else found[1]
+
+
+def _can_be_scored(connection: Connection, trial_id: str) -> bool:
+    """Return whether a trial was registered or scored; without registration it gets no score."""
+    return any(
+        connection.execute(f"SELECT 1 FROM {table} WHERE trial_id = ?", (trial_id,)).fetchone()
+        for table in ("registrations", "scores")
+    )
 
 
 def _trials_of(connection: Connection, pseudonym: str) -> list[tuple[Any, ...]]:
