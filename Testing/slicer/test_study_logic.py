@@ -66,7 +66,7 @@ class Lab:
         """Have the simulator send the state of a trial, and wait until the logic has it."""
         state = {"trainee": "T001", "task": "trial-run", "mode": "hmd", **changes}
         self.room.tell(**state)
-        self.room.run_until(lambda: state.items() <= vars(self.room.logic.progress).items())
+        self.room.run_until(lambda: state.items() <= vars(self.room.logic.status).items())
 
 
 @pytest.fixture
@@ -212,7 +212,7 @@ def test_a_trial_of_a_step_with_a_procedure_is_started_with_it(lab):
     state = {"phase": "running", "task": "task-1", "mode": "desktop", "trainee": "T001"}
     for name, is_asked in (("dbs", True), ("biopsy", False)):
         lab.room.tell(**state, procedure={"name": name})
-        lab.room.run_until(lambda name=name: lab.room.logic.progress.procedure == name)
+        lab.room.run_until(lambda name=name: lab.room.logic.status.procedure == name)
         assert (lab.logic.offProtocolSentence() == "") is is_asked
     assert "with the procedure biopsy" in lab.logic.offProtocolSentence()
 

@@ -124,7 +124,7 @@ class NextStepPanel(Panel):
 
     def _situation(self) -> WorkflowState:
         session, ui = self._session, self._ui
-        simulator, trial, study = session.simulator, session.training.progress, self._studyStep
+        simulator, trial, study = session.simulator, session.training.status, self._studyStep
         return WorkflowState(
             # Reported at once, before downloading a simulator to which no connection is possible.
             link=session.link.status if session.link.isInstalled else notInstalled(),
@@ -157,7 +157,7 @@ class NextStepPanel(Panel):
         setText(ui.linkText, WORDS[now.link.state])
         trainee, task = self._trainee, now.taskTitle
         if now.link.state is LinkState.CONNECTED and now.phase in OPEN_PHASES:
-            trial = self._session.training.progress
+            trial = self._session.training.status
             trainee, task = trial.trainee, self._titleOf(trial.task)
         setText(ui.nowTraineeText, shortName(trainee) or _("No trainee"))
         setText(ui.nowTaskText, shortName(task))

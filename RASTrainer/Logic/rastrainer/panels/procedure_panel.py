@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from rastrainer.number_text import fixed
 from rastrainer.panels.panel import Panel
 from rastrainer.panels.shown_errors import showErrors
-from rastrainer.panels.widgets import fillTable, keepChecked, setText, setUsable
+from rastrainer.panels.widgets import bindChecked, fillTable, setText, setUsable
 from rastrainer.procedure.errors import TrajectoryErrors
 from rastrainer.protocol import CommandName, Phase
 from rastrainer.slicer.link.link_status import LinkState
@@ -100,7 +100,7 @@ class ProcedurePanel(Panel):
         super().__init__(ui, session)
         self._logic = session.procedure
         self._shown: ProcedureOutcome | None = None
-        keepChecked(ui.slicesAlongCheckBox, session.settings, SLICES_LIE_ALONG)
+        bindChecked(ui.slicesAlongCheckBox, session.settings, SLICES_LIE_ALONG)
         ui.slicesAlongCheckBox.connect("toggled(bool)", self._laySlices)
         for step in STEPS:
             getattr(ui, step.button).connect("clicked()", self._action(step))

@@ -11,10 +11,10 @@ from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import buttonTitle
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
+    bindChecked,
+    bindChosen,
     chosenData,
     fillTable,
-    keepChecked,
-    keepChosen,
     setChecked,
     setText,
     setUsable,
@@ -44,7 +44,7 @@ class RegistrationPanel(Panel):
         self._remedyWidgets: list[Any] = []
         self._labels: tuple[str, ...] = ()
         entries = [(title, kind) for kind, title in TITLES.items()]
-        keepChosen(ui.kindComboBox, entries, session.settings, FIT)
+        bindChosen(ui.kindComboBox, entries, session.settings, FIT)
         self._logic.kind = chosenData(ui.kindComboBox)
         ui.kindComboBox.connect("activated(int)", self._chooseKind)
         for combo in (ui.movingComboBox, ui.fixedComboBox):
@@ -56,7 +56,7 @@ class RegistrationPanel(Panel):
         connectClick(ui.undoButton, lambda: self._logic.undo(), _("Nothing was undone."))
         ui.appliedCheckBox.connect("toggled(bool)", self._apply)
         ui.headColoredCheckBox.connect("toggled(bool)", self._logic.setHeadColored)
-        keepChecked(ui.headColoredCheckBox, session.settings, IS_HEAD_COLORED)
+        bindChecked(ui.headColoredCheckBox, session.settings, IS_HEAD_COLORED)
         self._woken = session.woken
         self.listen((self._logic.changed, self._show), (session.sceneChanged, self._showApplied))
         self._show()

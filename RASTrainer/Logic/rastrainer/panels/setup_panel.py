@@ -9,7 +9,7 @@ import slicer
 from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.shown_errors import showErrors
-from rastrainer.panels.widgets import connectAsPressed, keepPath, keepText, setText, setUsable
+from rastrainer.panels.widgets import bindPath, bindText, connectAsPressed, setText, setUsable
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from rastrainer.slicer.settings import INDEX, PROGRAM, WHEELS
@@ -22,9 +22,9 @@ class SetupPanel(Panel):
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
         self._simulator = session.simulator
-        keepText(ui.indexLineEdit, session.settings, INDEX)
-        keepPath(ui.wheelsPathLineEdit, session.settings, WHEELS)
-        keepPath(ui.programPathLineEdit, session.settings, PROGRAM)
+        bindText(ui.indexLineEdit, session.settings, INDEX)
+        bindPath(ui.wheelsPathLineEdit, session.settings, WHEELS)
+        bindPath(ui.programPathLineEdit, session.settings, PROGRAM)
         ui.indexLineEdit.connect("textChanged(QString)", self._showSetup)
         ui.wheelsPathLineEdit.connect("currentPathChanged(QString)", self._showSetup)
         setup = self._simulator.setup

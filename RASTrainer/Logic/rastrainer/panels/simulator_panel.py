@@ -13,10 +13,10 @@ from rastrainer.panels.setup_panel import costSentence
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
     LINK_COLORS,
+    bindChecked,
+    bindNumber,
+    bindText,
     connectAsPressed,
-    keepChecked,
-    keepNumber,
-    keepText,
     setLight,
     setText,
     setUsable,
@@ -36,10 +36,10 @@ class SimulatorPanel(Panel):
         super().__init__(ui, session)
         self._link = session.link
         self._simulator = session.simulator
-        keepText(ui.hostLineEdit, session.settings, HOST)
-        keepNumber(ui.portSpinBox, session.settings, PORT)
-        keepChecked(ui.windowCheckBox, session.settings, HAS_WINDOW)
-        keepChecked(ui.networkCheckBox, session.settings, HAS_NETWORK)
+        bindText(ui.hostLineEdit, session.settings, HOST)
+        bindNumber(ui.portSpinBox, session.settings, PORT)
+        bindChecked(ui.windowCheckBox, session.settings, HAS_WINDOW)
+        bindChecked(ui.networkCheckBox, session.settings, HAS_NETWORK)
         self._startsAfterSetup = False
         ui.startSimulatorButton.connect("clicked()", self.startAndConnect)
         connectClick(

@@ -135,7 +135,7 @@ class StudyPanel(Panel):
     def _followTrial(self) -> None:
         """Warn, once for each trial, of one that will not count."""
         self._showButtons()
-        trial = self._session.training.progress
+        trial = self._session.training.status
         key = (trial.trainee, trial.task, trial.mode, trial.method, trial.procedure, trial.isOpen)
         if key != self._judged:
             self._judged = key

@@ -14,11 +14,11 @@ from rastrainer.panels.widgets import (
     GREEN,
     RED,
     YELLOW,
+    bindChecked,
+    bindChosen,
     chosenData,
     connectAsPressed,
     fillComboBox,
-    keepChecked,
-    keepChosen,
     setLight,
     setProperty,
     setText,
@@ -77,10 +77,10 @@ class TrainingPanel(Panel):
         super().__init__(ui, session)
         self._logic = session.training
         modes = [(_("Desktop screen"), Mode.DESKTOP.value), (_("Headset"), Mode.HMD.value)]
-        keepChosen(ui.modeComboBox, modes, session.settings, MODE)
-        keepChecked(ui.tutorialCheckBox, session.settings, IS_TUTORIAL_FIRST)
-        keepChecked(ui.slicesNextPointCheckBox, session.settings, SLICES_SHOW_NEXT_POINT)
-        keepChecked(ui.slicesToolCheckBox, session.settings, SLICES_FOLLOW_TOOL)
+        bindChosen(ui.modeComboBox, modes, session.settings, MODE)
+        bindChecked(ui.tutorialCheckBox, session.settings, IS_TUTORIAL_FIRST)
+        bindChecked(ui.slicesNextPointCheckBox, session.settings, SLICES_SHOW_NEXT_POINT)
+        bindChecked(ui.slicesToolCheckBox, session.settings, SLICES_FOLLOW_TOOL)
         for box in (ui.slicesNextPointCheckBox, ui.slicesToolCheckBox):
             box.connect("toggled(bool)", self._moveSlices)
         ui.startTrialRunButton.connect("clicked()", self.startTrialRun)
@@ -121,7 +121,7 @@ class TrainingPanel(Panel):
 
     def abort(self) -> None:
         """End the trial without registering it, after asking."""
-        trial = self._logic.progress
+        trial = self._logic.status
         question = _("Abort the trial of {name}? Its touches will not be registered.").format(
             name=shortName(trial.trainee)
         )
@@ -158,7 +158,7 @@ class TrainingPanel(Panel):
 
     def showState(self, *_arguments: Any) -> None:
         """Show the state of the trial."""
-        ui, progress, session = self._ui, self._logic.progress, self._session
+        ui, progress, session = self._ui, self._logic.status, self._session
         nobody = _("None: choose one in the section Trainees.")
         setText(ui.trainingTraineeText, session.trainees.chosen or nobody)
         title = _("Start {task}").format(task=buttonTitle(session.taskTitle))
@@ -188,7 +188,7 @@ class TrainingPanel(Panel):
 
     def _showTime(self) -> None:
         if self._session.link.status.state is LinkState.CONNECTED:
-            setText(self._ui.elapsedText, _clock(self._logic.progress.elapsedS))
+            setText(self._ui.elapsedText, _clock(self._logic.status.elapsedS))
 
     def _start(self, task: str, procedure: str = "", method: str = "") -> None:
         with showErrors(_("The trial was not started.")):
@@ -197,7 +197,7 @@ class TrainingPanel(Panel):
             self._session.study.startTrial(task, mode, isTutorialFirst, procedure, method)
 
     def _isPaused(self) -> bool:
-        return self._logic.progress.phase == Phase.PAUSED.value
+        return self._logic.status.phase == Phase.PAUSED.value
 
     def _showButtons(self, progress: TrialStatus, isConnected: bool) -> None:
         ui = self._ui

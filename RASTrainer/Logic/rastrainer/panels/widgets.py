@@ -157,27 +157,27 @@ def millimeters(value: float | None, digits: int = 2) -> str:
     return "–" if value is None else f"{value:.{digits}f} mm"
 
 
-def keepChecked(box: Any, settings: Settings, setting: Setting[bool]) -> None:
+def bindChecked(box: Any, settings: Settings, setting: Setting[bool]) -> None:
     box.checked = settings.get(setting)
     box.connect("toggled(bool)", lambda checked: settings.set(setting, checked))
 
 
-def keepText(edit: Any, settings: Settings, setting: Setting[str]) -> None:
+def bindText(edit: Any, settings: Settings, setting: Setting[str]) -> None:
     edit.text = settings.get(setting)
     edit.connect("textChanged(QString)", lambda text: settings.set(setting, text))
 
 
-def keepNumber(box: Any, settings: Settings, setting: Setting[int]) -> None:
+def bindNumber(box: Any, settings: Settings, setting: Setting[int]) -> None:
     box.value = settings.get(setting)
     box.connect("valueChanged(int)", lambda value: settings.set(setting, value))
 
 
-def keepPath(edit: Any, settings: Settings, setting: Setting[str]) -> None:
+def bindPath(edit: Any, settings: Settings, setting: Setting[str]) -> None:
     edit.currentPath = settings.get(setting)
     edit.connect("currentPathChanged(QString)", lambda path: settings.set(setting, path))
 
 
-def keepChosen(
+def bindChosen(
     combo: Any, entries: Sequence[tuple[str, str]], settings: Settings, setting: Setting[str]
 ) -> None:
     """Let a combo box of these entries (text, data) keep the data of the chosen one."""

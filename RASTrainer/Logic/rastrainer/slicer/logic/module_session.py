@@ -318,7 +318,7 @@ class ModuleSession:
         self.woken.emit()
 
     def _isTrialOpen(self) -> bool:
-        return self.link.isOpen and self.training.progress.isOpen
+        return self.link.isOpen and self.training.status.isOpen
 
     def _showTrainees(self) -> None:
         """Let each panel show what is new in the study, in a separate turn."""
@@ -326,7 +326,7 @@ class ModuleSession:
             self.work.later(listener)
 
     def _takeScored(self, analysis: TrialAnalysis) -> None:
-        record, present = analysis.record, self.training.progress
+        record, present = analysis.record, self.training.status
         self.plan.takeTruth(analysis)
         isOtherOpen = self._isTrialOpen() and present.trialId != record.trial_id
         self.procedure.takeScored(analysis, isOtherOpen)

@@ -12,7 +12,7 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.protocol import CommandName
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic.practice_watch import PracticeWatch
+from rastrainer.slicer.logic.practice_monitor import PracticeMonitor
 from rastrainer.slicer.logic.trainee_logic import TraineeLogic
 from rastrainer.slicer.logic.training_logic import TrainingLogic, TrialStatus
 from rastrainer.slicer.signal import Listening, Signal
@@ -56,7 +56,7 @@ class StudyLogic:
         self._sentSteps: dict[str, StudyStep] = {}
         self._ledStudy: Study | None = None
         self._breaks: dict[str, datetime] = {}
-        self._watch = PracticeWatch(trainees, training, link, self._leadAgain)
+        self._watch = PracticeMonitor(trainees, training, link, self._leadAgain)
         self._listening = Listening(
             (trainees.changed, self._followTrainees),
             (link.opened, self._sendAll),
@@ -143,7 +143,7 @@ class StudyLogic:
 
     def offProtocolSentence(self) -> str:
         """Return a sentence while an enrolled trainee plays what the study has not requested."""
-        trial = self._training.progress
+        trial = self._training.status
         if not trial.isOpen or trial.trainee not in StudyProgress(self._trainees.study).enrolled():
             return ""
         try:
