@@ -181,12 +181,7 @@ class LandmarkLogic:
         self._files = files
 
     def propose(self, scenario: Scenario, progress: Progress = no_progress) -> str:
-        """Replace the landmarks in the scene by proposed ones; return a sentence about them.
-
-        Args:
-            scenario: whose head it is.
-            progress: see `ScenarioFiles`.
-        """
+        """Replace the landmarks in the scene by proposed ones; return a sentence about them."""
         with tempfile.TemporaryDirectory() as temporary:
             path = Path(temporary) / FILE
             words = ["landmarks", str(scenario.folder), str(path), "--propose"]
@@ -197,12 +192,7 @@ class LandmarkLogic:
         return sentence
 
     def check(self, scenario: Scenario, progress: Progress = no_progress) -> str:
-        """Return the faults of the landmarks on the head of a scenario, or that there are none.
-
-        Args:
-            scenario: whose head it is.
-            progress: see `ScenarioFiles`.
-        """
+        """Return the faults of the landmarks on the head of a scenario, or that there are none."""
         with self._written() as path:
             words = ["landmarks", str(scenario.folder), str(path)]
             return self._files.run(words, progress, mayFail=True)
@@ -212,8 +202,6 @@ class LandmarkLogic:
 
         Args:
             scenario: which stays as it is.
-            title: of the copy.
-            progress: see `ScenarioFiles`.
         """
         with self._written() as path:
             plan = ["--landmarks", str(path)]

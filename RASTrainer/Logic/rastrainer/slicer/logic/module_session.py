@@ -59,7 +59,6 @@ class ModuleSession:
 
     Attributes:
         work: background jobs, one after the other.
-        link: to the simulator.
         simulator: its set-up and process.
         trainees: who trains.
         scenario: head, tasks and robot in the scene.
@@ -108,7 +107,6 @@ class ModuleSession:
         """Open a session.
 
         Args:
-            scene: the scene.
             places: where things are.
             findKit: returns what makes the connector; None where it is not installed.
             settings: without them what the user chooses is forgotten at the end.

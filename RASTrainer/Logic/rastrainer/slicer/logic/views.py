@@ -37,7 +37,6 @@ def jumpTo(scene: Any, position: Sequence[float], later: CallLater = callNow) ->
     Their orientation stays.
 
     Args:
-        scene: the scene.
         position: (3,) float, RAS mm.
         later: has each view moved; each cuts the images and all surfaces, the first time for long.
     """
