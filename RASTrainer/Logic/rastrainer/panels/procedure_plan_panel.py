@@ -14,6 +14,7 @@ from rastrainer.panels.widgets import (
     chosenScenario,
     fillComboBox,
     fillTable,
+    offerEntries,
     setProperty,
     setText,
     setUsable,
@@ -289,8 +290,7 @@ class ProcedurePlanPanel(Panel):
         entries = [(title, name) for name, title in self._session.procedures]
         entries.append((_("New procedure"), ""))
         combo = self._ui.procedurePlanComboBox
-        chosen, known = chosenData(combo), [name for _title, name in entries]
-        fillComboBox(combo, entries, chosen if chosen in known and combo.count else known[0])
+        offerEntries(combo, entries, *([chosenData(combo)] if combo.count else []))
         self.showState()
 
     def _showProgress(self, step: str, share: float) -> None:

@@ -20,6 +20,7 @@ from rastrainer.panels.widgets import (
     chosenScenario,
     fillComboBox,
     fillTable,
+    offerEntries,
     setChecked,
     setText,
     setUsable,
@@ -213,11 +214,9 @@ class ScenarioPanel(Panel):
             return
         scenario = self._logic.find(name)
         tasks = [(task.title, task.name) for task in scenario.tasks]
-        known = [task for _title, task in tasks]
-        first = next((task for task in known if task != TRIAL_RUN), known[0])
         last = self._session.task or self._session.settings.get(TASK)
-        chosen = last if last in known else first
-        fillComboBox(self._ui.taskComboBox, tasks, chosen)
+        others = (task for _title, task in tasks if task != TRIAL_RUN)
+        offerEntries(self._ui.taskComboBox, tasks, last, *others)
         self._chooseTask()
 
     def _showPicture(self, entry: ListedScenario | None) -> None:

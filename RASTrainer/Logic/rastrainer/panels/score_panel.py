@@ -15,8 +15,8 @@ from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
     chosenData,
-    fillComboBox,
     fillTable,
+    offerEntries,
     setChecked,
     setText,
     setUsable,
@@ -148,14 +148,9 @@ class ScorePanel(Panel):
             return
         entries = [(_entry(n, t), t.record.trial_id) for n, t in enumerate(history, start=1)]
         entries.reverse()
-        known = [trialId for _title, trialId in entries]
         wanted = self._newTrial or chosenData(self._ui.trialComboBox)
         self._newTrial = ""
-        fillComboBox(
-            self._ui.trialComboBox,
-            entries,
-            wanted if wanted in known else known[0] if known else "",
-        )
+        offerEntries(self._ui.trialComboBox, entries, wanted)
         self._showTrial()
 
     def _showTrial(self, _index: int = 0) -> None:

@@ -18,7 +18,7 @@ from rastrainer.panels.widgets import (
     bindChosen,
     chosenData,
     connectAsPressed,
-    fillComboBox,
+    offerEntries,
     setLight,
     setProperty,
     setText,
@@ -131,12 +131,7 @@ class TrainingPanel(Panel):
     def _showChoices(self) -> None:
         """Offer what the chosen scenario has; another scenario begins with fiducials alone."""
         box, methods = self._ui.methodComboBox, self._session.methods
-        method = chosenData(box)
-        fillComboBox(
-            box,
-            [(METHODS[each], each) for each in methods],
-            method if method in methods else methods[0],
-        )
+        offerEntries(box, [(METHODS[each], each) for each in methods], chosenData(box))
         setUsable(
             box,
             len(methods) > 1,
@@ -145,9 +140,8 @@ class TrainingPanel(Panel):
         )
         entries = [(_("none: only touches"), "")]
         entries += [(title, name) for name, title in self._session.procedures]
-        chosen = chosenData(self._ui.procedureComboBox)
-        known = [name for _title, name in entries]
-        fillComboBox(self._ui.procedureComboBox, entries, chosen if chosen in known else "")
+        box = self._ui.procedureComboBox
+        offerEntries(box, entries, chosenData(box))
         self.showState()
 
     def _moveSlices(self, *_checked: bool) -> None:

@@ -127,6 +127,12 @@ def fillComboBox(combo: Any, entries: Iterable[tuple[str, str]], chosen: str) ->
     combo.blockSignals(wasBlocked)
 
 
+def offerEntries(combo: Any, entries: Sequence[tuple[str, str]], *wanted: str) -> None:
+    """Fill a `QComboBox`, and choose the first wanted entry that is in it, or else the first."""
+    known = [data for _text, data in entries]
+    fillComboBox(combo, entries, next((each for each in (*wanted, *known) if each in known), ""))
+
+
 def isFilled(combo: Any, entries: Iterable[tuple[str, str]]) -> bool:
     shown = [(combo.itemText(i), combo.itemData(i)) for i in range(combo.count)]
     return shown == [(shortName(text), data) for text, data in entries]
@@ -181,9 +187,7 @@ def bindChosen(
     combo: Any, entries: Sequence[tuple[str, str]], settings: Settings, setting: Setting[str]
 ) -> None:
     """Let a combo box of these entries (text, data) keep the data of the chosen one."""
-    chosen = settings.get(setting)
-    known = [data for _text, data in entries]
-    fillComboBox(combo, entries, chosen if chosen in known else setting.usual)
+    offerEntries(combo, entries, settings.get(setting), setting.usual)
     combo.connect("activated(int)", lambda _index: settings.set(setting, chosenData(combo)))
 
 
