@@ -14,7 +14,7 @@ from rastrainer.study.study_data import read_study_data
 from rastrainer.trial.how_played import Allowance, HowPlayed, MovedBy, SeedSource
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.assets import asset_path
-from Testing.domain.trial.trial_records import make_record
+from Testing.domain.trial.trial_records import gentle_score, make_record
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.end_to_end.test_trial_over_openigtlink import SPEED, TASK, Player, play
 
@@ -77,7 +77,8 @@ def test_a_machines_trial_is_stored_but_counts_for_no_step_and_the_report_says_w
     with pytest.raises(InputError, match="a client's commands moved the arm"):
         progress.finish("anna", f"hmd/1/{TASK}", {"trialId": record.trial_id})
     own = make_record(trainee="anna", mode="hmd", startedUtc="2999-01-01T11:00:00Z")
-    study.add_trial(own | {"played": {**vars_of(BY_HAND), "viewS": {"headset": 60}}})
+    played = {"played": {**vars_of(BY_HAND), "viewS": {"headset": 60}}}
+    study.add_trial(own | played, score=gentle_score(110.0, 0.5))
     assert progress.count_played("anna").counted_trials == (own["trialId"],)
     page = report_html(read_study_data(study.database.path))
     assert "Trials that did not count, and why" in page

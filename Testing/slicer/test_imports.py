@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+from itertools import pairwise
 
 import pytest
 
@@ -103,4 +104,4 @@ def test_the_module_opens_in_turns_of_few_imports_each(found):
     counts = [len(found["started"]), *found["counts"]]
     assert counts[-1] == len(found["opened"])
     # A module comes with its packages, and with what it imports within a function.
-    assert max(after - before for before, after in zip(counts, counts[1:], strict=False)) <= 6
+    assert max(after - before for before, after in pairwise(counts)) <= 6

@@ -57,6 +57,29 @@ def test_a_scenarios_landmarks_are_shown_for_editing(host):
     assert host.find("landmarkNameComboBox").currentText == "Left outer canthus"
 
 
+def test_deselected_landmarks_are_left_out_which_is_said_and_kept(host):
+    host.open()
+    host.choose("scenarioComboBox", 0)
+    host.press("showLandmarksButton")
+    node = host.scene.GetFirstNodeByName("Landmarks")
+    node.SetNthControlPointSelected(1, False)
+    host.wait_until(lambda: len(names(host)) == 4, "it is left out")
+    assert "Left tragus" not in names(host)
+    assert "Left out, as they are deselected in the module Markups: Left tragus." in host.text(
+        "landmarksText"
+    )
+    assert "Left tragus" in LandmarkPoints(host.scene).missing
+    host.choose("landmarksTable", 1)
+    host.press("removeLandmarkButton")
+    assert names(host) == ["Nasion", *COLIN27[3:]]
+    host.press("undoLandmarkButton")
+    assert names(host) == ["Nasion", *COLIN27[2:]]
+    assert not node.GetNthControlPointSelected(1)
+    node.SetNthControlPointSelected(1, True)
+    host.wait_until(lambda: names(host) == COLIN27, "it is back")
+    assert "deselected" not in host.text("landmarksText")
+
+
 @pytest.mark.soak
 def test_landmarks_are_proposed_checked_and_saved_by_the_simulators_program(host, tmp_path):
     Story(host, tmp_path).choose_own_program()

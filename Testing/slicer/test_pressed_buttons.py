@@ -72,9 +72,9 @@ class Trial:
     def tell(self, phase, number=5):
         values = {"trialId": str(uuid.UUID(int=number)), "trainee": "T001", "task": "task-1"}
         self.simulator.send(DeviceName.SIM_STATE, String(json.dumps({**values, "phase": phase})))
-        progress = self.host.widget.logic.session.training
+        training = self.host.widget.logic.session.training
         wanted = (phase, values["trialId"])
-        self.wait_until(lambda: (progress.progress.phase, progress.progress.trialId) == wanted)
+        self.wait_until(lambda: (training.status.phase, training.status.trialId) == wanted)
 
     @property
     def commands(self):

@@ -126,7 +126,7 @@ def test_a_scene_that_is_cleared_while_a_scenario_comes_stays_empty(scene, logic
     assert findNode(scene, "vtkMRMLMarkupsFiducialNode", Role.TARGET) is None
 
 
-def test_an_unknown_task_is_reported_before_anything_is_shown(scene, logic, work):
+def test_an_unknown_task_is_reported_before_anything_is_shown(logic, work):
     with pytest.raises(InputError, match="no such task"):
         logic.show("ball", "task-9")
     assert not work.isBusy

@@ -17,7 +17,7 @@ from rastrainer.study.database.values import moment
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
-from Testing.domain.trial.trial_records import make_aborted
+from Testing.domain.trial.trial_records import gentle_score, make_aborted
 
 SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "published-protocol.json"
 STARTED = "2999-01-01T10:00:00Z"
@@ -67,7 +67,7 @@ class Lab:
         """Have the simulator send the state of a trial, and wait until the logic has it."""
         state = {"trainee": "T001", "task": "trial-run", "mode": "hmd", **changes}
         self.room.tell(**state)
-        self.room.run_until(lambda: state.items() <= vars(self.room.logic.progress).items())
+        self.room.run_until(lambda: state.items() <= vars(self.room.logic.status).items())
 
 
 @pytest.fixture
@@ -174,7 +174,8 @@ def test_a_stored_trial_is_counted_even_if_it_arrived_while_slicer_was_closed(
                 mode="hmd",
                 startedUtc=STARTED,
                 completedUtc=STARTED,
-            )
+            ),
+            score=gentle_score(110.0, 0.5),
         )
     again = Lab(enrolled.room, tmp_path)
     again.trainees.choose("T001")
@@ -212,7 +213,7 @@ def test_a_trial_of_a_step_with_a_procedure_is_started_with_it(lab):
     state = {"phase": "running", "task": "task-1", "mode": "desktop", "trainee": "T001"}
     for name, is_asked in (("dbs", True), ("biopsy", False)):
         lab.room.tell(**state, procedure={"name": name})
-        lab.room.run_until(lambda name=name: lab.room.logic.progress.procedure == name)
+        lab.room.run_until(lambda name=name: lab.room.logic.status.procedure == name)
         assert (lab.logic.offProtocolSentence() == "") is is_asked
     assert "with the procedure biopsy" in lab.logic.offProtocolSentence()
 
@@ -343,8 +344,13 @@ def test_a_trial_of_an_unselected_trainee_counts_and_the_simulator_is_sent_the_n
         startedUtc=STARTED,
         completedUtc=STARTED,
     )
+<<<<<<< HEAD
     enrolled.trainees.study.add_trial(record)
     enrolled.logic.countTrial(record_from_json(TrialRecord, record))
+=======
+    enrolled.trainees.study.add_trial(record, score=gentle_score(110.0, 0.5))
+    enrolled.logic.countTrial(TrialRecord.from_json(record))
+>>>>>>> slicer
     enrolled.room.run_until(lambda: sent_step(enrolled).get("task") == "task-2")
     assert sent_step(enrolled)["trainee"] == "T001"
 
@@ -362,7 +368,8 @@ def test_a_late_trial_counts_before_the_next_step_is_sent(enrolled, make_record,
                 mode="hmd",
                 startedUtc=STARTED,
                 completedUtc=STARTED,
-            )
+            ),
+            score=gentle_score(110.0, 0.5),
         )
     enrolled.room.link.disconnect()
     before = len(enrolled.room.sent("StudyStep"))

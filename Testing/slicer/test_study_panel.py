@@ -13,7 +13,8 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.questionnaires import SSQ
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.trial.aborted_trial import AbortedTrial
-from Testing.domain.trial.trial_records import make_aborted
+from rastrainer.trial.record import TrialRecord
+from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record
 
 SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "published-protocol.json"
 
@@ -108,6 +109,30 @@ def test_a_step_is_skipped_only_with_a_reason_and_started_only_in_its_turn(begun
     begun.press("createTraineeButton")
     begun.choose("traineeComboBox", "T001")
     assert outcomes(begun)[:2] == ["skipped: the sheets were missing", "next"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "score", "reason"),
+    [
+        ({"display": {"ghost": "best"}}, gentle_score(110.0, 0.5), "the ghost 'best' was shown"),
+        ({}, None, "it cannot be registered, and so not scored"),
+    ],
+)
+def test_the_panel_says_why_a_trial_did_not_count(begun, changes, score, reason):
+    study = begun.widget.logic.session.study
+    while study.progress().next_step.kind is not StepKind.TRIAL:
+        begun.answer("Why is it skipped?", "this is not what is tested")
+        begun.press("skipStepButton")
+    assert "did not count" not in begun.text("stepText")
+    step, started = study.progress().next_step, datetime.now(timezone.utc).isoformat()
+    record = make_record(
+        trainee="T001", mode=step.mode, task=step.task, startedUtc=started, **changes
+    )
+    with Study.open(begun.find("studyPathLineEdit").currentPath) as elsewhere:
+        elsewhere.add_trial(record, score=score)
+    study.countTrial(TrialRecord.from_json(record))
+    assert f"The last trial did not count: {reason}." in begun.text("stepText")
+    assert study.progress().next_step == step
 
 
 def test_an_aborted_trial_is_played_again_only_with_a_reason(begun):

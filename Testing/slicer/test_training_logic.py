@@ -110,38 +110,38 @@ def test_touches_appear_on_the_planned_head_while_the_trial_runs(room, scenario)
     np.testing.assert_allclose(matrixOf(transform) @ scenario.head_to_world, np.eye(4), atol=1e-9)
     shown = capturedPointsNode(room.scene).GetNthControlPointPositionWorld(0)
     np.testing.assert_allclose(shown, fiducial, atol=1e-3)
-    assert room.logic.progress.touched == 1
+    assert room.logic.status.touched == 1
 
 
 def test_progress_contains_the_next_point_the_proximity_and_the_running_time(room):
     room.tell(nextPoint="4", proximity="proximity", elapsedS=30.0)
-    room.run_until(lambda: room.logic.progress.nextPoint == "4")
+    room.run_until(lambda: room.logic.status.nextPoint == "4")
     room.now += 5.0
-    progress = room.logic.progress
+    progress = room.logic.status
     assert (progress.proximity, progress.isOpen) == ("proximity", True)
     assert progress.elapsedS == 35.0
     room.tell(phase="paused", elapsedS=36.0)
-    room.run_until(lambda: room.logic.progress.phase == "paused")
+    room.run_until(lambda: room.logic.status.phase == "paused")
     room.now += 5.0
-    assert room.logic.progress.elapsedS == 36.0
+    assert room.logic.status.elapsedS == 36.0
 
 
 def test_a_cleared_scene_does_not_turn_back_the_trials_clock(room):
     room.tell(elapsedS=30.0)
-    room.run_until(lambda: room.logic.progress.phase == "running")
+    room.run_until(lambda: room.logic.status.phase == "running")
     room.now += 5.0
     room.scene.Clear(False)
     room.logic.forgetScene()
-    assert room.logic.progress.elapsedS == 35.0
+    assert room.logic.status.elapsedS == 35.0
 
 
 def test_a_trial_is_paused_resumed_and_aborted(room):
     room.tell()
-    room.run_until(lambda: room.logic.progress.phase == "running")
+    room.run_until(lambda: room.logic.status.phase == "running")
     room.logic.pause()
     room.run_until(lambda: room.sent("Pause"))
     room.tell(phase="paused")
-    room.run_until(lambda: room.logic.progress.phase == "paused")
+    room.run_until(lambda: room.logic.status.phase == "paused")
     room.logic.resume()
     room.run_until(lambda: room.sent("Resume"))
     room.logic.abort(TRIAL)
@@ -151,9 +151,9 @@ def test_a_trial_is_paused_resumed_and_aborted(room):
 
 def test_a_trial_started_during_the_question_about_another_is_not_aborted(room):
     room.tell()
-    room.run_until(lambda: room.logic.progress.trialId == TRIAL)
+    room.run_until(lambda: room.logic.status.trialId == TRIAL)
     room.tell(trialId="another")
-    room.run_until(lambda: room.logic.progress.trialId == "another")
+    room.run_until(lambda: room.logic.status.trialId == "another")
     with pytest.raises(InputError, match="was not aborted"):
         room.logic.abort(TRIAL)
     assert room.all_sent("Abort") == []
@@ -180,6 +180,6 @@ def test_a_cleared_scene_gets_the_running_trial_back(room):
 
 def test_invalid_numbers_are_ignored(room):
     room.tell(elapsedS=None, nextPoint=None)
-    room.run_until(lambda: room.logic.progress.phase == "running")
-    progress = room.logic.progress
+    room.run_until(lambda: room.logic.status.phase == "running")
+    progress = room.logic.status
     assert progress.nextPoint == ""

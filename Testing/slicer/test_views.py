@@ -36,7 +36,7 @@ def play(room, follower, point, task="task-1"):
     """Have the simulator send the next point."""
     room.tell(nextPoint=point, task=task)
     wanted = (point, task)
-    room.run_until(lambda: (room.logic.progress.nextPoint, room.logic.progress.task) == wanted)
+    room.run_until(lambda: (room.logic.status.nextPoint, room.logic.status.task) == wanted)
     room.run_until(lambda: room.node(Role.FIXED_FIDUCIALS) is not None)
     follower.process()
 
@@ -73,7 +73,7 @@ def test_the_first_point_of_another_task_is_shown_once_its_fiducials_are(room, f
     showTask(room.scene, scenario, "task-2")
     jumpTo(room.scene, (1.0, 2.0, 3.0))
     room.tell(nextPoint="1", task="task-1", phase="running", trialId="")
-    room.run_until(lambda: room.logic.progress.nextPoint == "1")
+    room.run_until(lambda: room.logic.status.nextPoint == "1")
     follower.process()
     np.testing.assert_allclose(place(room.scene), [1, 2, 3])
     showTask(room.scene, scenario, "task-1")
@@ -88,7 +88,7 @@ def test_the_slices_stay_where_they_are_on_request_or_without_a_trial(room, foll
     np.testing.assert_allclose(place(room.scene), [1, 2, 3])
     follower.showsNextPoint = True
     room.tell(phase="idle", nextPoint="1")
-    room.run_until(lambda: room.logic.progress.phase == "idle")
+    room.run_until(lambda: room.logic.status.phase == "idle")
     follower.process()
     np.testing.assert_allclose(place(room.scene), [1, 2, 3])
 
@@ -211,7 +211,7 @@ def test_the_slices_align_with_drill_and_instrument_and_are_then_restored(room, 
     direction /= np.linalg.norm(direction)
     put_instrument(room.scene, TIP, direction)
     room.tell(phase="drilling")
-    room.run_until(lambda: room.logic.progress.phase == "drilling")
+    room.run_until(lambda: room.logic.status.phase == "drilling")
     assert follower.needsPoses
     follower.process()
     to_head = transforms.inverse(scenario.head_to_world)
@@ -224,7 +224,7 @@ def test_the_slices_align_with_drill_and_instrument_and_are_then_restored(room, 
         turned = np.linalg.det(axes[:, :3]), np.linalg.det(before[name])
         assert turned[0] == pytest.approx(turned[1])
     room.tell(phase="registered")
-    room.run_until(lambda: room.logic.progress.phase == "registered")
+    room.run_until(lambda: room.logic.status.phase == "registered")
     follower.process()
     for name, axes in before.items():
         np.testing.assert_allclose(axes_of(room.scene, name)[:, :3], axes)
@@ -236,7 +236,7 @@ def test_views_do_not_align_with_the_instrument_unless_wanted(room, follower, sc
     follower.liesAlong = False
     before = axes_of(room.scene, "Red")
     room.tell(phase="inserting")
-    room.run_until(lambda: room.logic.progress.phase == "inserting")
+    room.run_until(lambda: room.logic.status.phase == "inserting")
     follower.process()
     assert not follower.needsPoses
     np.testing.assert_allclose(axes_of(room.scene, "Red")[:, :3], before[:, :3])

@@ -32,7 +32,7 @@ from rastrainer.study.protocol.study_protocol import (
 )
 from rastrainer.study_messages import StudyStep
 from rastrainer.trial.scoring import PASS_MARK
-from Testing.domain.trial.trial_records import make_record
+from Testing.domain.trial.trial_records import gentle_score, make_record
 
 SHIPPED = Path(__file__).parents[3] / "assets" / "studies" / "published-protocol.json"
 NOW = datetime(2999, 1, 1, tzinfo=timezone.utc)
@@ -126,7 +126,7 @@ def test_a_trainee_follows_the_steps_and_resumes_after_an_interruption(study_pla
         assert state.check_start("hmd", "task-1") is state.next_step
         with pytest.raises(InputError, match=r"Not yet: .* Step 3 of 19: Play Task 1"):
             state.check_start("desktop", "task-1")
-        study.add_trial(trial_of(state.next_step, 1))
+        study.add_trial(trial_of(state.next_step, 1), score=gentle_score(110.0, 0.5))
         done = {"trialId": "00000000-0000-0000-0000-000000000001"}
         assert progress.finish("T001", "hmd/1/task-1", done).next_step.name == "hmd/1/task-2"
 
@@ -140,7 +140,7 @@ def test_a_completed_protocol_ends_with_thanks_and_scored_answers(study):
         details = {}
         if step.kind is StepKind.TRIAL:
             number += 1
-            study.add_trial(trial_of(step, number))
+            study.add_trial(trial_of(step, number), score=gentle_score(110.0, 0.5))
             details = {"trialId": f"00000000-0000-0000-0000-{number:012d}"}
         elif step.kind is StepKind.QUESTIONNAIRE:
             count = {"ssq": 16, "nasa-tlx": 6, "sus": 10}[step.questionnaire]
@@ -266,8 +266,10 @@ def test_only_the_right_trial_of_the_right_trainee_counts_and_only_once(study):
     progress.set_protocol(protocol(questionnaires=[], trialRunMin=0, repetitions=2))
     progress.enroll("T001")
     step = progress.progress("T001").next_step
-    study.add_trial(trial_of(step, 1, trainee="T002"))
-    study.add_trial(make_record(trainee="T001", task="task-3", mode="hmd"))
+    study.add_trial(trial_of(step, 1, trainee="T002"), score=gentle_score(110.0, 0.5))
+    study.add_trial(
+        make_record(trainee="T001", task="task-3", mode="hmd"), score=gentle_score(110.0, 0.5)
+    )
     for trial_id, words in [
         ("00000000-0000-0000-0000-000000000001", "not the one that the step"),
         (make_record()["trialId"], "it was task-3 in the mode hmd"),
@@ -276,7 +278,7 @@ def test_only_the_right_trial_of_the_right_trainee_counts_and_only_once(study):
     ]:
         with pytest.raises(InputError, match=words):
             progress.finish("T001", step.name, {"trialId": trial_id})
-    study.add_trial(trial_of(step, 2))
+    study.add_trial(trial_of(step, 2), score=gentle_score(110.0, 0.5))
     done = {"trialId": "00000000-0000-0000-0000-000000000002"}
     progress.finish("T001", step.name, done)
     while (again := progress.progress("T001").next_step).task != "task-1":
@@ -306,18 +308,31 @@ def test_a_trial_run_or_a_break_ends_early_only_with_a_reason(study):
         progress.practice("T001", "hmd/trial-run", 1.0)
 
 
+def test_a_trial_that_can_have_no_score_counts_for_no_step(study):
+    progress = StudyProgress(study)
+    progress.set_protocol(protocol(questionnaires=[], trialRun={"minutes": 0}))
+    step = steps_for(progress.protocol(), 0)[0]
+    progress.enroll("T001")
+    utc = "2999-01-01T10:00:00Z"
+    since = {"startedUtc": utc, "completedUtc": utc}
+    study.add_trial(trial_of(step, 1) | since)
+    assert progress.count_played("T001").entries == ()
+    study.add_trial(trial_of(step, 2) | since, score=gentle_score(110.0, 0.5))
+    assert [trial[-1] for trial in progress.count_played("T001").counted_trials] == ["2"]
+
+
 def test_trials_are_counted_automatically_in_protocol_order_since_enrollment(study):
     progress = StudyProgress(study)
     progress.set_protocol(protocol(questionnaires=[], trialRunMin=0, repetitions=2))
     first = steps_for(progress.protocol(), 0)[0]
-    study.add_trial(trial_of(first, 1))
+    study.add_trial(trial_of(first, 1), score=gentle_score(110.0, 0.5))
     progress.enroll("T001")
     assert progress.count_played("T001").entries == ()
 
     def play(number, task, minute):
         utc = f"2999-01-01T10:{minute:02d}:00Z"
         trial = trial_of(first, number) | {"task": task, "startedUtc": utc, "completedUtc": utc}
-        study.add_trial(trial)
+        study.add_trial(trial, score=gentle_score(110.0, 0.5))
 
     # Delivered in another order than played; one task twice, which is not its second round.
     play(3, "task-2", 20)

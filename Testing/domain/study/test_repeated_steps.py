@@ -12,7 +12,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from Testing.domain.study.played_study import STUDIES
-from Testing.domain.trial.trial_records import make_aborted, make_record
+from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record
 
 SHIPPED = STUDIES / "published-protocol.json"
 REASON = "a phone rang in the middle of it"
@@ -47,7 +47,10 @@ def abort(study, number, minute, **changes):
 def play(study, number, minute):
     started = f"2999-01-01T10:{minute:02d}:00Z"
     trial_id = f"00000000-0000-0000-0000-{number:012d}"
-    study.add_trial(make_record(trialId=trial_id, trainee="A", startedUtc=started))
+    study.add_trial(
+        make_record(trialId=trial_id, trainee="A", startedUtc=started),
+        score=gentle_score(110.0, 0.5),
+    )
 
 
 def test_an_aborted_trial_is_repeated_only_with_a_reason(study):
@@ -169,7 +172,7 @@ def test_a_trial_counts_only_with_the_method_that_the_study_asks_for(tmp_path):
         trace = [[float(x), 0.0, 0.0, 1.0] for x in range(30)]
         record = make_record(trainee="A", startedUtc="2999-01-01T10:02:00Z")
         record |= {"points": record["points"][:5], "method": "landmarks-surface", "trace": trace}
-        study.add_trial(record)
+        study.add_trial(record, score=gentle_score(110.0, 0.5))
         (entry,) = progress.count_played("A").entries
         assert entry.details["trialId"] == record["trialId"]
 

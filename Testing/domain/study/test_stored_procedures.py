@@ -37,7 +37,7 @@ def record(number, procedure=None):
 
 def test_an_outcome_is_stored_beside_the_score_of_the_touches(study):
     trial = record(1, DBS.analysis.record)
-    study.add_trial(trial)
+    study.add_trial(trial, score=gentle_score(110.0, 0.5))
     assert study.trial(trial.trial_id).procedure is None
     assert study.history(trial.trainee)[0].procedure is None
     study.add_results(trial.trial_id, score=gentle_score(110.0, 0.5), procedure=DBS)
@@ -56,7 +56,7 @@ def test_an_outcome_is_stored_beside_the_score_of_the_touches(study):
 
 def test_the_outcome_is_deleted_with_its_trainee(study):
     trial = record(1, DBS.analysis.record)
-    study.add_trial(trial)
+    study.add_trial(trial, score=gentle_score(110.0, 0.5))
     study.add_results(trial.trial_id, procedure=DBS)
     study.delete_trainee(trial.trainee)
     with study.database.reading() as connection:
@@ -76,6 +76,6 @@ def test_only_a_trial_with_the_procedure_counts_for_a_step_that_asks_for_it(stud
     played = {"task": "task-2", "mode": "desktop"}
     for number, procedure in enumerate([None, outcome(ProcedureKind.SEEG), DBS], start=1):
         done = None if procedure is None else procedure.analysis.record
-        study.add_trial(replace(record(number, done), **played))
+        study.add_trial(replace(record(number, done), **played), score=gentle_score(110.0, 0.5))
         counted = progress.count_played(trainee).counted_trials
         assert counted == ((record(3).trial_id,) if number == 3 else ())

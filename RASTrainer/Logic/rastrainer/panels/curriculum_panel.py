@@ -8,8 +8,8 @@ from typing import Any
 import slicer
 
 from rastrainer.number_text import fixed
+from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import toolTip
-from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import fillTable, setText, setUsable
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.translation import _
@@ -24,40 +24,33 @@ from rastrainer.study.curriculum.standing import (
 from rastrainer.study_messages import AssignmentStanding
 
 
-class CurriculumPanel:
-    """Wires the section's widgets to the session."""
+class CurriculumPanel(Panel):
+    """The part Curriculum of the section Study."""
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
-        self._ui = ui
-        self._session = session
+        super().__init__(ui, session)
         self._logic = session.curriculum
-        ui.setCurriculumButton.connect("clicked()", self.setCurriculum)
-        ui.endCurriculumButton.connect("clicked()", self.endCurriculum)
+        connectClick(ui.setCurriculumButton, self.setCurriculum, _("The curriculum was not set."))
+        connectClick(ui.endCurriculumButton, self.endCurriculum, _("The curriculum was not ended."))
         ui.curriculumPathLineEdit.connect("currentPathChanged(QString)", self._showButtons)
         ui.everybodyCheckBox.connect("toggled(bool)", self._showButtons)
-        self._logic.changed.connect(self._show)
+        self.listen((self._logic.changed, self._show))
         self._show()
-
-    def close(self) -> None:
-        """Stop listening to the session."""
-        self._logic.changed.disconnect(self._show)
 
     def setCurriculum(self) -> None:
         """Have the chosen trainee, or everybody, follow the chosen file's curriculum."""
-        with showErrors(_("The curriculum was not set.")):
-            path = Path(self._ui.curriculumPathLineEdit.currentPath)
-            self._logic.choose(path, self._ui.everybodyCheckBox.checked)
+        path = Path(self._ui.curriculumPathLineEdit.currentPath)
+        self._logic.choose(path, self._ui.everybodyCheckBox.checked)
 
     def endCurriculum(self) -> None:
         """Have the chosen trainee, or everybody, follow no curriculum, after asking."""
-        with showErrors(_("The curriculum was not ended.")):
-            isForEverybody = self._ui.everybodyCheckBox.checked
-            who = _("everybody") if isForEverybody else self._session.trainees.chosen
-            question = _(
-                "End the curriculum of {who}? Trials stay, and count again if it is set again."
-            ).format(who=who)
-            if slicer.util.confirmYesNoDisplay(toolTip(question), _("End the curriculum")):
-                self._logic.end(isForEverybody)
+        isForEverybody = self._ui.everybodyCheckBox.checked
+        who = _("everybody") if isForEverybody else self._session.trainees.chosen
+        question = _(
+            "End the curriculum of {who}? Trials stay, and count again if it is set again."
+        ).format(who=who)
+        if slicer.util.confirmYesNoDisplay(toolTip(question), _("End the curriculum")):
+            self._logic.end(isForEverybody)
 
     def _show(self) -> None:
         ui, standing = self._ui, self._logic.standing()

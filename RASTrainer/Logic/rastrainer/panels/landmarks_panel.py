@@ -6,9 +6,8 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import fixed
-from rastrainer.panels.shown_errors import showErrors
+from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.widgets import (
-    CancelableWork,
     chosenData,
     chosenScenario,
     fillComboBox,
@@ -33,52 +32,47 @@ NAMES = {
 }
 
 
-class LandmarksPanel:
-    """Wires the section's widgets to the session."""
+class LandmarksPanel(Panel):
+    """The group Landmarks."""
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
-        self._ui = ui
-        self._session = session
+        super().__init__(ui, session)
         self._logic = session.landmarks
-        self._work = CancelableWork(self._showMessage, self._showProgress, self.showState)
+        self._work = self.cancelableWork(self._showMessage, self._showProgress, self.showState)
         entries = [(NAMES[name], name) for name in FACE_LANDMARKS]
         fillComboBox(ui.landmarkNameComboBox, entries, FACE_LANDMARKS[0])
-        self._work.connectButton(ui.proposeLandmarksButton, self.propose)
-        ui.showLandmarksButton.connect("clicked()", self.show)
-        ui.placeLandmarkButton.connect("clicked()", self.place)
+        self._work.connectButton(
+            ui.proposeLandmarksButton, self.propose, _("No landmarks could be proposed.")
+        )
+        connectClick(ui.showLandmarksButton, self.show, _("The landmarks cannot be shown."))
+        connectClick(ui.placeLandmarkButton, self.place, _("No landmark can be placed."))
         ui.removeLandmarkButton.connect("clicked()", self.remove)
         ui.undoLandmarkButton.connect("clicked()", self.undo)
-        ui.checkLandmarksButton.connect("clicked()", self.check)
-        ui.saveLandmarksButton.connect("clicked()", self.save)
-        self._session.sceneChanged.connect(self.showState)
+        connectClick(ui.checkLandmarksButton, self.check, _("The landmarks were not checked."))
+        connectClick(ui.saveLandmarksButton, self.save, _("The landmarks were not saved."))
+        self.listen((session.sceneChanged, self.showState))
+        self._message = ""
         self.showState()
-
-    def close(self) -> None:
-        self._work.cancel()
-        self._session.sceneChanged.disconnect(self.showState)
 
     def propose(self) -> None:
         """Replace the landmarks by proposed ones on the chosen head."""
-        with showErrors(_("No landmarks could be proposed.")):
-            scenario = chosenScenario(self._ui, self._session)
-            said = self._work.run(lambda report: self._logic.propose(scenario, report))
-            if said is not None:
-                self._showMessage(said)
+        scenario = chosenScenario(self._ui, self._session)
+        said = self._work.run(lambda report: self._logic.propose(scenario, report))
+        if said is not None:
+            self._showMessage(said)
 
     def show(self) -> None:
         """Replace the landmarks by those of the chosen scenario."""
-        with showErrors(_("The landmarks cannot be shown.")):
-            scenario = chosenScenario(self._ui, self._session)
-            if not scenario.landmarks:
-                raise InputError(_("{title} has no landmarks.").format(title=scenario.title))
-            self._logic.points.show(scenario.landmarks)
-            self._showMessage("")
-            self.showState()
+        scenario = chosenScenario(self._ui, self._session)
+        if not scenario.landmarks:
+            raise InputError(_("{title} has no landmarks.").format(title=scenario.title))
+        self._logic.points.show(scenario.landmarks)
+        self._showMessage("")
+        self.showState()
 
     def place(self) -> None:
         """Let the next click in a view place the chosen landmark."""
-        with showErrors(_("No landmark can be placed.")):
-            self._logic.points.startPlacing(chosenData(self._ui.landmarkNameComboBox))
+        self._logic.points.startPlacing(chosenData(self._ui.landmarkNameComboBox))
 
     def remove(self) -> None:
         self._logic.points.remove(self._ui.landmarksTable.currentRow())
@@ -91,26 +85,25 @@ class LandmarksPanel:
 
     def check(self) -> None:
         """Check the landmarks on the head of the chosen scenario, and the robot's reach."""
-        with showErrors(_("The landmarks were not checked.")):
-            scenario = chosenScenario(self._ui, self._session)
-            said = self._work.run(lambda report: self._logic.check(scenario, report))
-            if said is not None:
-                self._showMessage(said)
+        scenario = chosenScenario(self._ui, self._session)
+        said = self._work.run(lambda report: self._logic.check(scenario, report))
+        if said is not None:
+            self._showMessage(said)
 
     def save(self) -> None:
         """Copy the chosen scenario with these landmarks and use the copy."""
-        with showErrors(_("The landmarks were not saved.")):
-            title = self._ui.landmarksTitleLineEdit.text.strip()
-            scenario = chosenScenario(self._ui, self._session)
-            saved = self._work.run(lambda report: self._logic.save(scenario, title, report))
-            if saved is not None:
-                text = _("{title} was made and is chosen above.")
-                self._showMessage(text.format(title=saved.title))
-                self._session.scenarioMade.emit(saved.name)
+        title = self._ui.landmarksTitleLineEdit.text.strip()
+        scenario = chosenScenario(self._ui, self._session)
+        saved = self._work.run(lambda report: self._logic.save(scenario, title, report))
+        if saved is not None:
+            text = _("{title} was made and is chosen above.")
+            self._showMessage(text.format(title=saved.title))
+            self._session.scenarioMade.emit(saved.name)
 
     def showState(self) -> None:
         """Show the landmarks of the scene."""
         ui, points, isAtWork = self._ui, self._logic.points, self._work.isUnderWay
+        self._showMessage(self._message)
         rows = [_row(landmark) for landmark in points.landmarks]
         if fillTable(ui.landmarksTable, rows):
             self._chooseNext()
@@ -154,6 +147,12 @@ class LandmarksPanel:
             self._showMessage(step)
 
     def _showMessage(self, sentence: str) -> None:
+        self._message, names = sentence, self._logic.points.deselected
+        if names:
+            leftOut = _("Left out, as they are deselected in the module Markups: {names}.").format(
+                names=", ".join(NAMES.get(name, name) for name in names)
+            )
+            sentence = f"{sentence} {leftOut}".strip()
         setText(self._ui.landmarksText, sentence)
 
 

@@ -9,8 +9,9 @@ import slicer
 
 from rastrainer.head.trial_head import MAX_PERTURBATION, Perturbation
 from rastrainer.panels.application import downloadSample, fitThreeDViews
+from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.shown_errors import showErrors
-from rastrainer.panels.widgets import CancelableWork, setText, setUsable
+from rastrainer.panels.widgets import setText, setUsable
 from rastrainer.protocol import WORLD_LIMIT_MM
 from rastrainer.scenario.scenario import STAND_DIAMETERS_MM, OperatingTable, Scenario, Stand
 from rastrainer.scenario.setup import HeadPlace, SetUp
@@ -86,26 +87,26 @@ def _spinBox(name: str, limits: tuple[float, float], value: float) -> Any:
 SAMPLE = "MRBrainTumor1"
 
 
-class NewScenarioPanel:
-    """Wires the section's widgets to the session."""
+class NewScenarioPanel(Panel):
+    """The section New scenario."""
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
-        self._ui = ui
-        self._session = session
+        super().__init__(ui, session)
         self._maker = session.scenarioMaker
         self._setUp = SetUpForm(ui.setUpGroupBox)
-        self._work = CancelableWork(self._showMessage, self._showProgress, self._showUsable)
+        self._work = self.cancelableWork(self._showMessage, self._showProgress, self._showUsable)
         ui.sampleDataButton.connect("clicked()", self.loadSampleData)
-        self._work.connectButton(ui.makeScenarioButton, self.make)
-        ui.previewHeadButton.connect("clicked()", self.preview)
-        ui.checkScenarioButton.connect("clicked()", self.check)
+        self._work.connectButton(ui.makeScenarioButton, self.make, _("The scenario was not made."))
+        connectClick(ui.previewHeadButton, self.preview, _("No head could be shown."))
+        connectClick(
+            ui.checkScenarioButton,
+            self.check,
+            _("The scenario could not be made with these choices."),
+        )
         ui.scanComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._showUsable)
         ui.newScenarioCollapsibleButton.connect("contentsCollapsed(bool)", self._takeShownVolume)
         setText(ui.newScenarioText, "")
         self._showUsable()
-
-    def close(self) -> None:
-        self._work.cancel()
 
     def loadSampleData(self) -> None:
         """Download an MRI through Slicer's Sample Data, and choose it."""
@@ -130,30 +131,27 @@ class NewScenarioPanel:
 
     def preview(self) -> None:
         """Show the head that is found, to accept it or to change it."""
-        with showErrors(_("No head could be shown.")):
-            warnings = self._work.run(lambda report: self._maker.preview(*self._wanted(), report))
-            if warnings is not None:
-                text = _(
-                    "This is the head that was found. Change the threshold or the cut and find it "
-                    "again, or edit its segment in the Segment Editor; then make the scenario."
-                )
-                self._showMessage(" ".join([text, *warnings]))
-                fitThreeDViews()
+        warnings = self._work.run(lambda report: self._maker.preview(*self._wanted(), report))
+        if warnings is not None:
+            text = _(
+                "This is the head that was found. Change the threshold or the cut and find it "
+                "again, or edit its segment in the Segment Editor; then make the scenario."
+            )
+            self._showMessage(" ".join([text, *warnings]))
+            fitThreeDViews()
 
     def check(self) -> None:
         """Report at once whether set-up, plan and fiducials can be used."""
-        with showErrors(_("The scenario could not be made with these choices.")):
-            warnings = self._work.run(lambda report: self._maker.check(*self._wanted(), report))
-            if warnings is not None:
-                text = _("Set-up, plan and fiducials can be used.")
-                self._showMessage(" ".join([text, *warnings]))
+        warnings = self._work.run(lambda report: self._maker.check(*self._wanted(), report))
+        if warnings is not None:
+            text = _("Set-up, plan and fiducials can be used.")
+            self._showMessage(" ".join([text, *warnings]))
 
     def make(self) -> None:
         """Make the scenario and use it."""
-        with showErrors(_("The scenario was not made.")):
-            made = self._work.run(lambda report: self._maker.make(*self._wanted(), report))
-            if made is not None:
-                self._useScenario(*made)
+        made = self._work.run(lambda report: self._maker.make(*self._wanted(), report))
+        if made is not None:
+            self._useScenario(*made)
 
     def _useScenario(self, scenario: Scenario, warnings: list[str]) -> None:
         self._session.scenarioMade.emit(scenario.name)

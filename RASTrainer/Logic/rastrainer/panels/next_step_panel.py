@@ -9,6 +9,7 @@ from typing import Any
 import qt
 
 from rastrainer.errors import InputError
+from rastrainer.panels.panel import Panel
 from rastrainer.panels.plain_text import buttonTitle, shortName
 from rastrainer.panels.widgets import (
     LINK_COLORS,
@@ -21,7 +22,6 @@ from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Phase
 from rastrainer.slicer.link.link_status import LinkState, notInstalled
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.next_step import NextAction, NextStep, Section, WorkflowState, nextStep
-from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 from rastrainer.study.protocol.steps import instruction
 from rastrainer.trial.analysis import TrialAnalysis
@@ -65,15 +65,14 @@ WORDS = {
 }
 
 
-class NextStepPanel:
+class NextStepPanel(Panel):
     """Leads through a session: it draws what `nextStep` says, and lets the sections do it."""
 
     def __init__(
         self, ui: Any, session: ModuleSession, actions: Mapping[NextAction, Callable[[], None]]
     ) -> None:
         """`actions` does what belongs to a section: everything but waiting and viewing."""
-        self._ui = ui
-        self._session = session
+        super().__init__(ui, session)
         self._actions = actions
         self._folding = SectionFolding(ui)
         self._step: NextStep | None = None
@@ -87,7 +86,7 @@ class NextStepPanel:
         ui.hostLineEdit.connect("textChanged(QString)", self.showState)
         ui.programPathLineEdit.connect("currentPathChanged(QString)", self.showState)
         ui.scoreCollapsibleButton.connect("contentsCollapsed(bool)", self._noteScoreSeen)
-        self._listening = Listening(
+        self.listen(
             (session.link.statusChanged, self.showState),
             (session.link.stateChanged, self._followTrial),
             (session.training.changed, self.showState),
@@ -102,10 +101,6 @@ class NextStepPanel:
             (session.trials.problemFound, self._noteProblem),
         )
         self._lookUp()
-
-    def close(self) -> None:
-        """Stop listening to the session."""
-        self._listening.close()
 
     def _action(self) -> Callable[[], None]:
         action = NextAction.WAIT if self._step is None else self._step.action
@@ -130,7 +125,7 @@ class NextStepPanel:
 
     def _situation(self) -> WorkflowState:
         session, ui = self._session, self._ui
-        simulator, trial, study = session.simulator, session.training.progress, self._studyStep
+        simulator, trial, study = session.simulator, session.training.status, self._studyStep
         return WorkflowState(
             # Reported at once, before downloading a simulator to which no connection is possible.
             link=session.link.status if session.link.isInstalled else notInstalled(),
@@ -163,7 +158,7 @@ class NextStepPanel:
         setText(ui.linkText, WORDS[now.link.state])
         trainee, task = self._trainee, now.taskTitle
         if now.link.state is LinkState.CONNECTED and now.phase in OPEN_PHASES:
-            trial = self._session.training.progress
+            trial = self._session.training.status
             trainee, task = trial.trainee, self._titleOf(trial.task)
         setText(ui.nowTraineeText, shortName(trainee) or _("No trainee"))
         setText(ui.nowTaskText, shortName(task))

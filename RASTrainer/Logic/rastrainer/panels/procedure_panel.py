@@ -7,15 +7,15 @@ from typing import Any, NamedTuple
 
 from rastrainer.commands import CommandName
 from rastrainer.number_text import fixed
+from rastrainer.panels.panel import Panel
 from rastrainer.panels.shown_errors import showErrors
-from rastrainer.panels.widgets import fillTable, keepChecked, setText, setUsable
+from rastrainer.panels.widgets import bindChecked, fillTable, setText, setUsable
 from rastrainer.procedure.errors import TrajectoryErrors
 from rastrainer.protocol import Phase
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic, ProcedureStatus
 from rastrainer.slicer.settings import SLICES_LIE_ALONG
-from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 
@@ -94,20 +94,19 @@ WHEN = {
 }
 
 
-class ProcedurePanel:
-    """Wires the section's widgets to the session."""
+class ProcedurePanel(Panel):
+    """The section Procedure."""
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
-        self._ui = ui
-        self._session = session
+        super().__init__(ui, session)
         self._logic = session.procedure
         self._shown: ProcedureOutcome | None = None
-        keepChecked(ui.slicesAlongCheckBox, session.settings, SLICES_LIE_ALONG)
+        bindChecked(ui.slicesAlongCheckBox, session.settings, SLICES_LIE_ALONG)
         ui.slicesAlongCheckBox.connect("toggled(bool)", self._laySlices)
         for step in STEPS:
             getattr(ui, step.button).connect("clicked()", self._action(step))
         ui.procedureErrorsTable.connect("itemSelectionChanged()", self._jumpToTarget)
-        self._listening = Listening(
+        self.listen(
             (self._logic.changed, self.showState),
             (self._logic.answered, self._showMessage),
             (session.link.statusChanged, self.showState),
@@ -115,10 +114,6 @@ class ProcedurePanel:
         self._laySlices()
         self._showOutcome()
         self.showState()
-
-    def close(self) -> None:
-        """Stop listening to the session."""
-        self._listening.close()
 
     def showState(self, *_arguments: Any) -> None:
         """Show the progress of the procedure."""

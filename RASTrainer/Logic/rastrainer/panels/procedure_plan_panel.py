@@ -8,13 +8,13 @@ from typing import Any
 import slicer
 
 from rastrainer.number_text import fixed
-from rastrainer.panels.shown_errors import showErrors
+from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.widgets import (
-    CancelableWork,
     chosenData,
     chosenScenario,
     fillComboBox,
     fillTable,
+    offerEntries,
     setProperty,
     setText,
     setUsable,
@@ -40,7 +40,6 @@ from rastrainer.slicer.scene.procedure_lines import (
     setInstrument,
     setNoGo,
 )
-from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 
 KINDS = (
@@ -51,64 +50,59 @@ KINDS = (
 REACH = {True: _("yes"), False: _("no"), None: "–"}
 
 
-class ProcedurePlanPanel:
-    """Wires the section's widgets to the session."""
+class ProcedurePlanPanel(Panel):
+    """The section Plan of a procedure."""
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
-        self._ui = ui
-        self._session = session
+        super().__init__(ui, session)
         self._logic = session.procedurePlan
         self._name = ""
         self._checked: tuple[tuple, MeasuredProcedure] | None = None
         self._problem = ""
         self._removed: list[RemovedLine] = []
-        self._work = CancelableWork(self._showProblem, self._showProgress, self.showState)
+        self._work = self.cancelableWork(self._showProblem, self._showProgress, self.showState)
         fillComboBox(ui.procedureKindComboBox, KINDS, ProcedureKind.BIOPSY.value)
-        ui.editProcedureButton.connect("clicked()", self.edit)
-        ui.placeLineButton.connect("clicked()", self.placeLine)
+        connectClick(ui.editProcedureButton, self.edit, _("The procedure cannot be edited."))
+        connectClick(ui.placeLineButton, self.placeLine, _("No line can be placed."))
         ui.removeLineButton.connect("clicked()", self.removeLine)
         ui.restoreLineButton.connect("clicked()", self.restoreLine)
         ui.raiseLineButton.connect("clicked()", self.raiseLine)
-        ui.placeCheckpointButton.connect("clicked()", self.placeCheckpoint)
+        connectClick(
+            ui.placeCheckpointButton, self.placeCheckpoint, _("No checkpoint can be placed.")
+        )
         ui.linesTable.connect("itemSelectionChanged()", self._showLine)
         ui.lineNameLineEdit.connect("editingFinished()", self._renameLine)
         for box in (ui.lineDiameterSpinBox, ui.lineSafetySpinBox):
             box.connect("valueChanged(double)", self._changeInstrument)
         ui.noGoButton.connect("clicked()", self.toggleNoGo)
         ui.noGoComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self.showState)
-        self._work.connectButton(ui.checkLinesButton, self.check)
-        ui.saveProcedureButton.connect("clicked()", self.save)
-        self._listening = Listening(
+        self._work.connectButton(ui.checkLinesButton, self.check, _("The lines were not checked."))
+        connectClick(ui.saveProcedureButton, self.save, _("The procedure was not saved."))
+        self.listen(
             (session.taskChosen, self._showProcedures), (session.sceneChanged, self.showState)
         )
         self._showProcedures()
 
-    def close(self) -> None:
-        self._work.cancel()
-        self._listening.close()
-
     def edit(self) -> None:
         """Load the chosen procedure into the scene, in place of the plan there."""
-        with showErrors(_("The procedure cannot be edited.")):
-            ui = self._ui
-            scenario = chosenScenario(ui, self._session)
-            procedure = self._logic.edit(scenario, chosenData(ui.procedurePlanComboBox))
-            self._checked, self._problem, self._removed = None, "", []
-            self._name = "" if procedure is None else procedure.name
-            if procedure is not None:
-                ui.procedureTitleLineEdit.text = procedure.title
-                ui.procedureSourceLineEdit.text = procedure.source
-                ui.procedureSourceLineEdit.cursorPosition = 0
-                fillComboBox(ui.procedureKindComboBox, KINDS, procedure.kind.value)
-            checkpoints = findNode(slicer.mrmlScene, LIST, Role.CHECKPOINTS)
-            ui.checkpointsComboBox.setCurrentNode(checkpoints)
-            self.showState()
+        ui = self._ui
+        scenario = chosenScenario(ui, self._session)
+        procedure = self._logic.edit(scenario, chosenData(ui.procedurePlanComboBox))
+        self._checked, self._problem, self._removed = None, "", []
+        self._name = "" if procedure is None else procedure.name
+        if procedure is not None:
+            ui.procedureTitleLineEdit.text = procedure.title
+            ui.procedureSourceLineEdit.text = procedure.source
+            ui.procedureSourceLineEdit.cursorPosition = 0
+            fillComboBox(ui.procedureKindComboBox, KINDS, procedure.kind.value)
+        checkpoints = findNode(slicer.mrmlScene, LIST, Role.CHECKPOINTS)
+        ui.checkpointsComboBox.setCurrentNode(checkpoints)
+        self.showState()
 
     def placeLine(self) -> None:
         """Let the next two clicks place a line, from its entry to its target."""
-        with showErrors(_("No line can be placed.")):
-            startPlacing(slicer.mrmlScene, newPlanLine(slicer.mrmlScene))
-            self.showState()
+        startPlacing(slicer.mrmlScene, newPlanLine(slicer.mrmlScene))
+        self.showState()
 
     def removeLine(self) -> None:
         """Remove the chosen line; it can be restored."""
@@ -132,11 +126,10 @@ class ProcedurePlanPanel:
 
     def placeCheckpoint(self) -> None:
         """Let the next click place a checkpoint, in the chosen list or in the plan's own."""
-        with showErrors(_("No checkpoint can be placed.")):
-            chosen = self._ui.checkpointsComboBox
-            node = chosen.currentNode() or checkpointList(slicer.mrmlScene)
-            chosen.setCurrentNode(node)
-            startPlacing(slicer.mrmlScene, node)
+        chosen = self._ui.checkpointsComboBox
+        node = chosen.currentNode() or checkpointList(slicer.mrmlScene)
+        chosen.setCurrentNode(node)
+        startPlacing(slicer.mrmlScene, node)
 
     def toggleNoGo(self) -> None:
         """Make the chosen model or segmentation a no-go structure, or no longer."""
@@ -147,23 +140,21 @@ class ProcedurePlanPanel:
 
     def check(self) -> None:
         """Measure all lines on the head of the chosen scenario."""
-        with showErrors(_("The lines were not checked.")):
-            self._problem = ""
-            scenario = chosenScenario(self._ui, self._session)
-            plan, snapshot = self._description(), self._snapshot()
-            found = self._work.run(lambda report: self._logic.check(scenario, plan, report))
-            if found is not None:
-                self._checked = snapshot, found
-                self.showState()
+        self._problem = ""
+        scenario = chosenScenario(self._ui, self._session)
+        plan, snapshot = self._description(), self._snapshot()
+        found = self._work.run(lambda report: self._logic.check(scenario, plan, report))
+        if found is not None:
+            self._checked = snapshot, found
+            self.showState()
 
     def save(self) -> None:
         """Copy the chosen scenario with this procedure and use the copy."""
-        with showErrors(_("The procedure was not saved.")):
-            title = self._ui.procedureScenarioLineEdit.text.strip()
-            scenario, plan = chosenScenario(self._ui, self._session), self._description()
-            saved = self._work.run(lambda report: self._logic.save(scenario, title, plan, report))
-            if saved is not None:
-                self._session.scenarioMade.emit(saved.name)
+        title = self._ui.procedureScenarioLineEdit.text.strip()
+        scenario, plan = chosenScenario(self._ui, self._session), self._description()
+        saved = self._work.run(lambda report: self._logic.save(scenario, title, plan, report))
+        if saved is not None:
+            self._session.scenarioMade.emit(saved.name)
 
     def showState(self, *_arguments: Any) -> None:
         """Show the plan of the scene."""
@@ -300,8 +291,7 @@ class ProcedurePlanPanel:
         entries = [(title, name) for name, title in self._session.procedures]
         entries.append((_("New procedure"), ""))
         combo = self._ui.procedurePlanComboBox
-        chosen, known = chosenData(combo), [name for _title, name in entries]
-        fillComboBox(combo, entries, chosen if chosen in known and combo.count else known[0])
+        offerEntries(combo, entries, *([chosenData(combo)] if combo.count else []))
         self.showState()
 
     def _showProgress(self, step: str, share: float) -> None:

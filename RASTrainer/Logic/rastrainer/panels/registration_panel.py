@@ -7,13 +7,14 @@ from typing import Any
 
 import qt
 
+from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import buttonTitle
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
+    bindChecked,
+    bindChosen,
     chosenData,
     fillTable,
-    keepChecked,
-    keepChosen,
     setChecked,
     setText,
     setUsable,
@@ -27,64 +28,50 @@ from rastrainer.slicer.logic.registration_comparison import Comparison
 from rastrainer.slicer.scene.registration_input import Remedy
 from rastrainer.slicer.scene.trial_scene import isApplied, setApplied
 from rastrainer.slicer.settings import FIT, IS_HEAD_COLORED
-from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 
 TITLES = {RIGID: _("Rigid"), SIMILARITY: _("Similarity"), AFFINE: _("Affine")}
 
 
-class RegistrationPanel:
-    """Wires the section's widgets to the session."""
+class RegistrationPanel(Panel):
+    """The section Registration."""
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
-        self._ui = ui
+        super().__init__(ui, session)
         self._logic = session.registration
         self._slices = session.slices
         self._remedies: tuple[Remedy, ...] = ()
         self._remedyWidgets: list[Any] = []
         self._labels: tuple[str, ...] = ()
         entries = [(title, kind) for kind, title in TITLES.items()]
-        keepChosen(ui.kindComboBox, entries, session.settings, FIT)
+        bindChosen(ui.kindComboBox, entries, session.settings, FIT)
         self._logic.kind = chosenData(ui.kindComboBox)
         ui.kindComboBox.connect("activated(int)", self._chooseKind)
         for combo in (ui.movingComboBox, ui.fixedComboBox):
             combo.connect("currentNodeChanged(vtkMRMLNode*)", self._chooseLists)
         ui.targetComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._chooseTarget)
         ui.residualsTable.connect("itemSelectionChanged()", self._chooseFiducial)
-        ui.excludeButton.connect("clicked()", self.excludeChosen)
-        ui.fleButton.connect("clicked()", self.localizeChosen)
-        ui.undoButton.connect("clicked()", self.undo)
+        connectClick(ui.excludeButton, self.excludeChosen, _("The fiducial was not left out."))
+        connectClick(ui.fleButton, self.localizeChosen, _("The localization error was not set."))
+        connectClick(ui.undoButton, lambda: self._logic.undo(), _("Nothing was undone."))
         ui.appliedCheckBox.connect("toggled(bool)", self._apply)
         ui.headColoredCheckBox.connect("toggled(bool)", self._logic.setHeadColored)
-        keepChecked(ui.headColoredCheckBox, session.settings, IS_HEAD_COLORED)
+        bindChecked(ui.headColoredCheckBox, session.settings, IS_HEAD_COLORED)
         self._woken = session.woken
-        self._listening = Listening(
-            (self._logic.changed, self._show), (session.sceneChanged, self._showApplied)
-        )
+        self.listen((self._logic.changed, self._show), (session.sceneChanged, self._showApplied))
         self._show()
-
-    def close(self) -> None:
-        """Stop listening to the session."""
-        self._listening.close()
 
     def excludeChosen(self) -> None:
         """Register again without the chosen fiducial."""
-        with showErrors(_("The fiducial was not left out.")):
-            row = self._ui.residualsTable.currentRow()
-            if row >= 0 and self._logic.shown is not None:
-                self._logic.exclude(self._logic.shown.labels[row])
+        row = self._ui.residualsTable.currentRow()
+        if row >= 0 and self._logic.shown is not None:
+            self._logic.exclude(self._logic.shown.labels[row])
 
     def localizeChosen(self) -> None:
         """Register again with the stated localization error of the chosen fiducial."""
-        with showErrors(_("The localization error was not set.")):
-            row = self._ui.residualsTable.currentRow()
-            if row >= 0 and self._logic.shown is not None:
-                self._logic.localize(self._logic.shown.labels[row], self._ui.fleSpinBox.value)
-
-    def undo(self) -> None:
-        "Undo the last change to the pairs."
-        with showErrors(_("Nothing was undone.")):
-            self._logic.undo()
+        row = self._ui.residualsTable.currentRow()
+        if row >= 0 and self._logic.shown is not None:
+            self._logic.localize(self._logic.shown.labels[row], self._ui.fleSpinBox.value)
 
     def _showApplied(self) -> None:
         transform = self._logic.transform()

@@ -11,15 +11,16 @@ import slicer
 
 from rastrainer.number_text import fixed
 from rastrainer.panels.application import askWhereToSave, fitSliceViews, fitThreeDViews
+from rastrainer.panels.panel import Panel
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.training_panel import METHODS
 from rastrainer.panels.widgets import (
-    CancelableWork,
     chosenData,
     chosenScenario,
     fillComboBox,
     fillTable,
+    offerEntries,
     setChecked,
     setText,
     setUsable,
@@ -30,23 +31,23 @@ from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.scenario_logic import ComparedMethod
 from rastrainer.slicer.settings import SCENARIO, TASK
-from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 from rastrainer.work_progress import no_progress
 
 PICTURE_HEIGHT = 180
 
 
-class ScenarioPanel:
-    """Wires the section's widgets to the session."""
+class ScenarioPanel(Panel):
+    """The section Scenario."""
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
-        self._ui = ui
-        self._session = session
+        super().__init__(ui, session)
         self._logic = session.scenario
-        self._work = CancelableWork(self._showHeadMessage, self._showProgress, self._showUsable)
-        self._writing = CancelableWork(self._showMessage, no_progress, self._showUsable)
-        self._adding = CancelableWork(self._showMessage, self._showAdding, self._showUsable)
+        self._work = self.cancelableWork(
+            self._showHeadMessage, self._showProgress, self._showUsable
+        )
+        self._writing = self.cancelableWork(self._showMessage, no_progress, self._showUsable)
+        self._adding = self.cancelableWork(self._showMessage, self._showAdding, self._showUsable)
         ui.scenarioComboBox.connect("activated(int)", self._showTasks)
         ui.taskComboBox.connect("activated(int)", self._chooseTask)
         for combo in (ui.scenarioComboBox, ui.taskComboBox):
@@ -54,11 +55,17 @@ class ScenarioPanel:
         ui.showScenarioButton.connect("clicked()", self.show)
         ui.loadScenarioButton.connect("clicked()", self.loadIntoSimulator)
         ui.robotCheckBox.connect("toggled(bool)", self.showRobot)
-        self._work.connectButton(ui.useHeadButton, self.useHead)
-        self._writing.connectButton(ui.exportScenarioButton, self.exportScenario)
-        self._adding.connectButton(ui.importScenarioButton, self.importScenario)
+        self._work.connectButton(
+            ui.useHeadButton, self.useHead, _("This cannot be used as the head.")
+        )
+        self._writing.connectButton(
+            ui.exportScenarioButton, self.exportScenario, _("The scenario was not saved.")
+        )
+        self._adding.connectButton(
+            ui.importScenarioButton, self.importScenario, _("The scenario was not added.")
+        )
         ui.headModelComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._showUsable)
-        self._listening = Listening(
+        self.listen(
             (session.link.statusChanged, self._showUsable),
             (session.training.answered, self._showMessage),
             (session.scenarioMade, self.continueWith),
@@ -69,13 +76,6 @@ class ScenarioPanel:
             (session.sceneChanged, self._showRobotBox),
         )
         self._fill(session.settings.get(SCENARIO))
-
-    def close(self) -> None:
-        """Cancel the running work, and stop listening to the session."""
-        self._work.cancel()
-        self._writing.cancel()
-        self._adding.cancel()
-        self._listening.close()
 
     def show(self) -> None:
         """Show the chosen head and the fiducials of the chosen task."""
@@ -105,48 +105,45 @@ class ScenarioPanel:
 
     def useHead(self) -> None:
         """Show a model, or the skin of a volume, as the head."""
-        with showErrors(_("This cannot be used as the head.")):
-            node = self._ui.headModelComboBox.currentNode()
-            used = self._work.run(lambda report: self._logic.useHead(node, report))
-            if used is not None:
-                model, warnings = used
-                fitThreeDViews()
-                text = _("{name} is now the head; the simulator keeps its own head.")
-                self._showHeadMessage(" ".join([text.format(name=model.GetName()), *warnings]))
+        node = self._ui.headModelComboBox.currentNode()
+        used = self._work.run(lambda report: self._logic.useHead(node, report))
+        if used is not None:
+            model, warnings = used
+            fitThreeDViews()
+            text = _("{name} is now the head; the simulator keeps its own head.")
+            self._showHeadMessage(" ".join([text.format(name=model.GetName()), *warnings]))
 
     def importScenario(self) -> None:
         """Add a scenario that comes as a zip file, and choose it."""
-        with showErrors(_("The scenario was not added.")):
-            path = qt.QFileDialog.getOpenFileName(
-                slicer.util.mainWindow(), _("Add a scenario"), "", "Zip (*.zip)"
-            )
-            files = self._session.scenarioFiles
-            added = (
-                self._adding.run(lambda report: files.importScenario(Path(path), report))
-                if path
-                else None
-            )
-            if added is not None:
-                self._fill(added.name)
-                self._showMessage(_("{title} was added.").format(title=added.title))
+        path = qt.QFileDialog.getOpenFileName(
+            slicer.util.mainWindow(), _("Add a scenario"), "", "Zip (*.zip)"
+        )
+        files = self._session.scenarioFiles
+        added = (
+            self._adding.run(lambda report: files.importScenario(Path(path), report))
+            if path
+            else None
+        )
+        if added is not None:
+            self._fill(added.name)
+            self._showMessage(_("{title} was added.").format(title=added.title))
 
     def exportScenario(self) -> None:
         """Write the chosen scenario as a zip file."""
-        with showErrors(_("The scenario was not saved.")):
-            name = chosenData(self._ui.scenarioComboBox)
-            keepsFace = not self._ui.removeFaceCheckBox.checked
-            keepsNames = not self._ui.removeNamesCheckBox.checked
-            # A file named after the patient would reveal the name, too.
-            proposed = f"{name}.zip" if keepsNames else "head.zip"
-            path = askWhereToSave(_("Save the scenario"), proposed, "Zip (*.zip)")
-            if path is not None and (keepsFace or self._isFaceGone(name)):
-                taken = self._writing.run(
-                    lambda report: self._session.scenarioFiles.exportScenario(
-                        name, path, keepsFace, keepsNames, report
-                    )
+        name = chosenData(self._ui.scenarioComboBox)
+        keepsFace = not self._ui.removeFaceCheckBox.checked
+        keepsNames = not self._ui.removeNamesCheckBox.checked
+        # A file named after the patient would reveal the name, too.
+        proposed = f"{name}.zip" if keepsNames else "head.zip"
+        path = askWhereToSave(_("Save the scenario"), proposed, "Zip (*.zip)")
+        if path is not None and (keepsFace or self._isFaceGone(name)):
+            taken = self._writing.run(
+                lambda report: self._session.scenarioFiles.exportScenario(
+                    name, path, keepsFace, keepsNames, report
                 )
-                if taken is not None:
-                    self._showMessage(_("{path} was written.").format(path=path) + f" {taken}")
+            )
+            if taken is not None:
+                self._showMessage(_("{path} was written.").format(path=path) + f" {taken}")
 
     def _isFaceGone(self, name: str) -> bool:
         """Show a scenario's head before and after its face is removed, and ask the user."""
@@ -217,11 +214,9 @@ class ScenarioPanel:
             return
         scenario = self._logic.find(name)
         tasks = [(task.title, task.name) for task in scenario.tasks]
-        known = [task for _title, task in tasks]
-        first = next((task for task in known if task != TRIAL_RUN), known[0])
         last = self._session.task or self._session.settings.get(TASK)
-        chosen = last if last in known else first
-        fillComboBox(self._ui.taskComboBox, tasks, chosen)
+        others = (task for _title, task in tasks if task != TRIAL_RUN)
+        offerEntries(self._ui.taskComboBox, tasks, last, *others)
         self._chooseTask()
 
     def _showPicture(self, entry: ListedScenario | None) -> None:
@@ -283,30 +278,27 @@ METHOD_NAMES = {
 }
 
 
-class MethodsPanel:
-    """Wires the group's widgets to the session."""
+class MethodsPanel(Panel):
+    """The group Methods of registration."""
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
-        self._ui = ui
-        self._session = session
-        self._work = CancelableWork(self._showMessage, self._showProgress, self._showUsable)
-        self._work.connectButton(ui.compareMethodsButton, self.compare)
+        super().__init__(ui, session)
+        self._work = self.cancelableWork(self._showMessage, self._showProgress, self._showUsable)
+        self._work.connectButton(
+            ui.compareMethodsButton, self.compare, _("The methods were not compared.")
+        )
         self._showMessage("")
-
-    def close(self) -> None:
-        self._work.cancel()
 
     def compare(self) -> None:
         """Simulate trials on the chosen head, and show how each method registers them."""
         ui, logic = self._ui, self._session.methodComparison
-        with showErrors(_("The methods were not compared.")):
-            scenario = chosenScenario(ui, self._session)
-            trials, shift = ui.methodTrialsSpinBox.value, ui.methodShiftSpinBox.value
-            self._showMessage(_("Trials are being simulated and registered."))
-            found = self._work.run(lambda report: logic.compare(scenario, trials, shift, report))
-            if found is not None:
-                fillTable(ui.methodsTable, [_row(method) for method in found])
-                self._showMessage(self._said(found))
+        scenario = chosenScenario(ui, self._session)
+        trials, shift = ui.methodTrialsSpinBox.value, ui.methodShiftSpinBox.value
+        self._showMessage(_("Trials are being simulated and registered."))
+        found = self._work.run(lambda report: logic.compare(scenario, trials, shift, report))
+        if found is not None:
+            fillTable(ui.methodsTable, [_row(method) for method in found])
+            self._showMessage(self._said(found))
 
     def _said(self, found: tuple[ComparedMethod, ...]) -> str:
         text = _(

@@ -11,12 +11,12 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.number_text import fixed
 from rastrainer.panels.application import TABLES, askWhereToSave, fitThreeDViews, showTable
+from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
-    CancelableWork,
     chosenData,
-    fillComboBox,
     fillTable,
+    offerEntries,
     setChecked,
     setText,
     setUsable,
@@ -33,7 +33,6 @@ from rastrainer.slicer.scene.score_tables import (
     showStandings,
     standings,
 )
-from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.values import StoredTrial
@@ -42,14 +41,13 @@ from rastrainer.trial.analysis import TrialAnalysis
 from rastrainer.trial.ctps import CTPS_WARNING
 
 
-class ScorePanel:
-    """Wires the section's widgets to the session."""
+class ScorePanel(Panel):
+    """The section Score."""
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
-        self._ui = ui
-        self._session = session
+        super().__init__(ui, session)
         self._trainees = session.trainees
-        self._work = CancelableWork(self._showMessage, self._showProgress, self._showUsable)
+        self._work = self.cancelableWork(self._showMessage, self._showProgress, self._showUsable)
         self._newTrial = ""
         self._worst = ""
         self._named: str | None = None
@@ -58,19 +56,15 @@ class ScorePanel:
         ui.exportScoresButton.connect("clicked()", self.exportScores)
         ui.reportButton.connect("clicked()", self.writeReport)
         ui.scoreCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
-        self._work.connectButton(ui.replayButton, self.replay)
-        ui.worstTouchButton.connect("clicked()", self.replayWorstTouch)
-        self._listening = Listening(
+        self._work.connectButton(ui.replayButton, self.replay, _("The trial is not shown."))
+        connectClick(ui.worstTouchButton, self.replayWorstTouch, _("The touch is not shown."))
+        self.listen(
             (self._trainees.changed, self._show),
             (session.trials.trialScored, self._noteNewTrial),
             (session.replay.feedbackFound, self._showFeedback),
             (session.sceneChanged, self._showReplay),
         )
         self._show()
-
-    def close(self) -> None:
-        self._work.cancel()
-        self._listening.close()
 
     def showTables(self) -> None:
         """Show the section's content as tables of the scene, or restore the user's layout."""
@@ -122,16 +116,14 @@ class ScorePanel:
 
     def replay(self) -> None:
         """Show the trial again in the 3D view."""
-        with showErrors(_("The trial is not shown.")):
-            trial = self._chosenTrial()
-            self._work.run(lambda report: self._session.replay.show(trial, report))
-            fitThreeDViews()
+        trial = self._chosenTrial()
+        self._work.run(lambda report: self._session.replay.show(trial, report))
+        fitThreeDViews()
 
     def replayWorstTouch(self) -> None:
         """Show again how the worst touch came about."""
-        with showErrors(_("The touch is not shown.")):
-            trial = self._chosenTrial()
-            self._work.run(lambda report: self._session.replay.showWorstTouch(trial, report))
+        trial = self._chosenTrial()
+        self._work.run(lambda report: self._session.replay.showWorstTouch(trial, report))
 
     def _showReplay(self) -> None:
         setChecked(self._ui.showTablesButton, self._session.layout.purpose == TABLES)
@@ -156,14 +148,9 @@ class ScorePanel:
             return
         entries = [(_entry(n, t), t.record.trial_id) for n, t in enumerate(history, start=1)]
         entries.reverse()
-        known = [trialId for _title, trialId in entries]
         wanted = self._newTrial or chosenData(self._ui.trialComboBox)
         self._newTrial = ""
-        fillComboBox(
-            self._ui.trialComboBox,
-            entries,
-            wanted if wanted in known else known[0] if known else "",
-        )
+        offerEntries(self._ui.trialComboBox, entries, wanted)
         self._showTrial()
 
     def _showTrial(self, _index: int = 0) -> None:

@@ -6,31 +6,31 @@ from typing import Any
 
 import slicer
 
+from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.shown_errors import showErrors
-from rastrainer.panels.widgets import connectAsPressed, keepPath, keepText, setText, setUsable
+from rastrainer.panels.widgets import bindPath, bindText, connectAsPressed, setText, setUsable
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from rastrainer.slicer.settings import INDEX, PROGRAM, WHEELS
-from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 
 
-class SetupPanel:
+class SetupPanel(Panel):
     """Wires the section's widgets to the session; open while there is something to set up."""
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
-        self._ui = ui
+        super().__init__(ui, session)
         self._simulator = session.simulator
-        keepText(ui.indexLineEdit, session.settings, INDEX)
-        keepPath(ui.wheelsPathLineEdit, session.settings, WHEELS)
-        keepPath(ui.programPathLineEdit, session.settings, PROGRAM)
+        bindText(ui.indexLineEdit, session.settings, INDEX)
+        bindPath(ui.wheelsPathLineEdit, session.settings, WHEELS)
+        bindPath(ui.programPathLineEdit, session.settings, PROGRAM)
         ui.indexLineEdit.connect("textChanged(QString)", self._showSetup)
         ui.wheelsPathLineEdit.connect("currentPathChanged(QString)", self._showSetup)
         setup = self._simulator.setup
         connectAsPressed(ui.setupButton, lambda: setup.cancel if setup.isRunning else self.setUp)
-        ui.removeSetupButton.connect("clicked()", self.remove)
-        self._listening = Listening(
+        connectClick(ui.removeSetupButton, self.remove, _("The simulator could not be removed."))
+        self.listen(
             (setup.progressed, self._follow),
             (setup.changed, self._showSetup),
             (setup.finished, self._finish),
@@ -38,10 +38,6 @@ class SetupPanel:
         )
         self._showSetup()
         ui.setupCollapsibleButton.collapsed = not self._simulator.needsSetup
-
-    def close(self) -> None:
-        """Stop listening to the session."""
-        self._listening.close()
 
     def setUp(self) -> None:
         """Start the set-up."""
@@ -53,14 +49,13 @@ class SetupPanel:
 
     def remove(self) -> None:
         """Remove what was set up, after asking."""
-        with showErrors(_("The simulator could not be removed.")):
-            question = _(
-                "Remove the simulator, the folder {folder}, from this computer? Trials, studies "
-                "and scenarios stay. It can be set up again at any time."
-            ).format(folder=self._simulator.setup.folder)
-            if slicer.util.confirmYesNoDisplay(toolTip(question), _("Remove the simulator")):
-                self._simulator.removeSetup()
-                self._ui.setupCollapsibleButton.collapsed = False
+        question = _(
+            "Remove the simulator, the folder {folder}, from this computer? Trials, studies "
+            "and scenarios stay. It can be set up again at any time."
+        ).format(folder=self._simulator.setup.folder)
+        if slicer.util.confirmYesNoDisplay(toolTip(question), _("Remove the simulator")):
+            self._simulator.removeSetup()
+            self._ui.setupCollapsibleButton.collapsed = False
 
     def _showSetup(self, _text: str = "") -> None:
         ui, setup = self._ui, self._simulator.setup

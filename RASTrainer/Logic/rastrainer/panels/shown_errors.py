@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import qt
 import slicer
@@ -37,3 +37,13 @@ def showErrors(message: str, waitCursor: bool = False) -> Iterator[None]:
         slicer.util.messageBox(
             f"{message}\n\n{problem}", windowTitle=_("Slicer error"), icon=qt.QMessageBox.Critical
         )
+
+
+def guardedAction(action: Callable[[], object], failure: str) -> Callable[[], None]:
+    """Return a function that shows what goes wrong in an action; see `showErrors`."""
+
+    def act() -> None:
+        with showErrors(failure):
+            action()
+
+    return act

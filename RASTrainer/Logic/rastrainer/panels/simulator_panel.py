@@ -7,15 +7,16 @@ from typing import Any
 
 import slicer
 
+from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.setup_panel import costSentence
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
     LINK_COLORS,
+    bindChecked,
+    bindNumber,
+    bindText,
     connectAsPressed,
-    keepChecked,
-    keepNumber,
-    keepText,
     setLight,
     setText,
     setUsable,
@@ -25,30 +26,33 @@ from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.simulator_logic import freePort
 from rastrainer.slicer.program.simulator_program import ProgramState
 from rastrainer.slicer.settings import HAS_NETWORK, HAS_WINDOW, HOST, PORT
-from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 
 
-class SimulatorPanel:
-    """Wires the section's widgets to the session."""
+class SimulatorPanel(Panel):
+    """The section Simulator."""
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
-        self._ui = ui
+        super().__init__(ui, session)
         self._link = session.link
         self._simulator = session.simulator
-        keepText(ui.hostLineEdit, session.settings, HOST)
-        keepNumber(ui.portSpinBox, session.settings, PORT)
-        keepChecked(ui.windowCheckBox, session.settings, HAS_WINDOW)
-        keepChecked(ui.networkCheckBox, session.settings, HAS_NETWORK)
+        bindText(ui.hostLineEdit, session.settings, HOST)
+        bindNumber(ui.portSpinBox, session.settings, PORT)
+        bindChecked(ui.windowCheckBox, session.settings, HAS_WINDOW)
+        bindChecked(ui.networkCheckBox, session.settings, HAS_NETWORK)
         self._startsAfterSetup = False
         ui.startSimulatorButton.connect("clicked()", self.startAndConnect)
-        ui.stopSimulatorButton.connect("clicked()", self.stopSimulator)
+        connectClick(
+            ui.stopSimulatorButton,
+            lambda: self._simulator.stop(),
+            _("The simulator could not be stopped."),
+        )
         ui.programPathLineEdit.connect("currentPathChanged(QString)", self._showProgram)
         connectAsPressed(
             ui.connectButton, lambda: self.connect if self._isOff() else self.disconnect
         )
-        ui.probeButton.connect("clicked()", self.testConnection)
-        self._listening = Listening(
+        connectClick(ui.probeButton, self.testConnection, _("The connection could not be tested."))
+        self.listen(
             (self._link.statusChanged, self._showStatus),
             (self._link.stateChanged, self._showTraining),
             (self._simulator.setup.changed, self._showProgram),
@@ -60,10 +64,6 @@ class SimulatorPanel:
         self._showStatus(self._link.status)
         self._showProgram()
         self._showPairing()
-
-    def close(self) -> None:
-        """Stop listening to the session."""
-        self._listening.close()
 
     def startAndConnect(self) -> None:
         """Start the simulator on this computer and connect; set it up first, after asking."""
@@ -79,11 +79,6 @@ class SimulatorPanel:
             # Not if it could not be started: a later set-up should not start anything.
             self._startsAfterSetup = self._simulator.setup.isRunning
 
-    def stopSimulator(self) -> None:
-        """End the simulator that was started here."""
-        with showErrors(_("The simulator could not be stopped.")):
-            self._simulator.stop()
-
     def connect(self) -> None:
         """Connect to the simulator, unless a connection is already being made."""
         with showErrors(_("The connection could not be started.")):
@@ -96,9 +91,8 @@ class SimulatorPanel:
 
     def testConnection(self) -> None:
         """Check once whether a simulator answers, and show the result."""
-        with showErrors(_("The connection could not be tested.")):
-            host, port = self._ui.hostLineEdit.text, self._ui.portSpinBox.value
-            self._showWords(self._link.testConnection(host, port, self._showTest))
+        host, port = self._ui.hostLineEdit.text, self._ui.portSpinBox.value
+        self._showWords(self._link.testConnection(host, port, self._showTest))
 
     def _isOff(self) -> bool:
         return self._link.status.state is LinkState.OFF
@@ -184,29 +178,23 @@ class SimulatorPanel:
         setText(self._ui.trainingText, str(state.get("instruction", "")))
 
 
-class RunningSimulatorPanel:
+class RunningSimulatorPanel(Panel):
     """Wires its widgets to the session; visible only if a simulator was found."""
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
-        self._ui = ui
+        super().__init__(ui, session)
         self._running = session.simulator.running
         ui.connectToRunningButton.connect("clicked()", self.connectToIt)
-        ui.endRunningButton.connect("clicked()", self.endIt)
-        self._running.changed.connect(self._show)
+        connectClick(
+            ui.endRunningButton, lambda: self._running.end(), _("The simulator could not be ended.")
+        )
+        self.listen((self._running.changed, self._show))
         self._running.look()
         self._show()
-
-    def close(self) -> None:
-        """Stop listening to the session."""
-        self._running.changed.disconnect(self._show)
 
     def connectToIt(self) -> None:
         with showErrors(_("The connection could not be started.")):
             self._running.connect()
-
-    def endIt(self) -> None:
-        with showErrors(_("The simulator could not be ended.")):
-            self._running.end()
 
     def _show(self) -> None:
         ui, running = self._ui, self._running

@@ -12,6 +12,7 @@ import qt
 import slicer
 
 from rastrainer.errors import InputError
+from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
@@ -24,7 +25,6 @@ from rastrainer.panels.widgets import (
 from rastrainer.protocol import StepKind
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.study_logic import TRIALS
-from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 from rastrainer.study.protocol.questionnaires import (
     Questionnaire,
@@ -38,24 +38,29 @@ from rastrainer.study_messages import StudyStep
 TIMED = (StepKind.TRIAL_RUN, StepKind.BREAK)
 
 
-class StudyPanel:
-    """Wires the section's widgets to the session."""
+class StudyPanel(Panel):
+    """The section Study."""
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
-        self._ui = ui
-        self._session = session
+        super().__init__(ui, session)
         self._logic = session.study
         self._form = QuestionnaireForm(ui.questionnaireWidget)
         self._progress: StepProgress | None = None
         self._judged: tuple | None = None
-        ui.beginStudyButton.connect("clicked()", self.begin)
-        ui.enrollButton.connect("clicked()", self.enroll)
+        connectClick(ui.beginStudyButton, self.begin, _("The study was not started."))
+        connectClick(
+            ui.enrollButton, lambda: self._logic.enroll(), _("The trainee was not enrolled.")
+        )
         ui.startStepButton.connect("clicked()", self.startStep)
         ui.skipStepButton.connect("clicked()", self.skipStep)
         ui.repeatStepButton.connect("clicked()", self.explainRepeat)
-        ui.saveAnswersButton.connect("clicked()", self.saveAnswers)
+        connectClick(
+            ui.saveAnswersButton,
+            lambda: self._logic.answer(self._form.answers()),
+            _("The answers were not saved."),
+        )
         ui.protocolPathLineEdit.connect("currentPathChanged(QString)", self._showButtons)
-        self._listening = Listening(
+        self.listen(
             (self._logic.changed, self._show),
             (session.training.changed, self._followTrial),
             (session.link.statusChanged, self._showButtons),
@@ -64,33 +69,19 @@ class StudyPanel:
         )
         self._show()
 
-    def close(self) -> None:
-        """Stop listening to the session."""
-        self._listening.close()
-
     def begin(self) -> None:
         """Make the chosen file the protocol of the study, after asking."""
-        with showErrors(_("The study was not started.")):
-            question = _(
-                "Begin the study with this protocol? A study keeps its protocol permanently; "
-                "another protocol needs a new study file."
-            )
-            if slicer.util.confirmYesNoDisplay(question, _("Begin the study")):
-                self._logic.begin(Path(self._ui.protocolPathLineEdit.currentPath))
-
-    def enroll(self) -> None:
-        with showErrors(_("The trainee was not enrolled.")):
-            self._logic.enroll()
+        question = _(
+            "Begin the study with this protocol? A study keeps its protocol permanently; "
+            "another protocol needs a new study file."
+        )
+        if slicer.util.confirmYesNoDisplay(question, _("Begin the study")):
+            self._logic.begin(Path(self._ui.protocolPathLineEdit.currentPath))
 
     def startStep(self) -> None:
         """Start the trial that comes next."""
         with showErrors(_("The step was not started.")):
             self._logic.startStep()
-
-    def saveAnswers(self) -> None:
-        """Store the answers to the questionnaire."""
-        with showErrors(_("The answers were not saved.")):
-            self._logic.answer(self._form.answers())
 
     def skipStep(self) -> None:
         """Skip the step, for a reason; a reason that is refused can be completed."""
@@ -146,7 +137,7 @@ class StudyPanel:
     def _followTrial(self) -> None:
         """Warn, once for each trial, of one that will not count."""
         self._showButtons()
-        trial = self._session.training.progress
+        trial = self._session.training.status
         key = (trial.trainee, trial.task, trial.mode, trial.method, trial.procedure, trial.isOpen)
         if key != self._judged:
             self._judged = key
@@ -171,7 +162,10 @@ class StudyPanel:
         ui.enrollButton.visible = protocol is not None and progress is None
         ui.stepGroupBox.visible = progress is not None
         if progress is not None:
-            setText(ui.stepText, f"{progress.sentence} {progress.repeat_sentence}".rstrip())
+            with contextlib.suppress(InputError):
+                uncounted = self._logic.uncountedSentence()
+                sentences = (progress.sentence, progress.repeat_sentence, uncounted)
+                setText(ui.stepText, " ".join(filter(None, sentences)))
             ui.stepsProgressBar.maximum = len(progress.steps)
             ui.stepsProgressBar.value = len(progress.entries)
             fillTable(ui.stepsTable, [_row(progress, n) for n in range(len(progress.steps))])

@@ -8,13 +8,12 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import fixed
+from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import shortName
-from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
     GRAY,
     GREEN,
     RED,
-    CancelableWork,
     chosenData,
     fillComboBox,
     isFilled,
@@ -29,28 +28,38 @@ from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.target_plan_logic import PlanOnImages, targetsOf
 from rastrainer.slicer.scene.plan_points import startPlacing, whyNotRemoved
-from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 from rastrainer.work_progress import no_progress
 
 
-class PlanPanel:
-    """Wires the section's widgets to the session."""
+class PlanPanel(Panel):
+    """The section Plan."""
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
-        self._ui = ui
-        self._session = session
+        super().__init__(ui, session)
         self._logic = session.plan
-        self._keeping = CancelableWork(lambda _sentence: None, no_progress, self.showState)
-        ui.placeTargetButton.connect("clicked()", self.placeTarget)
-        ui.placeTrajectoryButton.connect("clicked()", self.placeTrajectory)
-        ui.removePlanPointButton.connect("clicked()", self.removePoint)
-        ui.undoPlanButton.connect("clicked()", self.undo)
-        ui.sendPlanButton.connect("clicked()", self.send)
-        self._keeping.connectButton(ui.keepPlanButton, self.save)
+        self._keeping = self.cancelableWork(lambda _sentence: None, no_progress, self.showState)
+        connectClick(
+            ui.placeTargetButton,
+            lambda: self._place(self._logic.points.newTarget()),
+            _("No target can be placed."),
+        )
+        connectClick(
+            ui.placeTrajectoryButton,
+            lambda: self._place(self._logic.points.newTrajectory()),
+            _("No trajectory can be placed."),
+        )
+        connectClick(ui.removePlanPointButton, self.removePoint, _("The point was not removed."))
+        connectClick(ui.undoPlanButton, self.undo, _("Nothing was undone."))
+        connectClick(
+            ui.sendPlanButton,
+            lambda: self._logic.send(self._ui.planComboBox.currentNode(), self._row()),
+            _("The plan was not sent."),
+        )
+        self._keeping.connectButton(ui.keepPlanButton, self.save, _("The plan was not saved."))
         ui.planComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._chooseNode)
         ui.planTargetComboBox.connect("activated(int)", self._chooseTarget)
-        self._listening = Listening(
+        self.listen(
             (self._logic.changed, self.showState),
             (session.registration.changed, self.showState),
             (session.link.statusChanged, self.showState),
@@ -58,52 +67,29 @@ class PlanPanel:
         )
         self.showState()
 
-    def close(self) -> None:
-        """Cancel the running work, and stop listening to the session."""
-        self._keeping.cancel()
-        self._listening.close()
-
-    def placeTarget(self) -> None:
-        """Let the next click in a view place a target, beside those that are placed."""
-        with showErrors(_("No target can be placed.")):
-            self._place(self._logic.points.newTarget())
-
-    def placeTrajectory(self) -> None:
-        """Let the next two clicks place a trajectory, from its entry to the target."""
-        with showErrors(_("No trajectory can be placed.")):
-            self._place(self._logic.points.newTrajectory())
-
     def removePoint(self) -> None:
         """Remove the chosen target, or the last point of a trajectory."""
-        with showErrors(_("The point was not removed.")):
-            self._logic.points.remove(self._ui.planComboBox.currentNode(), self._row())
-            self.showState()
+        self._logic.points.remove(self._ui.planComboBox.currentNode(), self._row())
+        self.showState()
 
     def undo(self) -> None:
         """Undo the last placing or removal."""
-        with showErrors(_("Nothing was undone.")):
-            self._logic.points.undo()
-            self.showState()
-
-    def send(self) -> None:
-        """Show the plan in the simulator and ask whether the robot can carry it out."""
-        with showErrors(_("The plan was not sent.")):
-            self._logic.send(self._ui.planComboBox.currentNode(), self._row())
+        self._logic.points.undo()
+        self.showState()
 
     def save(self) -> None:
         """Copy the scenario chosen above with this plan and use the copy."""
-        with showErrors(_("The plan was not saved.")):
-            ui = self._ui
-            scenario = self._keeping.run(
-                lambda report: self._session.scenarioFiles.savePlan(
-                    chosenData(ui.scenarioComboBox),
-                    ui.planTitleLineEdit.text.strip(),
-                    ui.planComboBox.currentNode(),
-                    report,
-                )
+        ui = self._ui
+        scenario = self._keeping.run(
+            lambda report: self._session.scenarioFiles.savePlan(
+                chosenData(ui.scenarioComboBox),
+                ui.planTitleLineEdit.text.strip(),
+                ui.planComboBox.currentNode(),
+                report,
             )
-            if scenario is not None:
-                self._session.scenarioMade.emit(scenario.name)
+        )
+        if scenario is not None:
+            self._session.scenarioMade.emit(scenario.name)
 
     def showState(self, *_arguments: Any) -> None:
         """Show the plan."""

@@ -10,10 +10,10 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.panels.application import CALIBRATION, CURVE, askWhereToSave, showChart
+from rastrainer.panels.panel import Panel
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
-    CancelableWork,
     chosenData,
     connectAsPressed,
     fillComboBox,
@@ -27,7 +27,6 @@ from rastrainer.protocol import Mode
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.scene.tables import showCalibration, showLearningCurve
 from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS
-from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.aborted_trials import StoredAbortedTrial
 from rastrainer.study.database.database import EXAMPLE, study_place
@@ -35,16 +34,15 @@ from rastrainer.study.database.values import StoredTrial, Trainee, day_of
 from rastrainer.study.outcomes import short_mode_title, task_title
 
 
-class TraineesPanel:
-    """Wires the section's widgets to the session."""
+class TraineesPanel(Panel):
+    """The section Trainees."""
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
-        self._ui = ui
-        self._session = session
+        super().__init__(ui, session)
         self._logic = session.trainees
         self._isStateShown = False
         self._isErasing = False
-        self._deletion = CancelableWork(
+        self._deletion = self.cancelableWork(
             lambda sentence: self._showMessage("{text}", text=sentence),
             self._noteErasing,
             self._showDeleting,
@@ -57,22 +55,17 @@ class TraineesPanel:
         ui.consentCheckBox.connect("toggled(bool)", self.setConsent)
         connectAsPressed(ui.archiveButton, self._archiving)
         ui.exportTraineeButton.connect("clicked()", self.exportTrainee)
-        self._deletion.connectButton(ui.deleteTraineeButton, self.deleteTrainee)
+        self._deletion.connectButton(
+            ui.deleteTraineeButton, self.deleteTrainee, _("The trainee was not deleted.")
+        )
         ui.createTraineeButton.connect("clicked()", self.createTrainee)
         ui.learningCurveButton.connect("clicked()", self.showLearningCurve)
         ui.calibrationButton.connect("clicked()", self.showCalibration)
         ui.traineesCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
         ui.exportHistoryButton.connect("clicked()", self.exportHistory)
         self._isArchived = self._hasTrainee = False
-        self._listening = Listening(
-            (self._logic.changed, self._show), (session.sceneChanged, self._showPlots)
-        )
+        self.listen((self._logic.changed, self._show), (session.sceneChanged, self._showPlots))
         self._show()
-
-    def close(self) -> None:
-        """Cancel a deletion that has not begun, and stop listening to the session."""
-        self._deletion.cancel()
-        self._listening.close()
 
     def chooseStudy(self, path: str) -> None:
         """Continue with the study of another file, once its name is complete."""
@@ -189,21 +182,20 @@ class TraineesPanel:
 
     def deleteTrainee(self) -> None:
         """Delete the chosen trainee for good, after asking."""
-        with showErrors(_("The trainee was not deleted.")):
-            name, trials = self._logic.chosen, len(self._logic.history())
-            question = _(
-                "Delete {name} with {trials} trials from the study and from the journals on this "
-                "computer, permanently? This cannot be undone; export the trainee first if the "
-                "data may be needed. Earlier exports and backups are yours to delete."
-            ).format(name=name, trials=trials)
-            if slicer.util.confirmYesNoDisplay(toolTip(question), _("Delete the trainee")):
-                erased = self._deletion.run(self._logic.delete)
-                if erased is None:
-                    return
-                text = _("{name} was deleted with {trials} trials and {journals} journals.").format(
-                    name=name, trials=erased.trials, journals=erased.journals
-                )
-                self._showMessage("{text}", text=" ".join((text, *erased.warnings)))
+        name, trials = self._logic.chosen, len(self._logic.history())
+        question = _(
+            "Delete {name} with {trials} trials from the study and from the journals on this "
+            "computer, permanently? This cannot be undone; export the trainee first if the "
+            "data may be needed. Earlier exports and backups are yours to delete."
+        ).format(name=name, trials=trials)
+        if slicer.util.confirmYesNoDisplay(toolTip(question), _("Delete the trainee")):
+            erased = self._deletion.run(self._logic.delete)
+            if erased is None:
+                return
+            text = _("{name} was deleted with {trials} trials and {journals} journals.").format(
+                name=name, trials=erased.trials, journals=erased.journals
+            )
+            self._showMessage("{text}", text=" ".join((text, *erased.warnings)))
 
     def _noteErasing(self, step: str, _share: float) -> None:
         """Show that the deletion has begun, which nothing can undo."""

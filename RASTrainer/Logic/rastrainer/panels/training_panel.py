@@ -6,6 +6,7 @@ from typing import Any
 
 import slicer
 
+from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import buttonTitle, shortName, toolTip
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
@@ -13,11 +14,11 @@ from rastrainer.panels.widgets import (
     GREEN,
     RED,
     YELLOW,
+    bindChecked,
+    bindChosen,
     chosenData,
     connectAsPressed,
-    fillComboBox,
-    keepChecked,
-    keepChosen,
+    offerEntries,
     setLight,
     setProperty,
     setText,
@@ -40,7 +41,6 @@ from rastrainer.slicer.settings import (
     SLICES_FOLLOW_TOOL,
     SLICES_SHOW_NEXT_POINT,
 )
-from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 from rastrainer.study.outcomes import task_title
 
@@ -70,25 +70,24 @@ NEARNESS = {
 }
 
 
-class TrainingPanel:
-    """Wires the section's widgets to the session."""
+class TrainingPanel(Panel):
+    """The section Training."""
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
-        self._ui = ui
-        self._session = session
+        super().__init__(ui, session)
         self._logic = session.training
         modes = [(_("Desktop screen"), Mode.DESKTOP.value), (_("Headset"), Mode.HMD.value)]
-        keepChosen(ui.modeComboBox, modes, session.settings, MODE)
-        keepChecked(ui.tutorialCheckBox, session.settings, IS_TUTORIAL_FIRST)
-        keepChecked(ui.slicesNextPointCheckBox, session.settings, SLICES_SHOW_NEXT_POINT)
-        keepChecked(ui.slicesToolCheckBox, session.settings, SLICES_FOLLOW_TOOL)
+        bindChosen(ui.modeComboBox, modes, session.settings, MODE)
+        bindChecked(ui.tutorialCheckBox, session.settings, IS_TUTORIAL_FIRST)
+        bindChecked(ui.slicesNextPointCheckBox, session.settings, SLICES_SHOW_NEXT_POINT)
+        bindChecked(ui.slicesToolCheckBox, session.settings, SLICES_FOLLOW_TOOL)
         for box in (ui.slicesNextPointCheckBox, ui.slicesToolCheckBox):
             box.connect("toggled(bool)", self._moveSlices)
         ui.startTrialRunButton.connect("clicked()", self.startTrialRun)
         ui.startTaskButton.connect("clicked()", self.startTask)
         connectAsPressed(ui.pauseButton, lambda: self.resume if self._isPaused() else self.pause)
-        ui.abortButton.connect("clicked()", self.abort)
-        self._listening = Listening(
+        connectClick(ui.abortButton, self.abort, _("The trial was not aborted."))
+        self.listen(
             (self._logic.changed, self.showState),
             (self._logic.answered, self._showMessage),
             (session.trials.problemFound, self._showMessage),
@@ -102,10 +101,6 @@ class TrainingPanel:
         self._showChoices()
         self._moveSlices()
         self.showState()
-
-    def close(self) -> None:
-        """Stop listening to the session."""
-        self._listening.close()
 
     def startTrialRun(self) -> None:
         """Start the trial run, which does not count."""
@@ -126,23 +121,17 @@ class TrainingPanel:
 
     def abort(self) -> None:
         """End the trial without registering it, after asking."""
-        with showErrors(_("The trial was not aborted.")):
-            trial = self._logic.progress
-            question = _("Abort the trial of {name}? Its touches will not be registered.").format(
-                name=shortName(trial.trainee)
-            )
-            if slicer.util.confirmYesNoDisplay(toolTip(question), _("Abort the trial")):
-                self._logic.abort(trial.trialId)
+        trial = self._logic.status
+        question = _("Abort the trial of {name}? Its touches will not be registered.").format(
+            name=shortName(trial.trainee)
+        )
+        if slicer.util.confirmYesNoDisplay(toolTip(question), _("Abort the trial")):
+            self._logic.abort(trial.trialId)
 
     def _showChoices(self) -> None:
         """Offer what the chosen scenario has; another scenario begins with fiducials alone."""
         box, methods = self._ui.methodComboBox, self._session.methods
-        method = chosenData(box)
-        fillComboBox(
-            box,
-            [(METHODS[each], each) for each in methods],
-            method if method in methods else methods[0],
-        )
+        offerEntries(box, [(METHODS[each], each) for each in methods], chosenData(box))
         setUsable(
             box,
             len(methods) > 1,
@@ -151,9 +140,8 @@ class TrainingPanel:
         )
         entries = [(_("none: only touches"), "")]
         entries += [(title, name) for name, title in self._session.procedures]
-        chosen = chosenData(self._ui.procedureComboBox)
-        known = [name for _title, name in entries]
-        fillComboBox(self._ui.procedureComboBox, entries, chosen if chosen in known else "")
+        box = self._ui.procedureComboBox
+        offerEntries(box, entries, chosenData(box))
         self.showState()
 
     def _moveSlices(self, *_checked: bool) -> None:
@@ -164,7 +152,7 @@ class TrainingPanel:
 
     def showState(self, *_arguments: Any) -> None:
         """Show the state of the trial."""
-        ui, progress, session = self._ui, self._logic.progress, self._session
+        ui, progress, session = self._ui, self._logic.status, self._session
         nobody = _("None: choose one in the section Trainees.")
         setText(ui.trainingTraineeText, session.trainees.chosen or nobody)
         title = _("Start {task}").format(task=buttonTitle(session.taskTitle))
@@ -194,7 +182,7 @@ class TrainingPanel:
 
     def _showTime(self) -> None:
         if self._session.link.status.state is LinkState.CONNECTED:
-            setText(self._ui.elapsedText, _clock(self._logic.progress.elapsedS))
+            setText(self._ui.elapsedText, _clock(self._logic.status.elapsedS))
 
     def _start(self, task: str, procedure: str = "", method: str = "") -> None:
         with showErrors(_("The trial was not started.")):
@@ -203,7 +191,7 @@ class TrainingPanel:
             self._session.study.startTrial(task, mode, isTutorialFirst, procedure, method)
 
     def _isPaused(self) -> bool:
-        return self._logic.progress.phase == Phase.PAUSED.value
+        return self._logic.status.phase == Phase.PAUSED.value
 
     def _showButtons(self, progress: TrialStatus, isConnected: bool) -> None:
         ui = self._ui

@@ -14,6 +14,7 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.panels.plain_text import LONGEST_TEXT, shortened, shortName, toolTip, wrappable
 from rastrainer.panels.section_layout import configureLabel
+from rastrainer.panels.shown_errors import guardedAction
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
@@ -126,6 +127,12 @@ def fillComboBox(combo: Any, entries: Iterable[tuple[str, str]], chosen: str) ->
     combo.blockSignals(wasBlocked)
 
 
+def offerEntries(combo: Any, entries: Sequence[tuple[str, str]], *wanted: str) -> None:
+    """Fill a `QComboBox`, and choose the first wanted entry that is in it, or else the first."""
+    known = [data for _text, data in entries]
+    fillComboBox(combo, entries, next((each for each in (*wanted, *known) if each in known), ""))
+
+
 def isFilled(combo: Any, entries: Iterable[tuple[str, str]]) -> bool:
     shown = [(combo.itemText(i), combo.itemData(i)) for i in range(combo.count)]
     return shown == [(shortName(text), data) for text, data in entries]
@@ -156,33 +163,31 @@ def millimeters(value: float | None, digits: int = 2) -> str:
     return "–" if value is None else f"{value:.{digits}f} mm"
 
 
-def keepChecked(box: Any, settings: Settings, setting: Setting[bool]) -> None:
+def bindChecked(box: Any, settings: Settings, setting: Setting[bool]) -> None:
     box.checked = settings.get(setting)
     box.connect("toggled(bool)", lambda checked: settings.set(setting, checked))
 
 
-def keepText(edit: Any, settings: Settings, setting: Setting[str]) -> None:
+def bindText(edit: Any, settings: Settings, setting: Setting[str]) -> None:
     edit.text = settings.get(setting)
     edit.connect("textChanged(QString)", lambda text: settings.set(setting, text))
 
 
-def keepNumber(box: Any, settings: Settings, setting: Setting[int]) -> None:
+def bindNumber(box: Any, settings: Settings, setting: Setting[int]) -> None:
     box.value = settings.get(setting)
     box.connect("valueChanged(int)", lambda value: settings.set(setting, value))
 
 
-def keepPath(edit: Any, settings: Settings, setting: Setting[str]) -> None:
+def bindPath(edit: Any, settings: Settings, setting: Setting[str]) -> None:
     edit.currentPath = settings.get(setting)
     edit.connect("currentPathChanged(QString)", lambda path: settings.set(setting, path))
 
 
-def keepChosen(
+def bindChosen(
     combo: Any, entries: Sequence[tuple[str, str]], settings: Settings, setting: Setting[str]
 ) -> None:
     """Let a combo box of these entries (text, data) keep the data of the chosen one."""
-    chosen = settings.get(setting)
-    known = [data for _text, data in entries]
-    fillComboBox(combo, entries, chosen if chosen in known else setting.usual)
+    offerEntries(combo, entries, settings.get(setting), setting.usual)
     combo.connect("activated(int)", lambda _index: settings.set(setting, chosenData(combo)))
 
 
@@ -234,8 +239,10 @@ class CancelableWork:
             self.isUnderWay = False
             self._showUsable()
 
-    def connectButton(self, button: Any, start: Callable[[], None]) -> None:
-        connectAsPressed(button, lambda: self.cancel if self.isUnderWay else start)
+    def connectButton(self, button: Any, start: Callable[[], None], failure: str) -> None:
+        """Have a click start or cancel work; `failure` says what was not done where it fails."""
+        guarded = guardedAction(start, failure)
+        connectAsPressed(button, lambda: self.cancel if self.isUnderWay else guarded)
 
     def cancel(self) -> None:
         """Cancel the running work, when it next reports its progress."""

@@ -21,31 +21,34 @@ class Turns:
         self, steps: Iterator[object], callSoon: Callable[[Callable[[], None]], None]
     ) -> None:
         """Begin in the next turn, in which `callSoon` calls a function."""
-        self.isOver = False
+        self.isOver = self._isAtWork = False
         self._steps = steps
         self._callSoon = callSoon
         callSoon(self._go)
 
     def finish(self) -> None:
         """Do now what is left, unless a step asks for that itself."""
-        while not self.isOver:
+        while not (self.isOver or self._isAtWork):
             self._step()
 
     def stop(self) -> None:
         self.isOver = True
 
     def _go(self) -> None:
-        if not self.isOver:
+        if not (self.isOver or self._isAtWork):
             self._step()
             self._callSoon(self._go)
 
     def _step(self) -> None:
+        self._isAtWork = True
         try:
             next(self._steps)
         except BaseException as error:
             self.isOver = True
             if not isinstance(error, StopIteration):
                 raise
+        finally:
+            self._isAtWork = False
 
 
 def importInTurns(name: str) -> Iterator[None]:

@@ -62,10 +62,8 @@ class Link:
         """Make a link that is not connected.
 
         Args:
-            scene: the scene.
             findKit: returns what makes the connector; None where it is not installed.
             client: name of this side, sent to the simulator.
-            clock: monotonic, in seconds.
             callSoon: calls a function in the host's next turn, so that answers and commands need
                 not wait for the next `process`; it is called from inside VTK.
         """

@@ -50,7 +50,6 @@ class DeliveryQueue(Generic[T]):
         """Receive what is delivered from now on.
 
         Args:
-            link: to the simulator.
             delivered: signal of the link that emits each delivery.
             work: in which trials are stored.
             store: returns what stores a delivery, called in the background.
@@ -154,7 +153,6 @@ class AbortedTrialLogic:
         """Receive the trials of a link.
 
         Args:
-            link: to the simulator.
             openStudy: opens the study, in any thread; it may wait for a lock there.
             work: in which trials are stored.
         """

@@ -9,6 +9,8 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import compress
+from operator import not_
 from pathlib import Path
 from typing import Any
 
@@ -22,8 +24,10 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.logic.scenario_logic import ScenarioFiles
 from rastrainer.slicer.scene.nodes import (
     Role,
+    changedOnce,
     findNode,
     findOrAddNode,
+    isUsed,
     labelOf,
     setPoints,
     worldPoints,
@@ -37,17 +41,30 @@ COLOR = (0.1, 0.55, 0.9)
 
 @dataclass(frozen=True, eq=False)
 class _Placed:
-    """Names, and positions (n, 3) float, RAS mm."""
+    """Names, positions (n, 3) float, RAS mm, and which points are selected."""
 
     names: tuple[str, ...]
     places: np.ndarray
+    selected: tuple[bool, ...]
 
     def isLike(self, other: _Placed) -> bool:
-        return self.names == other.names and np.array_equal(self.places, other.places)
+        isSame = (self.names, self.selected) == (other.names, other.selected)
+        return isSame and np.array_equal(self.places, other.places)
+
+    def without(self, rows: Sequence[int]) -> _Placed:
+        kept = [row for row in range(len(self.names)) if row not in rows]
+        return _Placed(
+            tuple(self.names[row] for row in kept),
+            self.places[kept],
+            tuple(self.selected[row] for row in kept),
+        )
 
 
 class LandmarkPoints:
-    """Places, replaces and removes landmarks; each change can be undone, the last one first."""
+    """Places, replaces and removes landmarks; each change can be undone, the last one first.
+
+    Points that are deselected in the module Markups are left out, but kept.
+    """
 
     def __init__(self, scene: Any) -> None:
         self._scene = scene
@@ -56,11 +73,17 @@ class LandmarkPoints:
     @property
     def landmarks(self) -> tuple[Landmark, ...]:
         placed = self._placed()
-        return tuple(map(Landmark, placed.names, placed.places))
+        points = zip(placed.names, placed.places, placed.selected, strict=True)
+        return tuple(Landmark(name, place) for name, place, isSelected in points if isSelected)
+
+    @property
+    def deselected(self) -> tuple[str, ...]:
+        placed = self._placed()
+        return tuple(compress(placed.names, map(not_, placed.selected)))
 
     @property
     def missing(self) -> tuple[str, ...]:
-        placed = self._placed().names
+        placed = [landmark.name for landmark in self.landmarks]
         return tuple(name for name in FACE_LANDMARKS if name not in placed)
 
     def show(self, landmarks: Sequence[Landmark]) -> None:
@@ -69,7 +92,12 @@ class LandmarkPoints:
         self._set(
             _Placed(
                 tuple(each.name for each in landmarks),
+<<<<<<< HEAD
                 np.array([each.position_ras for each in landmarks], dtype=float).reshape(-1, 3),
+=======
+                np.array([each.position for each in landmarks], dtype=float).reshape(-1, 3),
+                (True,) * len(landmarks),
+>>>>>>> slicer
             )
         )
 
@@ -77,22 +105,20 @@ class LandmarkPoints:
         """Let the next click in a view place a landmark, in place of one of the same name."""
         self._keep()
         placed = self._placed()
-        rows = [row for row, each in enumerate(placed.names) if each != name]
-        if len(rows) < len(placed.names):
-            self._set(_Placed(tuple(placed.names[row] for row in rows), placed.places[rows]))
+        if name in placed.names:
+            self._set(placed.without([row for row, n in enumerate(placed.names) if n == name]))
         node = self._list()
         # The new point gets this as its label.
         node.SetControlPointLabelFormat(name.replace("%", "%%"))
         startPlacing(self._scene, node)
 
     def remove(self, row: int) -> None:
-        """Remove the landmark of a row."""
+        """Remove the landmark of a row of `landmarks`."""
         placed = self._placed()
-        if not 0 <= row < len(placed.names):
-            return
-        self._keep()
-        names = tuple(name for index, name in enumerate(placed.names) if index != row)
-        self._set(_Placed(names, np.delete(placed.places, row, axis=0)))
+        rows = [index for index, isSelected in enumerate(placed.selected) if isSelected]
+        if 0 <= row < len(rows):
+            self._keep()
+            self._set(placed.without(rows[row : row + 1]))
 
     @property
     def canUndo(self) -> bool:
@@ -121,12 +147,20 @@ class LandmarkPoints:
     def _placed(self) -> _Placed:
         node = findNode(self._scene, LIST, Role.LANDMARKS)
         if node is None:
-            return _Placed((), np.empty((0, 3)))
+            return _Placed((), np.empty((0, 3)), ())
         rows = list(placedRows(node))
-        return _Placed(tuple(labelOf(node, row) for row in rows), worldPoints(node)[rows])
+        return _Placed(
+            tuple(labelOf(node, row) for row in rows),
+            worldPoints(node)[rows],
+            tuple(isUsed(node, row) for row in rows),
+        )
 
     def _set(self, placed: _Placed) -> None:
-        setPoints(self._list(), placed.names, placed.places)
+        node = self._list()
+        with changedOnce(node):
+            setPoints(node, placed.names, placed.places)
+            for row, isSelected in enumerate(placed.selected):
+                node.SetNthControlPointSelected(row, isSelected)
 
     def _list(self) -> Any:
         node = findOrAddNode(self._scene, LIST, Role.LANDMARKS, _("Landmarks"))
@@ -151,12 +185,7 @@ class LandmarkLogic:
         self._files = files
 
     def propose(self, scenario: Scenario, progress: Progress = no_progress) -> str:
-        """Replace the landmarks in the scene by proposed ones; return a sentence about them.
-
-        Args:
-            scenario: whose head it is.
-            progress: see `ScenarioFiles`.
-        """
+        """Replace the landmarks in the scene by proposed ones; return a sentence about them."""
         with tempfile.TemporaryDirectory() as temporary:
             path = Path(temporary) / FILE
             words = ["landmarks", str(scenario.folder), str(path), "--propose"]
@@ -167,12 +196,7 @@ class LandmarkLogic:
         return sentence
 
     def check(self, scenario: Scenario, progress: Progress = no_progress) -> str:
-        """Return the faults of the landmarks on the head of a scenario, or that there are none.
-
-        Args:
-            scenario: whose head it is.
-            progress: see `ScenarioFiles`.
-        """
+        """Return the faults of the landmarks on the head of a scenario, or that there are none."""
         with self._written() as path:
             words = ["landmarks", str(scenario.folder), str(path)]
             return self._files.run(words, progress, mayFail=True)
@@ -182,8 +206,6 @@ class LandmarkLogic:
 
         Args:
             scenario: which stays as it is.
-            title: of the copy.
-            progress: see `ScenarioFiles`.
         """
         with self._written() as path:
             plan = ["--landmarks", str(path)]

@@ -59,7 +59,6 @@ class ModuleSession:
 
     Attributes:
         work: background jobs, one after the other.
-        link: to the simulator.
         simulator: its set-up and process.
         trainees: who trains.
         scenario: head, tasks and robot in the scene.
@@ -108,7 +107,6 @@ class ModuleSession:
         """Open a session.
 
         Args:
-            scene: the scene.
             places: where things are.
             findKit: returns what makes the connector; None where it is not installed.
             settings: without them what the user chooses is forgotten at the end.
@@ -318,7 +316,7 @@ class ModuleSession:
         self.woken.emit()
 
     def _isTrialOpen(self) -> bool:
-        return self.link.isOpen and self.training.progress.isOpen
+        return self.link.isOpen and self.training.status.isOpen
 
     def _showTrainees(self) -> None:
         """Let each panel show what is new in the study, in a separate turn."""
@@ -326,7 +324,7 @@ class ModuleSession:
             self.work.later(listener)
 
     def _takeScored(self, analysis: TrialAnalysis) -> None:
-        record, present = analysis.record, self.training.progress
+        record, present = analysis.record, self.training.status
         self.plan.takeTruth(analysis)
         isOtherOpen = self._isTrialOpen() and present.trialId != record.trial_id
         self.procedure.takeScored(analysis, isOtherOpen)

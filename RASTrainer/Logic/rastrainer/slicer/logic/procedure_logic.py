@@ -105,8 +105,6 @@ class ProcedureLogic:
         """Follow the trials of a link.
 
         Args:
-            scene: the scene.
-            link: to the simulator.
             findScenario: gives the scenario of a name, in any thread.
             work: in which touches are registered.
             run: runs the function that does so.

@@ -114,9 +114,7 @@ class ProcedurePlanLogic:
         """Measure the plan on the head of a scenario; nothing is changed.
 
         Args:
-            scenario: whose head it is.
             plan: the parts that are not nodes.
-            progress: see `ScenarioFiles`.
         """
         with tempfile.TemporaryDirectory() as temporary:
             folder = Path(temporary)
@@ -141,9 +139,7 @@ class ProcedurePlanLogic:
 
         Args:
             scenario: which stays as it is.
-            title: of the copy.
             plan: the parts that are not nodes.
-            progress: see `ScenarioFiles`.
         """
         with tempfile.TemporaryDirectory() as temporary:
             words = ["--procedure", str(self._write(Path(temporary), plan))]

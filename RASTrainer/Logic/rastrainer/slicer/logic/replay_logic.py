@@ -66,11 +66,9 @@ class ReplayLogic:
         """Show trials again.
 
         Args:
-            scene: the scene.
             openStudy: opens the study, in any thread; it may wait for a lock there.
             work: in which trials are judged.
             findScenario: gives the scenario of a name, in any thread.
-            records: folder of journals.
             robot: folder of the URDF.
             isTrialOpen: returns whether the scene shows a trial that is being played.
             run: runs the functions that read journals.
@@ -135,7 +133,6 @@ class ReplayLogic:
         """Show a trial again, from its beginning.
 
         Args:
-            trial: as it is stored.
             progress: called with each step and the share of the work done, many times a second; it
                 may let the application draw, and may raise to cancel: then nothing is shown.
         """

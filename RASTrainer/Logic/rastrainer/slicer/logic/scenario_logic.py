@@ -200,12 +200,7 @@ class ScenarioFiles:
         self._library = library
 
     def importScenario(self, package: Path, progress: Progress = no_progress) -> Scenario:
-        """Unpack a scenario's zip file into the library.
-
-        Args:
-            package: the file.
-            progress: see the class.
-        """
+        """Unpack a scenario's zip file into the library."""
         folder = inBackground(lambda report: unpack(package, self._library, report), progress)
         self._cache.refresh()
         return load_scenario(folder)
@@ -227,12 +222,10 @@ class ScenarioFiles:
         """Write a scenario as a zip file and return a sentence that says what was removed.
 
         Args:
-            name: of the scenario.
             package: the new file.
             keepsFace: whether the head keeps its face and skull; otherwise the user has seen what
                 `drawFaceRemoval` has drawn.
             keepsNames: whether title, name and source stay, which may be the patient's name.
-            progress: see the class.
         """
         words = ["pack", str(self._cache.find(name).folder), str(package)]
         words += ["--keep-face"] if keepsFace else ["--yes"]
@@ -246,9 +239,7 @@ class ScenarioFiles:
 
         Args:
             name: of the scenario, which stays as it is.
-            title: of the copy.
             node: a `vtkMRMLMarkupsFiducialNode` or a `vtkMRMLMarkupsLineNode`.
-            progress: see the class.
         """
         isLine = node.IsA("vtkMRMLMarkupsLineNode")
         plan = planArguments(None, node) if isLine else planArguments(node, None)
@@ -265,8 +256,6 @@ class ScenarioFiles:
                 `--landmarks` with a markups file of landmarks in the order of touching, which
                 replaces all.
             name: of the scenario, which stays as it is.
-            title: of the copy.
-            progress: see the class.
         """
         folder = self._library / self._cache.newName(title)
         source = str(self._cache.find(name).folder)
@@ -346,10 +335,8 @@ class MethodComparisonLogic:
         """Return how each method for which a head has the points registers simulated trials.
 
         Args:
-            scenario: whose head it is.
             trials: how many.
             skinShiftMm: between imaging and operation, RMS.
-            progress: see `ScenarioFiles`.
         """
         with tempfile.TemporaryDirectory() as temporary:
             folder = Path(temporary) / "methods"

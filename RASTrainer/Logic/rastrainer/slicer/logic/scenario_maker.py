@@ -102,7 +102,6 @@ class ScenarioMaker:
         """Make scenarios.
 
         Args:
-            scene: the scene.
             simulator: whose program plans the tasks.
             cache: of the scenarios that there are.
             library: into which they come, each into a separate folder.
@@ -227,7 +226,6 @@ def handPlacedLists(scene: Any, targets: Any) -> tuple[list[Any], list[str]]:
     """Return the usable lists, in the scene's order, and why others are left out.
 
     Args:
-        scene: the scene.
         targets: the list of the planned targets, which are no fiducials; None where there is none.
     """
     taken: list[Any] = []

@@ -13,12 +13,13 @@ from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.protocol import FREE, StepKind
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic.practice_watch import PracticeWatch
+from rastrainer.slicer.logic.practice_monitor import PracticeMonitor
 from rastrainer.slicer.logic.trainee_logic import TraineeLogic
 from rastrainer.slicer.logic.training_logic import TrainingLogic, TrialStatus
 from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
+from rastrainer.study.database.values import moment
 from rastrainer.study.protocol.step_progress import StepProgress
 from rastrainer.study.protocol.steps import StepAnswers, instruction
 from rastrainer.study.protocol.study_progress import StudyProgress
@@ -57,7 +58,7 @@ class StudyLogic:
         self._sentSteps: dict[str, StudyStep] = {}
         self._ledStudy: Study | None = None
         self._breaks: dict[str, datetime] = {}
-        self._watch = PracticeWatch(trainees, training, link, self._leadAgain)
+        self._watch = PracticeMonitor(trainees, training, link, self._leadAgain)
         self._listening = Listening(
             (trainees.changed, self._followTrainees),
             (link.opened, self._sendAll),
@@ -144,7 +145,7 @@ class StudyLogic:
 
     def offProtocolSentence(self) -> str:
         """Return a sentence while an enrolled trainee plays what the study has not requested."""
-        trial = self._training.progress
+        trial = self._training.status
         if not trial.isOpen or trial.trainee not in StudyProgress(self._trainees.study).enrolled():
             return ""
         try:
@@ -158,6 +159,30 @@ class StudyLogic:
             return self._notAsked(trial)
         isAsked = (step.procedure, step.method) == (trial.procedure, trial.method)
         return "" if isAsked else self._notAsked(trial)
+
+    def uncountedSentence(self) -> str:
+        """Say why the last trial of the kind that comes next did not count; empty if none is so."""
+        progress = self.progress()
+        step = None if progress is None else progress.next_step
+        if progress is None or step is None:
+            return ""
+        for trial in reversed(self._trainees.history()):
+            record = trial.record
+            isBefore = moment(record.started_utc) < moment(progress.enrolled_utc)
+            if isBefore or record.trial_id in progress.counted_trials:
+                return ""
+            procedure = "" if record.procedure is None else record.procedure.procedure
+            played = (record.mode, record.task, procedure, record.method.value)
+            if played != (step.mode, step.task, step.procedure, step.method):
+                continue
+            reasons = step.objections(record)
+            if not reasons and not trial.registrations and trial.score is None:
+                reasons = (_("it cannot be registered, and so not scored"),)
+            if reasons:
+                return _("The last trial did not count: {reasons}.").format(
+                    reasons="; ".join(reasons)
+                )
+        return ""
 
     def _notAsked(self, trial: TrialStatus) -> str:
         text = _(

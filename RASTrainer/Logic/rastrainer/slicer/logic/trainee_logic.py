@@ -53,7 +53,6 @@ class TraineeLogic:
             records: folder of the simulator's journals, if it is on this computer.
             openPatiently: opens it in any thread, which may wait for a lock; as `openStudy` when
                 left out.
-            clock: seconds.
         """
         self._openPatiently = openPatiently or openStudy
         self.changed = Signal()

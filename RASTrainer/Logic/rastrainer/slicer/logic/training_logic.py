@@ -76,7 +76,7 @@ class TrainingLogic:
     """What the Training panel does; answers come by a later `process` of the link.
 
     Attributes:
-        changed: emits nothing, whenever `progress` has changed.
+        changed: emits nothing, whenever `status` has changed.
         answered: emits the sentence of a command that was refused, empty where it was accepted.
         sceneShown: emits the `Scenario` of an open trial whose head and fiducials are now shown.
         learner: pseudonym of the trainee doing the tutorial before the trial run; empty if none.
@@ -114,7 +114,7 @@ class TrainingLogic:
         self._listening.close()
 
     @property
-    def progress(self) -> TrialStatus:
+    def status(self) -> TrialStatus:
         """State of the trial now; its time continues between two messages."""
         state = self._state
         elapsed = knownNumber(state.get("elapsedS")) or 0.0
@@ -181,7 +181,7 @@ class TrainingLogic:
 
     def abort(self, trialId: str) -> None:
         """End the open trial without registering it."""
-        if self.progress.trialId != trialId:
+        if self.status.trialId != trialId:
             raise InputError(_("This trial is over. The trial that is open now was not aborted."))
         self._send(CommandName.ABORT, {"trialId": trialId})
 
@@ -195,7 +195,7 @@ class TrainingLogic:
         """Why no trial can be started now, for any trainee; empty if one can."""
         if self._link.status.state is not LinkState.CONNECTED:
             return _("Connect to the simulator first.")
-        if self.progress.isOpen:
+        if self.status.isOpen:
             return _("A trial is open: abort it or let it be registered first.")
         return LOADING if self.isLoading else ""
 

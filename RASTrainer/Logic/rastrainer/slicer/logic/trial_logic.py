@@ -83,14 +83,11 @@ class TrialLogic:
         records: Path | None = None,
         run: Run = runHere,
     ) -> None:
-        """Receive the trials of a link.
+        """Begin to listen.
 
         Args:
-            scene: the scene.
-            link: to the simulator.
             findScenario: gives the scenario of a name, in any thread.
             openStudy: opens the study, in any thread; it may wait for a lock there.
-            work: in which trials are scored and stored.
             cohort: the trials that CTPS compares with.
             records: folder of the simulator's journals, if it is on this computer.
             run: runs the functions that register and score trials.
@@ -274,12 +271,8 @@ class TrialLogic:
         """Have a registered trial that is in the study revealed and scored.
 
         If that is interrupted, the truth is not stored, and all of it is done again over the next
-        connection, with the same outcome.
-
-        Args:
-            analysis: its registration.
-            take: receives the analysis with truth and score, once they are in the study.
-            end: receives the reason for a failure.
+        connection, with the same outcome. `take` receives the analysis with truth and score once
+        they are in the study, `end` the reason for a failure.
         """
 
         def score(answer: Mapping[str, Any]) -> None:
@@ -317,7 +310,12 @@ class TrialLogic:
             )
 
         def keep(truth: RevealedTruth, proceed: Callable[[None], None]) -> None:
-            self._work.do(lambda: self._storeTruth(analysis.record, truth), proceed, end)
+            def store() -> None:
+                with self._openStudy() as study:
+                    trial = analysis.record.trial_id
+                    study.set_truth(trial, truth.true_tre_mm, truth.head_to_world)
+
+            self._work.do(store, proceed, end)
 
         self._ask(CommandName.SUBMIT_REGISTRATION, registration_arguments(analysis), score, end)
 
@@ -359,7 +357,3 @@ class TrialLogic:
             )
             study.add_results(record.trial_id, score=scored.score, procedure=scored.procedure)
             return with_progress(scored, study)
-
-    def _storeTruth(self, record: TrialRecord, truth: RevealedTruth) -> None:
-        with self._openStudy() as study:
-            study.set_truth(record.trial_id, truth.true_tre_mm, truth.head_to_world)

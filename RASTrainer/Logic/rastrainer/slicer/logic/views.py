@@ -37,7 +37,6 @@ def jumpTo(scene: Any, position: Sequence[float], later: CallLater = callNow) ->
     Their orientation stays.
 
     Args:
-        scene: the scene.
         position: (3,) float, RAS mm.
         later: has each view moved; each cuts the images and all surfaces, the first time for long.
     """
@@ -254,7 +253,7 @@ class SliceFollower:
             self._lieAlong(device)
             return
         if self._along.isShown:
-            if self._training.progress.phase == Phase.PAUSED.value:
+            if self._training.status.phase == Phase.PAUSED.value:
                 return
             self._along.giveBack()
             self._pose = None
@@ -268,7 +267,7 @@ class SliceFollower:
     @property
     def _device(self) -> str | None:
         """Whose pose the views along the instrument follow; None where they do not."""
-        return DEVICES.get(self._training.progress.phase) if self.liesAlong else None
+        return DEVICES.get(self._training.status.phase) if self.liesAlong else None
 
     def _lieAlong(self, device: str) -> None:
         pose = poseOnHead(self._scene, device)
@@ -291,7 +290,7 @@ class SliceFollower:
             self._jump(tip)
 
     def _showNextPoint(self) -> None:
-        status = self._training.progress
+        status = self._training.status
         fixed = findNode(self._scene, FIDUCIALS, Role.FIXED_FIDUCIALS)
         point = _nextPoint(status, fixed)
         if point == self._shownPoint:

@@ -173,7 +173,6 @@ def setPoints(node: Any, labels: Sequence[str], points: np.ndarray) -> None:
     """Replace the points of a `vtkMRMLMarkupsNode`.
 
     Args:
-        node: the node.
         labels: one for each point.
         points: (n, 3) float, mm, in the node's own frame.
     """

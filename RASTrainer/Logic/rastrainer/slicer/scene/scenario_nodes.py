@@ -63,8 +63,9 @@ TARGET_COLOR = (0.2, 0.75, 0.35)
 def showScenario(scene: Any, scenario: Scenario, later: CallLater = callNow) -> None:
     """Show head, skull, targets and trajectory, one after the other by `later`.
 
-    Called again, nothing is made twice. Meshes and images come still later, by a `scenarioLoader`. The first point of the list of targets is
-    the scenario's own, at which the target error is reported.
+    Called again, nothing is made twice. Meshes and images come still later, by a `scenarioLoader`.
+    The first point of the list of targets is the scenario's own, at which the target error is
+    reported.
     """
     for show in (_showHead, _showSkull, _showTargets, _showTrajectory, requestVolume):
         later(partial(show, scene, scenario))

@@ -71,7 +71,6 @@ def showResiduals(
     """Show the residual of each fiducial in a `vtkMRMLTableNode` and return it.
 
     Args:
-        scene: the scene.
         registration: whose residuals are shown.
         leaveOneOut: (n,) float, mm, how far each touch lies from where the other pairs put it;
             None where there are too few pairs.
@@ -99,7 +98,6 @@ def showFits(
     """Compare fits of the same points in a `vtkMRMLTableNode` and return it.
 
     Args:
-        scene: the scene.
         fits: one a row.
         targetErrors: of each fit, what to expect at the target; None where it is not known.
     """
@@ -207,7 +205,6 @@ def plotSeries(
     """Return the `vtkMRMLPlotSeriesNode` of a role that draws a column over another one.
 
     Args:
-        scene: the scene.
         table: a `vtkMRMLTableNode` with both columns.
         role: of the chart.
         across: the column of x.

@@ -55,7 +55,6 @@ def showReplay(
     It uses separate nodes, so that a running simulator does not disturb it.
 
     Args:
-        scene: the scene.
         name: of the trial, for people.
         track: from its journal.
         chain: of the robot that it was recorded with.

@@ -21,7 +21,7 @@ CLOCK_STEP_S = 0.001
 """Resolution of the trial's time as the simulator sends it."""
 
 
-class PracticeWatch:
+class PracticeMonitor:
     """Counts by the simulator's time of the trial, in which pauses are left out.
 
     So the simulator, which shows the same minutes to the trainee, and the study agree when they
@@ -84,7 +84,7 @@ class PracticeWatch:
             self._practicing = None
 
     def _follow(self, _state: Mapping[str, Any]) -> None:
-        trial = self._training.progress
+        trial = self._training.status
         isPracticed = trial.isOpen and trial.task == TRIAL_RUN
         practicing = (trial.trainee, trial.mode) if isPracticed else None
         isOther = practicing != self._practicing or trial.trialId != self._trialId
