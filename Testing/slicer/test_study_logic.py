@@ -344,13 +344,8 @@ def test_a_trial_of_an_unselected_trainee_counts_and_the_simulator_is_sent_the_n
         startedUtc=STARTED,
         completedUtc=STARTED,
     )
-<<<<<<< HEAD
-    enrolled.trainees.study.add_trial(record)
-    enrolled.logic.countTrial(record_from_json(TrialRecord, record))
-=======
     enrolled.trainees.study.add_trial(record, score=gentle_score(110.0, 0.5))
-    enrolled.logic.countTrial(TrialRecord.from_json(record))
->>>>>>> slicer
+    enrolled.logic.countTrial(record_from_json(TrialRecord, record))
     enrolled.room.run_until(lambda: sent_step(enrolled).get("task") == "task-2")
     assert sent_step(enrolled)["trainee"] == "T001"
 

@@ -92,12 +92,8 @@ class LandmarkPoints:
         self._set(
             _Placed(
                 tuple(each.name for each in landmarks),
-<<<<<<< HEAD
                 np.array([each.position_ras for each in landmarks], dtype=float).reshape(-1, 3),
-=======
-                np.array([each.position for each in landmarks], dtype=float).reshape(-1, 3),
                 (True,) * len(landmarks),
->>>>>>> slicer
             )
         )
 

@@ -286,12 +286,23 @@ class StudyProgress:
                 and trial not in counted
                 and when >= since
                 and not objections_to(step, self._study.record(trial))
+                and self._can_be_scored(trial)
             ):
                 aborted = self._aborted_before(pseudonym, progress)
                 if any(moment(record.started_utc) <= when for record in aborted):
                     return None
                 return StepEntry(step.name, DONE, {"trialId": trial}, stored_utc)
         return None
+
+    def _can_be_scored(self, trial_id: str) -> bool:
+        """Return whether a trial was registered or scored; without registration it gets no score."""
+        with self._study.database.reading() as connection:
+            return any(
+                connection.execute(
+                    f"SELECT 1 FROM {table} WHERE trial_id = ?", (trial_id,)
+                ).fetchone()
+                for table in ("registrations", "scores")
+            )
 
     def _trials_of(self, pseudonym: str) -> list[tuple[Any, ...]]:
         """Return a trainee's finished trials, in order.
