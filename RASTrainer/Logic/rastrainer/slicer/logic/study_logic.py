@@ -21,7 +21,7 @@ from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import moment
 from rastrainer.study.protocol.step_progress import StepProgress
-from rastrainer.study.protocol.steps import StepAnswers, instruction
+from rastrainer.study.protocol.steps import StepAnswers, instruction, objections_to
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol, read_study_protocol
 from rastrainer.study_messages import StudyStep
@@ -175,7 +175,7 @@ class StudyLogic:
             played = (record.mode, record.task, procedure, record.method.value)
             if played != (step.mode, step.task, step.procedure, step.method):
                 continue
-            reasons = step.objections(record)
+            reasons = objections_to(step, record)
             if not reasons and not trial.registrations and trial.score is None:
                 reasons = (_("it cannot be registered, and so not scored"),)
             if reasons:

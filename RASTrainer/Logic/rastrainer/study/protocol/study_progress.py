@@ -295,7 +295,7 @@ class StudyProgress:
         return None
 
     def _can_be_scored(self, trial_id: str) -> bool:
-        """Return whether a trial was registered or scored; without registration it gets no score."""
+        """Return whether a trial was registered or scored; else it gets no score."""
         with self._study.database.reading() as connection:
             return any(
                 connection.execute(
