@@ -17,7 +17,7 @@ from rastrainer.igtl.client import Client
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.setup import DEFAULT_SCENARIO
-from rastrainer_simulator.desktop.viewports import TRANSITION_S
+from rastrainer_simulator.presentation.look import FLIGHT_S
 from rastrainer_simulator.virtual.scripted_trial import play_trial, send_hello
 from Testing.end_to_end.hands import GamepadHands
 from Testing.end_to_end.lab import Lab
@@ -47,7 +47,7 @@ class Photographer:
         if self._lab.view.screen.menu is None:
             # Beside a menu nothing changes, and nothing is drawn again.
             self._window.wait_for_tick(self._lab.view.state["tick"])
-        time.sleep(TRANSITION_S + 0.5)
+        time.sleep(FLIGHT_S + 0.5)
         known = set(self._window.folder.glob("*.png"))
         self._lab.keyboard.tap("F12")
         kept, path = self._window.next_picture(known, DRAWN_S), self._folder / f"{name}.png"

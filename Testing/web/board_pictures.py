@@ -19,7 +19,7 @@ from rastrainer.study.curriculum.curriculum_message import CurriculumMessage
 from rastrainer_simulator.board.class_table import ClassReader, ClassStanding
 from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
 from rastrainer_simulator.net.views.outgoing import seat as seat_text
-from rastrainer_simulator.presentation.presenter import Seat
+from rastrainer_simulator.presentation.messages import Seat
 from rastrainer_simulator.state import TouchStage
 from rastrainer_simulator.texts.texts import Texts
 from Testing.simulator.board.class_study import play_class

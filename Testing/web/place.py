@@ -256,8 +256,8 @@ class CarriedTrainee(Trainee):
         target = {"positionMm": (MM_PER_M * place).tolist(), "speedMmS": 400}
         reply = self._client.send_command("MoveTipTo", target, timeout=60)
         assert reply.ok, reply.error
-        give_up = self.view.state["time"] + 4.0
-        while np.linalg.norm(place - self.tip) > 0.002 and self.view.state["time"] < give_up:
+        give_up = self.view.state["timeS"] + 4.0
+        while np.linalg.norm(place - self.tip) > 0.002 and self.view.state["timeS"] < give_up:
             self.view.next_state()
 
     def press_on(self, label: str) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from rastrainer_simulator.ops.instructor_pin import InstructorPin
-from rastrainer_simulator.presentation.presenter import Seat
+from rastrainer_simulator.presentation.messages import Seat
 from rastrainer_simulator.presentation.screen import Screen, ScreenMessage
 from Testing.simulator.board.class_study import play_class
 from Testing.simulator.board.conftest import PIN, BoardClient, WatchedSimulator

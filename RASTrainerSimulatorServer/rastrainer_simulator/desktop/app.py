@@ -36,7 +36,7 @@ from rastrainer_simulator.desktop.screenshot import (
     write_picture,
 )
 from rastrainer_simulator.desktop.viewports import Quality, first_quality
-from rastrainer_simulator.net.views.incoming import FRAMES, ITEM
+from rastrainer_simulator.presentation.messages import Frames, ItemInput
 
 POLL_S = 0.004
 """How often the window polls the keyboard while nothing arrives."""
@@ -219,7 +219,7 @@ class DesktopWindow:
         self._picture.pointer.move(place, now)
         name = self._picture.item_to_choose(now)
         if name:
-            self._connection.send(ITEM, name=name)
+            self._connection.send(ItemInput(name))
 
     def _save_screenshot(self) -> None:
         """Save what is shown now, while the window keeps running."""
@@ -261,7 +261,7 @@ class DesktopWindow:
 
     def _report_frames(self, shown: int, dropped: int) -> None:
         hz = self._window.refresh_hz
-        self._connection.send(FRAMES, shown=shown, dropped=dropped, refreshHz=hz)
+        self._connection.send(Frames(shown, dropped, hz))
 
     def _open_log(self) -> contextlib.AbstractContextManager[IO[str] | None]:
         path = self._options.frame_log
@@ -271,7 +271,7 @@ class DesktopWindow:
         if log is None or self._inbox.state is None or self._inbox.scene is None:
             return
         quality = self._picture.viewports.quality.value
-        line = {"shown": time.monotonic(), "tick": self._inbox.state["tick"], "quality": quality}
+        line = {"shown": time.monotonic(), "tick": self._inbox.state.tick, "quality": quality}
         log.write(json.dumps(line) + "\n")
         log.flush()
 

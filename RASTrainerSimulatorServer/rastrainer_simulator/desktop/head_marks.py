@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import zip_longest
-from typing import Any
 
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkPoints
@@ -19,13 +18,22 @@ from rastrainer.procedure.plan import MAX_CHECKPOINTS
 from rastrainer.registration.surface_error import nearest_traced_mm
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.desktop.panels import theme
+from rastrainer_simulator.presentation.look import (
+    ARROW_BALL_M,
+    ARROW_RADIUS_M,
+    FULL_PAINT_SHARE,
+    TRACE_LIFT_M,
+    TRACE_MARK_M,
+    TRACE_RIM_M,
+    TRACE_RING_M,
+    TRACE_RING_SIDES,
+)
+from rastrainer_simulator.presentation.messages import TraceNews
 from rastrainer_simulator.presentation.screen import ErrorArrow, Tone
 from rastrainer_simulator.rendering.lighting import glow
 from rastrainer_simulator.scene.nodes import NEXT, TRACED, Color
 from rastrainer_simulator.scene.surfaces import surface
 
-RADIUS_M, BALL_M = 0.001, 0.0022
-"""Radius of an arrow's shaft, and of the ball at its end."""
 _SHAFT_SIDES = 12
 NAME_PX, NAME_ABOVE_PX, NAME_BACKGROUND = 24, 16, 0.85
 """Height of a name's letters, its distance above the ball, and the opacity of what is behind."""
@@ -99,7 +107,7 @@ def _surface(arrows: Sequence[ErrorArrow]) -> vtkPolyData:
             cells.InsertCellPoint(points.InsertNextPoint(arrow.end))
         ball = vtkSphereSource()
         ball.SetCenter(arrow.end)
-        ball.SetRadius(BALL_M)
+        ball.SetRadius(ARROW_BALL_M)
         append.AddInputConnection(ball.GetOutputPort())
     if cells.GetNumberOfCells() == 0:
         append.Update()
@@ -109,15 +117,11 @@ def _surface(arrows: Sequence[ErrorArrow]) -> vtkPolyData:
     lines.SetLines(cells)
     tubes = vtkTubeFilter()
     tubes.SetInputData(lines)
-    tubes.SetRadius(RADIUS_M)
+    tubes.SetRadius(ARROW_RADIUS_M)
     tubes.SetNumberOfSides(_SHAFT_SIDES)
     append.AddInputConnection(tubes.GetOutputPort())
     append.Update()
     return append.GetOutput()
-
-
-FULL_SHARE = 0.5
-"""Up to this share of the covered distance the paint is full; from there on it fades."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,20 +140,15 @@ class ShownTrace:
     covered: float = 0.0
     place: tuple[np.ndarray, np.ndarray] | None = None
 
-    def with_update(self, message: Mapping[str, Any]) -> ShownTrace:
-        """Return the trace after a `trace` message.
-
-        Raises:
-            ValueError, KeyError, TypeError: it is none.
-        """
-        kept = min(int(message["known"]), len(self.points))
-        new = np.array(message["points"], dtype=float).reshape(-1, 3) / MM_PER_M
-        place = message["next"]
-        if place is not None:
-            position, normal = (np.array(place[key], float) for key in ("positionMm", "normal"))
-            place = position / MM_PER_M, normal
+    def with_update(self, news: TraceNews) -> ShownTrace:
+        """Return the trace after what is new."""
+        kept = min(news.known, len(self.points))
+        new = np.array(news.points, dtype=float).reshape(-1, 3) / MM_PER_M
+        place = None
+        if news.next is not None:
+            place = np.array(news.next.position_mm) / MM_PER_M, np.array(news.next.normal)
         points = np.concatenate([self.points[:kept], new])
-        return ShownTrace(points, kept, float(message["coveredMm"]) / MM_PER_M, place)
+        return ShownTrace(points, kept, news.covered_mm / MM_PER_M, place)
 
 
 class SkinPaint:
@@ -177,17 +176,11 @@ class SkinPaint:
         if not trace.covered or not len(trace.points):
             self.shares = None
             return had_any
-        fading = (1.0 - self._away / trace.covered) / (1.0 - FULL_SHARE)
+        fading = (1.0 - self._away / trace.covered) / (1.0 - FULL_PAINT_SHARE)
         self.shares = np.clip(fading, 0.0, 1.0)
         return is_new or known == 0 or not had_any
 
 
-MARK_M = 0.0011
-RING_M, RIM_M = (0.0052, 0.0075), (0.0075, 0.0088)
-"""Inner and outer radius of the ring, and of its dark rim."""
-LIFT_M = 0.003
-"""Height of the ring above the skin: it is flat, and the skin is not."""
-_RING_SIDES = 40
 _CORNERS = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], float)
 _FACES = np.array(
     [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]
@@ -216,7 +209,7 @@ class TraceMarks:
         self._shown = trace
         points, ring, rim = self.actors
         _fill(points, _marks(trace.points) if len(trace.points) else None)
-        for actor, radii in ((ring, RING_M), (rim, RIM_M)):
+        for actor, radii in ((ring, TRACE_RING_M), (rim, TRACE_RIM_M)):
             _fill(actor, None if trace.place is None else _ring(*trace.place, radii))
         return True
 
@@ -243,7 +236,7 @@ def _fill(actor: vtkActor, shape: vtkPolyData | None) -> None:
 
 
 def _marks(points: np.ndarray) -> vtkPolyData:
-    vertices = (points[:, None] + MARK_M * _CORNERS).reshape(-1, 3)
+    vertices = (points[:, None] + TRACE_MARK_M * _CORNERS).reshape(-1, 3)
     triangles = _FACES + len(_CORNERS) * np.arange(len(points))[:, None, None]
     return surface(vertices, triangles.reshape(-1, 3))
 
@@ -251,12 +244,12 @@ def _marks(points: np.ndarray) -> vtkPolyData:
 def _ring(position: np.ndarray, normal: np.ndarray, radii: tuple[float, float]) -> vtkPolyData:
     across = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
     across /= np.linalg.norm(across)
-    angles = np.linspace(0.0, 2.0 * np.pi, _RING_SIDES, endpoint=False)[:, None]
+    angles = np.linspace(0.0, 2.0 * np.pi, TRACE_RING_SIDES, endpoint=False)[:, None]
     around = np.cos(angles) * across + np.sin(angles) * np.cross(normal, across)
-    middle = position + LIFT_M * normal
+    middle = position + TRACE_LIFT_M * normal
     vertices = np.concatenate([middle + radius * around for radius in radii])
-    here = np.arange(_RING_SIDES)
-    beside = (here + 1) % _RING_SIDES
-    inner = np.stack([here, here + _RING_SIDES, beside + _RING_SIDES], axis=1)
-    outer = np.stack([here, beside + _RING_SIDES, beside], axis=1)
+    here = np.arange(TRACE_RING_SIDES)
+    beside = (here + 1) % TRACE_RING_SIDES
+    inner = np.stack([here, here + TRACE_RING_SIDES, beside + TRACE_RING_SIDES], axis=1)
+    outer = np.stack([here, beside + TRACE_RING_SIDES, beside], axis=1)
     return surface(vertices, np.concatenate([inner, outer]))

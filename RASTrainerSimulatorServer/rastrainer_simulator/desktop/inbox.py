@@ -9,16 +9,16 @@ import logging
 from collections import deque
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 import trimesh
 
 from rastrainer.errors import InputError
-from rastrainer.json_checks import decode_finite_json
 from rastrainer_simulator.desktop.head_marks import ShownTrace
 from rastrainer_simulator.desktop.panels.canvas import Thumbnail
+from rastrainer_simulator.presentation.messages import StateNews, read_news
 from rastrainer_simulator.presentation.screen import Screen
+from rastrainer_simulator.viewpoint.view_control import CameraPose
 
 UNREADABLE = "The scene that the simulator sent cannot be read: {reason}."
 
@@ -122,14 +122,10 @@ class Viewpoint:
     aside: float = 0.0
 
     @classmethod
-    def from_json(cls, value: Mapping) -> Viewpoint:
+    def of(cls, camera: CameraPose) -> Viewpoint:
         """Return a camera of the stream."""
-        return cls(
-            np.array(value["position"], dtype=float),
-            np.array(value["focalPoint"], dtype=float),
-            np.array(value["viewUp"], dtype=float),
-            float(value["viewAngleDeg"]),
-        )
+        position, focal_point = np.array(camera.position), np.array(camera.focal_point)
+        return cls(position, focal_point, np.array(camera.view_up), camera.view_angle_deg)
 
     def toward(self, other: Viewpoint, share: float) -> Viewpoint:
         """Return a viewpoint between this and another; a share of 0 is this one, 1 the other."""
@@ -142,21 +138,6 @@ class Viewpoint:
         angle = self.angle_deg + share * (other.angle_deg - self.angle_deg)
         return Viewpoint(place, focus, up, angle, self.aside + share * (other.aside - self.aside))
 
-
-STATE_MEMBERS = (
-    "ghost",
-    "tick",
-    "phase",
-    "touch",
-    "clearanceMm",
-    "camera",
-    "view",
-    "inset",
-    "translucent",
-    "next",
-    "touched",
-    "procedure",
-)
 
 _log = logging.getLogger(__name__)
 
@@ -187,7 +168,7 @@ class Inbox:
     """The latest of everything; only sounds wait for each other.
 
     Attributes:
-        state: members of the latest `state` message, as of the last `read_state`; None before.
+        state: the latest one, as of the last `read_state`; None before.
         holder: what drives the arm; "" if nothing does.
         has_control: whether it is this window's keys or mouse.
         pairing: code and addresses by which other views are paired; None while unknown.
@@ -201,7 +182,7 @@ class Inbox:
     """
 
     def __init__(self) -> None:
-        self.state: Mapping[str, Any] | None = None
+        self.state: StateNews | None = None
         self._unread: str | None = None
         self.screen: Screen | None = None
         self.trace = ShownTrace()
@@ -229,10 +210,11 @@ class Inbox:
         if text is None:
             return
         try:
-            members = decode_finite_json(text)
-            poses = dict(zip(self.bodies, members["poses"], strict=True))
-            self.state = {name: members[name] for name in STATE_MEMBERS} | {"poses": poses}
-        except (KeyError, TypeError, ValueError) as error:
+            news = read_news(text)
+            if not isinstance(news, StateNews) or len(news.poses) != len(self.bodies):
+                raise InputError("It must have a pose for each body.")
+            self.state = news
+        except InputError as error:
             _log.warning("A state of the simulator cannot be used: %s", error)
 
     def touch(self) -> None:

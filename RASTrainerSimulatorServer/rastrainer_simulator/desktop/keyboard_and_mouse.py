@@ -12,7 +12,13 @@ import pygame
 
 from rastrainer_simulator.desktop.connection import ServerConnection
 from rastrainer_simulator.desktop.panels.controls_picture import stick_boxes
-from rastrainer_simulator.net.views.incoming import ALIVE, KEY, ORBIT, STICKS, VISIBILITY
+from rastrainer_simulator.presentation.messages import (
+    Alive,
+    KeyInput,
+    OrbitInput,
+    SticksInput,
+    Visibility,
+)
 
 _IN_ORDER = (
     (4, "KeyA KeyB KeyC KeyD KeyE KeyF KeyG KeyH KeyI KeyJ KeyK KeyL KeyM"),
@@ -106,7 +112,7 @@ class OperatorKeys:
                 self._release(code)
         if event.type in (pygame.WINDOWMINIMIZED, pygame.WINDOWRESTORED):
             is_visible = event.type == pygame.WINDOWRESTORED
-            self._connection.send(VISIBILITY, isVisible=is_visible)
+            self._connection.send(Visibility(is_visible))
 
     def is_held(self, scancode: int) -> bool:
         return CODES.get(scancode, "") in self._held
@@ -115,7 +121,7 @@ class OperatorKeys:
         """Confirm often enough that what is held is still held."""
         now = time.monotonic()
         if self._held and now - self._sent_at >= ALIVE_S:
-            self._connection.send(ALIVE)
+            self._connection.send(Alive())
             self._sent_at = now
 
     def tap(self, code: str) -> None:
@@ -126,12 +132,12 @@ class OperatorKeys:
         if code:
             self._held.add(code)
             typed = text[:LONGEST_TEXT] if text.isprintable() else ""
-            self._connection.send(KEY, code=code, isDown=True, text=typed)
+            self._connection.send(KeyInput(code, True, typed))
 
     def _release(self, code: str) -> None:
         if code in self._held:
             self._held.discard(code)
-            self._connection.send(KEY, code=code, isDown=False, text="")
+            self._connection.send(KeyInput(code, False, ""))
 
 
 LEFT_BUTTON = 1
@@ -179,10 +185,11 @@ class ViewMouse:
         if is_wanted and (self._around, self._higher, self._zoom) != (0.0, 0.0, 1.0):
             nearest, farthest = ZOOM_LIMITS
             self._connection.send(
-                ORBIT,
-                aroundDeg=min(180.0, max(-180.0, self._around)),
-                higherDeg=min(180.0, max(-180.0, self._higher)),
-                zoom=min(farthest, max(nearest, self._zoom)),
+                OrbitInput(
+                    min(180.0, max(-180.0, self._around)),
+                    min(180.0, max(-180.0, self._higher)),
+                    min(farthest, max(nearest, self._zoom)),
+                )
             )
         self._around = self._higher = 0.0
         self._zoom = 1.0
@@ -229,7 +236,7 @@ class MouseSticks:
         """Confirm often enough that what is held is still held."""
         now = time.monotonic()
         if any(map(any, self.pushes)) and now - self._sent_at >= ALIVE_S:
-            self._connection.send(ALIVE)
+            self._connection.send(Alive())
             self._sent_at = now
 
     def _push(self, place: tuple[int, int], size: tuple[int, int]) -> None:
@@ -247,5 +254,5 @@ class MouseSticks:
         self.pushes = pushes
         (right, forward), (turn, up) = pushes
         self._connection.send(
-            STICKS, translation=[right, forward, up], rotation=[turn, 0.0], fine=False, yawDeg=0.0
+            SticksInput((right, forward, up), (turn, 0.0), fine=False, yaw_deg=0.0)
         )

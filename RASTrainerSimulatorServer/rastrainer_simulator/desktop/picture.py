@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 import pygame
@@ -32,9 +31,12 @@ from rastrainer_simulator.desktop.panels.tool_guidance import (
 from rastrainer_simulator.desktop.shown_scene import ShownScene
 from rastrainer_simulator.desktop.viewports import Quality, Viewports
 from rastrainer_simulator.ops.system_paths import has_letters
+from rastrainer_simulator.presentation.look import PULSE_S
+from rastrainer_simulator.presentation.messages import ProcedureNews, StateNews
 from rastrainer_simulator.presentation.screen import Menu, Screen, focused_picture
-from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
+from rastrainer_simulator.state import TOUCH_ERRORS
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
+from rastrainer_simulator.trial_state import Tool
 
 REST_S = 3.0
 NOWHERE = (-1, -1)
@@ -88,7 +90,6 @@ def own_facts(language: str, holder: str, pairing: tuple[str, str] | None) -> tu
     return fact, texts.say("window.pairing", code=code, addresses=addresses)
 
 
-PULSE_S = 1.4
 FAR = "far"
 BESIDE_MENU = 0.44
 PULSE_HZ: Mapping[Quality, float] = {Quality.HIGH: 30.0, Quality.MEDIUM: 30.0, Quality.LOW: 4.0}
@@ -111,7 +112,7 @@ class Picture:
         self._errors = ErrorArrows()
         self._trace = TraceMarks()
         self._loaded: LoadedScene | None = None
-        self._drawn_state: Mapping[str, Any] | None = None
+        self._drawn_state: StateNews | None = None
         self._cleared: tuple[ShownScene | None, bool] = (None, False)
         self._pulse_step = 0
         self._must_draw = True
@@ -195,15 +196,14 @@ class Picture:
             self.viewports.arrange()
             self._must_draw = True
 
-    def _show_instrument(self, procedure: Mapping[str, Any] | None) -> None:
+    def _show_instrument(self, procedure: ProcedureNews | None) -> None:
         assert self._scene is not None
         assert self._loaded is not None
         if procedure is None:
-            self._scene.show_instrument("", 0.0, ())
+            self._scene.show_instrument(Tool.POINTER, 0.0, ())
             return
-        no_go = self._loaded.no_go.get(procedure["name"], ())
-        feed_m = procedure["feedMm"] / MM_PER_M
-        self._scene.show_instrument(procedure["tool"], feed_m, no_go)
+        no_go = self._loaded.no_go.get(procedure.name, ())
+        self._scene.show_instrument(procedure.tool, procedure.feed_mm / MM_PER_M, no_go)
 
     def _take_scene(self) -> None:
         loaded = self._inbox.scene
@@ -220,34 +220,34 @@ class Picture:
         if self._scene is None or state is None:
             return
         if _differs(state, self._drawn_state):
-            self._scene.place(state["poses"])
-            self._scene.place_ghost(state["ghost"])
-            self.viewports.see_through(state["translucent"])
-            self._show_instrument(state["procedure"])
+            self._scene.place(dict(zip(self._inbox.bodies, state.poses, strict=True)))
+            self._scene.place_ghost(state.ghost)
+            self.viewports.see_through(state.translucent)
+            self._show_instrument(state.procedure)
             self._must_draw = True
         self._drawn_state = state
         self._choose_camera(state, now)
         self._mark(now)
 
-    def _choose_camera(self, state: Mapping[str, Any], now: float) -> None:
+    def _choose_camera(self, state: StateNews, now: float) -> None:
         """Set the view that the simulator chose: aside for a menu, from afar without a trial."""
         screen = self._inbox.screen
-        view = Viewpoint.from_json(state["view"])
-        beside = None if state["inset"] is None else Viewpoint.from_json(state["inset"])
+        view = Viewpoint.of(state.view)
+        beside = None if state.inset is None else Viewpoint.of(state.inset)
         if screen is None or screen.menu is None:
-            self.viewports.choose(state["camera"], now, view=view, beside=beside)
-        elif state["phase"] == Phase.IDLE and FAR in self.viewports.cameras:
+            self.viewports.choose(state.camera, now, view=view, beside=beside)
+        elif state.phase == Phase.IDLE and FAR in self.viewports.cameras:
             self.viewports.choose(FAR, now, BESIDE_MENU)
         else:
-            self.viewports.choose(state["camera"], now, BESIDE_MENU, view, beside)
+            self.viewports.choose(state.camera, now, BESIDE_MENU, view, beside)
 
     def _mark(self, now: float) -> None:
         """Color what the state says; the next fiducial grows brighter and darker again."""
         state = self._inbox.state
         if self._scene is None or state is None:
             return
-        self._scene.mark(state["next"], state["touched"], TouchStage(state["touch"]))
-        if state["next"] is None or self._inbox.problem:
+        self._scene.mark(state.next, state.touched, state.touch)
+        if state.next is None or self._inbox.problem:
             return
         step = math.floor(now * PULSE_HZ[self.viewports.quality])
         if step != self._pulse_step:
@@ -261,17 +261,17 @@ class Picture:
             return Content(notice(self._inbox.problem, screen.language))
         if not has_letters(screen.language):
             return Content(notice("window.no font", "en"))
-        state = self._inbox.state or {}
+        state = self._inbox.state
         is_free = screen.menu is None
         pairing = None if is_free else self._inbox.pairing
-        procedure = state.get("procedure") if is_free else None
+        procedure = state.procedure if state is not None and is_free else None
         texts = Texts(LANGUAGES.get(screen.language, {}))
         facts = own_facts(screen.language, self._inbox.holder, pairing)
         hovered = self.item_at_pointer(now)
         self.pointer.point(bool(hovered))
         return Content(
             screen=replace(screen, status=(*screen.status, *facts)),
-            is_error=is_free and state.get("touch") in TOUCH_ERRORS,
+            is_error=is_free and state is not None and state.touch in TOUCH_ERRORS,
             ring=self._ring() if is_free else None,
             inset=self.viewports.inset_box if self.viewports.has_inset else None,
             inset_title=texts.say(f"window.{self._inset_name()}"),
@@ -317,7 +317,7 @@ class Picture:
         if head is None or self._loaded is None or state is None:
             return None
         traced = self._inbox.trace.place
-        place = self._loaded.fiducials.get(state["next"] or "", traced and traced[0])
+        place = self._loaded.fiducials.get(state.next or "", traced and traced[0])
         return None if place is None else head[:3, :3] @ place + head[:3, 3]
 
     @property
@@ -325,7 +325,7 @@ class Picture:
         """(3,) float, World, m: the tip of the tool in an open trial."""
         state, scene = self._inbox.state, self._scene
         tool = None if scene is None else scene.poses.get("tool")
-        is_open = state is not None and state["phase"] in OPEN_PHASES
+        is_open = state is not None and state.phase in OPEN_PHASES
         return tool[:3, 3] if tool is not None and is_open else None
 
     def _out_of_sight(self, place: np.ndarray | None) -> Direction | None:
@@ -352,27 +352,30 @@ class Picture:
 
     def _inset_name(self) -> str:
         """Return the name of what the inset shows."""
-        state = self._inbox.state or {}
-        if state.get("inset") is None:
-            shown = state.get("camera")
+        state = self._inbox.state
+        if state is None or state.inset is None:
+            shown = "" if state is None else state.camera
             return next((name for name in self.viewports.cameras if name != shown), FAR)
-        procedure = state.get("procedure")
-        has_line = procedure is not None and procedure["tool"] != "pointer"
+        procedure = state.procedure
+        has_line = procedure is not None and procedure.tool is not Tool.POINTER
         return "across" if has_line else "beside"
 
 
-def _differs(state: Mapping[str, Any], other: Mapping[str, Any] | None) -> bool:
+_UNSEEN = (
+    "tick",
+    "planned_target",
+    "time_s",
+    "elapsed_s",
+    "delayed",
+    "clearance_mm",
+    "proximity",
+    "phase",
+)
+
+
+def _differs(state: StateNews, other: StateNews | None) -> bool:
     """Return whether two states look different."""
-    names = (
-        "poses",
-        "ghost",
-        "touch",
-        "next",
-        "touched",
-        "camera",
-        "view",
-        "inset",
-        "translucent",
-        "procedure",
-    )
-    return other is None or any(state[name] != other[name] for name in names)
+    if other is None:
+        return True
+    unseen = {name: getattr(state, name) for name in _UNSEEN}
+    return replace(other, **unseen) != state

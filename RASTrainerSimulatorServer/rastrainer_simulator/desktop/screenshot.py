@@ -11,11 +11,9 @@ import contextlib
 import os
 import pickle
 import sys
-from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -27,6 +25,7 @@ from rastrainer_simulator.desktop.head_marks import ShownTrace
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.desktop.viewports import Quality
+from rastrainer_simulator.presentation.messages import StateNews
 from rastrainer_simulator.presentation.screen import Screen
 from rastrainer_simulator.rendering.picture import write_png
 
@@ -46,7 +45,8 @@ class Screenshot:
     size: tuple[int, int]
     quality: Quality
     scene: LoadedScene | None
-    state: Mapping[str, Any] | None
+    bodies: tuple[str, ...]
+    state: StateNews | None
     screen: Screen | None
     trace: ShownTrace
     problem: str
@@ -55,13 +55,13 @@ class Screenshot:
     @classmethod
     def of(cls, inbox: Inbox, path: Path, size: tuple[int, int], quality: Quality) -> Screenshot:
         """Return the content of the inbox now; `size` is in pixels."""
-        members = (inbox.scene, inbox.state, inbox.screen, inbox.trace)
+        members = (inbox.scene, inbox.bodies, inbox.state, inbox.screen, inbox.trace)
         return cls(path, size, quality, *members, inbox.problem, inbox.holder)
 
     def inbox(self) -> Inbox:
         """Return an inbox with this content."""
         inbox = Inbox()
-        inbox.scene, inbox.state = self.scene, self.state
+        inbox.scene, inbox.bodies, inbox.state = self.scene, self.bodies, self.state
         inbox.screen, inbox.trace = self.screen, self.trace
         inbox.problem, inbox.holder = self.problem, self.holder
         return inbox

@@ -13,6 +13,13 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkProp3D, 
 
 from rastrainer_simulator.desktop.head_marks import ShownTrace, SkinPaint
 from rastrainer_simulator.desktop.inbox import Finish, Part
+from rastrainer_simulator.presentation.look import (
+    CLEAR_SKIN_OPACITY,
+    COVER_OPACITY,
+    INSTRUMENTS,
+    PULSE_COLOR,
+    TOOL_NODES,
+)
 from rastrainer_simulator.rendering.lighting import AMBIENT, DIFFUSE, glow, lit_colors
 from rastrainer_simulator.scene.nodes import (
     COVERED,
@@ -30,6 +37,7 @@ from rastrainer_simulator.scene.nodes import (
 )
 from rastrainer_simulator.scene.surfaces import surface
 from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
+from rastrainer_simulator.trial_state import Tool
 
 Shade = tuple[float, float, float]
 
@@ -70,20 +78,8 @@ _TIPS = {
     TouchStage.ON_SKIN: TIP_ON_SKIN,
     TouchStage.PRESSED: TIP_NEAR,
 }
-INSTRUMENTS: Mapping[str, tuple[str, ...]] = {
-    "guide": ("guide", "axis"),
-    "drill": ("guide", "drill"),
-    "electrode": ("guide", "electrode"),
-}
-"""Nodes that are shown with each tool of a procedure; the pointer has none."""
-FED = ("drill", "electrode")
-"""Nodes as long as they are fed; in the file they are 1 m long."""
-OWN_LOOK = frozenset({TIP_MARKER, *chain(*INSTRUMENTS.values())})
+OWN_LOOK = frozenset({TIP_MARKER, *chain(*TOOL_NODES.values())})
 """Nodes at the tool that stay as they are where the tool is seen through."""
-CLEAR_SKIN = 0.3
-COVER_OPACITY = 0.3
-"""Of a body that covers tip or point."""
-PULSE_COLOR = (1.0, 0.97, 0.75)
 SKIN_NODE = "skin"
 STILL_BODIES = ("", "head", "stand")
 """Do not move during a trial; "" is the room."""
@@ -127,7 +123,7 @@ class ShownScene:
             if part.body not in STILL_BODIES and not has_own_look:
                 self._bodies[part.body].append(actor)
         for name in list(self._named):
-            if name in {*FED, "guide", "axis"} or name.startswith(NO_GO_PREFIX):
+            if name in {*INSTRUMENTS, "guide", "axis"} or name.startswith(NO_GO_PREFIX):
                 self._set_visible(name, False)
         self._marked: object = None
         self._pulsing: list[vtkActor] = []
@@ -205,12 +201,12 @@ class ShownScene:
                 self._paint(name, state.color)
         self._pulsing = [] if next_point is None else self._named[f"{FIDUCIAL}{next_point}"]
 
-    def show_instrument(self, tool: str, feed_m: float, no_go: Collection[str]) -> None:
+    def show_instrument(self, tool: Tool, feed_m: float, no_go: Collection[str]) -> None:
         """Show what a procedure's tool is, how far it is fed, and its no-go structures by name."""
-        shown = INSTRUMENTS.get(tool, ())
-        for name in {*FED, "guide", "axis"}:
-            self._set_visible(name, name in shown and (name not in FED or feed_m > 0.0))
-        for name in FED:
+        shown = TOOL_NODES.get(tool, ())
+        for name in {*INSTRUMENTS, "guide", "axis"}:
+            self._set_visible(name, name in shown and (name not in INSTRUMENTS or feed_m > 0.0))
+        for name in INSTRUMENTS:
             for actor in self._named[name]:
                 actor.SetScale(1.0, 1.0, max(feed_m, 1e-6))
         for name in list(self._named):
@@ -227,7 +223,7 @@ class ShownScene:
         self.is_clear = is_clear
         self.still_version += 1
         for actor in self._named[SKIN_NODE]:
-            actor.GetProperty().SetOpacity(CLEAR_SKIN if is_clear else 1.0)
+            actor.GetProperty().SetOpacity(CLEAR_SKIN_OPACITY if is_clear else 1.0)
 
     def see_through(self, bodies: Collection[str]) -> None:
         """Draw these bodies of the arm translucent, and the others not."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from enum import Enum
 
@@ -14,6 +14,8 @@ from rastrainer_simulator.desktop.kept_view import KeptView, ReducedScene
 from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.canvas import Box
 from rastrainer_simulator.desktop.shown_scene import ShownScene
+from rastrainer_simulator.presentation.look import FLIGHT_S
+from rastrainer_simulator.presentation.messages import CoveringBodies
 from rastrainer_simulator.rendering.lighting import Shadows, add_plain_lights, light_room
 
 BACKGROUND = (0.62, 0.65, 0.68)
@@ -46,15 +48,12 @@ def first_quality(renderer_name: str) -> Quality:
     return Quality.LOW if is_software_renderer(renderer_name) else Quality.HIGH
 
 
-TRANSITION_S = 0.7
-
-
 class CameraTransition:
     """The move of a camera to a viewpoint, which starts and ends gently."""
 
     def __init__(self, start: Viewpoint):
         self._from = self._to = start
-        self._since = -TRANSITION_S
+        self._since = -FLIGHT_S
 
     def start(self, to: Viewpoint, now: float) -> None:
         self._from, self._to, self._since = self.at(now), to, now
@@ -64,11 +63,11 @@ class CameraTransition:
         self._to = to
 
     def is_moving(self, now: float) -> bool:
-        return now - self._since < TRANSITION_S
+        return now - self._since < FLIGHT_S
 
     def at(self, now: float) -> Viewpoint:
         """Return where the camera is."""
-        share = min(1.0, max(0.0, (now - self._since) / TRANSITION_S))
+        share = min(1.0, max(0.0, (now - self._since) / FLIGHT_S))
         return self._from.toward(self._to, share * share * (3.0 - 2.0 * share))
 
 
@@ -150,9 +149,9 @@ class Viewports:
             self._transition.follow(viewpoint)
         self._chosen = (camera, aside)
 
-    def see_through(self, bodies: Mapping[str, Sequence[str]]) -> None:
+    def see_through(self, bodies: CoveringBodies) -> None:
         """Draw bodies translucent, those that the stream says of each picture."""
-        self._main.translucent, self._inset.translucent = bodies["view"], bodies["inset"]
+        self._main.translucent, self._inset.translucent = bodies.view, bodies.inset
 
     def is_moving(self, now: float) -> bool:
         """Return whether the main view's camera is moving, or has arrived and draws finer."""

@@ -31,15 +31,8 @@ from rastrainer_simulator.presentation.feedback_event import (
     FeedbackEvent,
     feedback_of,
 )
-from rastrainer_simulator.presentation.presenter import (
-    Control,
-    Frames,
-    Hello,
-    InstructorOrder,
-    Seat,
-    TraceGuidance,
-    ViewUpdate,
-)
+from rastrainer_simulator.presentation.messages import Frames, Hello, InstructorOrder, Seat
+from rastrainer_simulator.presentation.presenter import Control, TraceGuidance, ViewUpdate
 from rastrainer_simulator.presentation.screen import PRESS, Screen, Tone
 from rastrainer_simulator.record.trial_context import DisplayReport
 from rastrainer_simulator.replay.playback import PlaybackSwitch

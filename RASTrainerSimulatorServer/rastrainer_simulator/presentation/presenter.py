@@ -3,60 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from enum import Enum
-from typing import Any, Protocol
+from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
+from rastrainer_simulator.presentation.messages import (
+    Feedback,
+    Frames,
+    Hello,
+    InstructorOrder,
+    Seat,
+    SkinPlace,
+)
 from rastrainer_simulator.presentation.screen import Screen
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.viewpoint.view_control import Pictures
-
-
-@dataclass(frozen=True)
-class Hello:
-    """A view's description of itself when it joins.
-
-    Attributes:
-        kind: "desktop", "page", "headset", "spectator" or "board".
-        device: model of the headset or name of the browser; "" where unknown.
-        refresh_hz: of its display; 0 where unknown.
-    """
-
-    kind: str
-    device: str = ""
-    refresh_hz: float = 0.0
-
-
-@dataclass(frozen=True)
-class Frames:
-    """How smoothly a view has drawn during the last second."""
-
-    shown: int
-    dropped: int
-    refresh_hz: float
-
-
-@dataclass(frozen=True)
-class Feedback:
-    """A sound and a vibration, to be played once.
-
-    Attributes:
-        number: counts from 1 without a gap.
-        kind: what happened, such as "touch"; an `EventKind` or one of the flow's own.
-        sound: name of the sound to play, "" for none.
-        volume: of the sound, 0 to 1; 0 while sounds are muted.
-        rumble: strength of the vibration, 0 to 1.
-        data: what else there is to say, ready for JSON; lengths in mm.
-    """
-
-    number: int
-    kind: str
-    sound: str = ""
-    volume: float = 1.0
-    rumble: float = 0.0
-    data: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -77,14 +39,6 @@ ViewUpdate = Screen | Feedback | Control
 
 
 @dataclass(frozen=True)
-class SkinPlace:
-    """A point on the skin in the head's frame: RAS mm, and the outward unit normal there."""
-
-    position: tuple[float, float, float]
-    normal: tuple[float, float, float]
-
-
-@dataclass(frozen=True)
 class TraceGuidance:
     """How a trainee who traces the skin is guided.
 
@@ -95,47 +49,6 @@ class TraceGuidance:
 
     covered_mm: float = 0.0
     next_place: SkinPlace | None = None
-
-
-class InstructorOrder(str, Enum):
-    """Orders that a teacher can give to a seat."""
-
-    PAUSE = "pause"
-    SAY = "say"
-    """Show the trainee a sentence."""
-    REPLAY = "replay"
-    """Show the scored trial again, at the seat."""
-
-
-@dataclass(frozen=True)
-class Seat:
-    """What a teacher's board shows of a seat beside the trial's state.
-
-    Attributes:
-        trainee: whose trial it is, or whose ID is entered; "" for none.
-        task: title of the open trial's task, "" without one.
-        count: points of this task; 0 without a trial.
-        screen: title of the open menu, "" while the trainee works.
-        instruction: what the trainee is asked to do.
-        warnings: what is wrong, as the trainee reads it.
-        score: the trainee's latest, 0 to 100; None before the first.
-        holder: what drives the arm, "" for nothing.
-        slicer: whether a Slicer is connected.
-        language: BCP 47 tag of the texts.
-        assignments: where the trainee stands in a curriculum, a sentence; "" without one.
-    """
-
-    trainee: str = ""
-    task: str = ""
-    count: int = 0
-    screen: str = ""
-    instruction: str = ""
-    warnings: tuple[str, ...] = ()
-    score: float | None = None
-    holder: str = ""
-    slicer: bool = False
-    language: str = "en"
-    assignments: str = ""
 
 
 class Presenter(Protocol):

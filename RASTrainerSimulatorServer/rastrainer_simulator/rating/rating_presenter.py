@@ -13,15 +13,8 @@ from rastrainer_simulator.input.gamepads import w3c_gamepad_inputs
 from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice
 from rastrainer_simulator.loop.results import Subscribers
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_of
-from rastrainer_simulator.presentation.presenter import (
-    Control,
-    Frames,
-    Hello,
-    InstructorOrder,
-    Seat,
-    TraceGuidance,
-    ViewUpdate,
-)
+from rastrainer_simulator.presentation.messages import Frames, Hello, InstructorOrder, Seat
+from rastrainer_simulator.presentation.presenter import Control, TraceGuidance, ViewUpdate
 from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.rating.rating_pages import DomainPage, LoadingPage, RatedPage, RatingWork
 from rastrainer_simulator.replay.playback import Playback, ShownPlayback

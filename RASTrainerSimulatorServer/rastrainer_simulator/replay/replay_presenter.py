@@ -11,15 +11,8 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.loop.results import Subscribers
 from rastrainer_simulator.presentation.feedback_event import feedback_event, feedback_of
-from rastrainer_simulator.presentation.presenter import (
-    Control,
-    Frames,
-    Hello,
-    InstructorOrder,
-    Seat,
-    TraceGuidance,
-    ViewUpdate,
-)
+from rastrainer_simulator.presentation.messages import Frames, Hello, InstructorOrder, Seat
+from rastrainer_simulator.presentation.presenter import Control, TraceGuidance, ViewUpdate
 from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage
 from rastrainer_simulator.replay.playback import PERIOD_S, Playback
 from rastrainer_simulator.state import SimulationState, StepResult
@@ -103,7 +96,7 @@ class Player:
             status=tuple(status),
             hints=hints,
             language=language,
-            is_stepped=True,
+            sticks_navigate=True,
         )
 
     def _show_worst(self) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from rastrainer.json_records import record_from_json
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, Viewpoint, read_parts
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.desktop.viewports import Quality
@@ -23,6 +24,7 @@ from rastrainer_simulator.presentation.screen import (
 from rastrainer_simulator.scene.nodes import ARROW, SKIN, STEEL, TIP_FREE, WAITING, WALL, Node
 from rastrainer_simulator.scene.scene_glb import to_glb
 from rastrainer_simulator.scene.surfaces import shaded
+from rastrainer_simulator.viewpoint.view_control import CameraPose
 
 SIZE = (960, 540)
 BODIES = ("link_7", "tool", "head")
@@ -65,7 +67,11 @@ def state_text(**changes):
     members = {
         "type": "state",
         "tick": 1,
-        "time": 0.0,
+        "timeS": 0.0,
+        "proximity": "free",
+        "elapsedS": 0.0,
+        "plannedTarget": None,
+        "delayed": 0,
         "poses": poses,
         "ghost": None,
         "touch": "far",
@@ -128,7 +134,10 @@ def inbox(glb):
     """What a window of that scene has received."""
     inbox = Inbox()
     inbox.bodies = BODIES
-    views = {name: Viewpoint.from_json(value) for name, value in CAMERAS.items()}
+    views = {
+        name: Viewpoint.of(record_from_json(CameraPose, value, "The camera"))
+        for name, value in CAMERAS.items()
+    }
     inbox.scene = LoadedScene(read_parts(glb, BODIES), views, FIDUCIALS)
     return inbox
 

@@ -1,7 +1,5 @@
 """The window's real picture of touches behind the head, as a trainee makes them."""
 
-import json
-
 import numpy as np
 import pytest
 
@@ -11,7 +9,8 @@ from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, Viewpoint, re
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.desktop.viewports import Quality
 from rastrainer_simulator.flow.session.trial_view import along_skin
-from rastrainer_simulator.net.views import outgoing
+from rastrainer_simulator.net.views.outgoing import BODIES, scene_news, state_news
+from rastrainer_simulator.presentation.messages import CoveringBodies, message_text
 from rastrainer_simulator.presentation.screen import Screen
 from rastrainer_simulator.scene.scene_glb import scene_glb
 from rastrainer_simulator.state import EventKind
@@ -54,13 +53,13 @@ def views(setup, trial):
 @pytest.fixture(scope="module")
 def inbox(setup):
     inbox = Inbox()
-    inbox.bodies, inbox.screen, inbox.problem = outgoing.BODIES, Screen(), ""
+    inbox.bodies, inbox.screen, inbox.problem = BODIES, Screen(), ""
     content = scene_glb(setup.scenario, setup.robot, setup.scenario.task(TASK))
-    message = json.loads(outgoing.scene("0" * 64, setup.scenario, TASK, AxesChoice.CAMERA))
+    news = scene_news("0" * 64, setup.scenario, TASK, AxesChoice.CAMERA)
     inbox.scene = LoadedScene(
-        read_parts(content, outgoing.BODIES),
-        {name: Viewpoint.from_json(value) for name, value in message["cameras"].items()},
-        message["fiducials"],
+        read_parts(content, BODIES),
+        {name: Viewpoint.of(camera) for name, camera in news.cameras.items()},
+        news.fiducials,
     )
     return inbox
 
@@ -72,7 +71,7 @@ def show(gl_window, inbox):
     times = iter(np.arange(0.0, 1e4, 10.0))
 
     def show(state, pictures):
-        inbox.take_state(outgoing.state(state, 0, pictures, {"view": (), "inset": ()}))
+        inbox.take_state(message_text(state_news(state, 0, pictures, CoveringBodies())))
         for now in (float(next(times)), float(next(times))):
             picture.is_due(now)
         picture.draw()

@@ -17,7 +17,7 @@ from rastrainer_simulator.desktop.keyboard_and_mouse import (
 )
 from rastrainer_simulator.desktop.panels.controls_picture import stick_boxes
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.net.views.incoming import ORBIT, STICKS
+from rastrainer_simulator.presentation.messages import OrbitInput, SticksInput
 
 SIZE = (1280, 720)
 HEIGHT = 720
@@ -116,14 +116,14 @@ class Kept:
     def __init__(self):
         self.messages = []
 
-    def send(self, kind, **members):
-        self.messages.append((kind, members))
+    def send(self, message):
+        self.messages.append(message)
 
     @property
     def last(self):
-        kind, members = self.messages[-1]
-        assert kind == STICKS
-        return members["translation"], members["rotation"]
+        message = self.messages[-1]
+        assert isinstance(message, SticksInput)
+        return list(message.translation), list(message.rotation)
 
 
 @pytest.fixture
@@ -199,12 +199,12 @@ def test_a_drag_with_the_right_button_is_sent_once_per_frame_until_its_release(m
     move(mouse, 42, 36)
     mouse.tell(is_wanted=True)
     mouse.tell(is_wanted=True)
-    ((kind, members),) = kept.messages
-    assert kind == ORBIT
+    (turn,) = kept.messages
+    assert isinstance(turn, OrbitInput)
     # The scene follows the pointer to the right and down: the eye goes left and up.
-    assert members["aroundDeg"] == pytest.approx(-DEG_PER_HEIGHT / 10)
-    assert members["higherDeg"] == pytest.approx(DEG_PER_HEIGHT / 20)
-    assert members["zoom"] == 1.0
+    assert turn.around_deg == pytest.approx(-DEG_PER_HEIGHT / 10)
+    assert turn.higher_deg == pytest.approx(DEG_PER_HEIGHT / 20)
+    assert turn.zoom == 1.0
     press(mouse, RIGHT, is_down=False)
     move(mouse, 100, 0)
     press(mouse, LEFT)
@@ -220,7 +220,7 @@ def test_wheel_and_pinch_zoom_in_and_out(mouse, kept):
     ):
         mouse.take(event, HEIGHT)
         mouse.tell(is_wanted=True)
-    nearer, farther = (members["zoom"] for _, members in kept.messages)
+    nearer, farther = (turn.zoom for turn in kept.messages)
     assert nearer < 1.0 < farther
 
 
@@ -237,5 +237,4 @@ def test_the_simulator_accepts_the_message_however_wild_the_mouse_motion(mouse, 
     move(mouse, 10_000, -10_000)
     mouse.take(pygame.event.Event(pygame.MOUSEWHEEL, y=100), HEIGHT)
     mouse.tell(is_wanted=True)
-    ((_, members),) = kept.messages
-    assert members == {"aroundDeg": -180.0, "higherDeg": -180.0, "zoom": 0.25}
+    assert kept.messages == [OrbitInput(-180.0, -180.0, 0.25)]

@@ -11,8 +11,9 @@ from rastrainer.errors import InputError
 from rastrainer_simulator.desktop.panels.controls_picture import stick_boxes
 from rastrainer_simulator.desktop.picture import Pointer
 from rastrainer_simulator.desktop.screenshot import Screenshot, save_screenshot
-from rastrainer_simulator.desktop.viewports import TRANSITION_S, Quality, first_quality
+from rastrainer_simulator.desktop.viewports import Quality, first_quality
 from rastrainer_simulator.ops.system_paths import chinese_font
+from rastrainer_simulator.presentation.look import FLIGHT_S
 from rastrainer_simulator.presentation.screen import Hint, Screen
 from rastrainer_simulator.scene import nodes
 from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
@@ -249,11 +250,11 @@ def test_the_camera_flies_to_its_destination_and_arrives(show, picture, inbox):
     show()
     inbox.take_state(state_text(camera="far"))
     distances = []
-    for now in (3e5, 3e5 + TRANSITION_S / 2, 3e5 + TRANSITION_S):
+    for now in (3e5, 3e5 + FLIGHT_S / 2, 3e5 + FLIGHT_S):
         picture.is_due(now)
         distances.append(-picture.viewports.main.GetActiveCamera().GetPosition()[1])
     np.testing.assert_allclose(distances, [0.8, 1.6, 2.4], atol=1e-6)
-    assert not picture.viewports.is_moving(3e5 + TRANSITION_S)
+    assert not picture.viewports.is_moving(3e5 + FLIGHT_S)
 
 
 def test_a_lost_connection_is_shown(show, picture, gl_window, inbox):

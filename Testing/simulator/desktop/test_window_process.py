@@ -14,7 +14,7 @@ import pytest
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.presentation.presenter import Feedback, Hello
+from rastrainer_simulator.presentation.messages import Feedback, Hello
 from Testing.end_to_end.window_process import BYTES_A_SECOND, times_heard
 from Testing.simulator.net.views.served import ServedViews
 

@@ -15,7 +15,7 @@ from rastrainer_simulator.flow.session.preferences import Preferences, write_pre
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, DEFAULT_BINDINGS, read_bindings
 from rastrainer_simulator.input.controls import IDLE_S
 from rastrainer_simulator.input.inputs import ControlName
-from rastrainer_simulator.presentation.presenter import Hello
+from rastrainer_simulator.presentation.messages import Hello
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label
 from Testing.simulator.flow.trainee import STEP_S, Keys
 

@@ -7,7 +7,7 @@ from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.protocol import StepKind
 from rastrainer.study.protocol.steps import StudyStep
 from rastrainer_simulator.flow.session.trial_view import turned
-from rastrainer_simulator.presentation.presenter import Hello
+from rastrainer_simulator.presentation.messages import Hello
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.replay.resimulation import replay
 from rastrainer_simulator.state import OperatorInput

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rastrainer_simulator.presentation.screen import Tone
+from rastrainer_simulator.presentation import look
 
 REFERENCE_SIZE = (1920, 1080)
 LEAST_SCALE = 0.55
@@ -38,22 +38,12 @@ TEXT_PALE = rgba(0x8C9BB2)
 ACCENT = rgba(0x1F74E8)
 ACCENT_EDGE = rgba(0xBFDBFF)
 
-TONES: dict[Tone, Color] = {
-    Tone.PLAIN: rgba(0x3F8FE0),
-    Tone.GOOD: rgba(0x8FF0D0),
-    Tone.WARNING: rgba(0xFFE000),
-    Tone.ERROR: rgba(0xEF5F66),
-}
-BANNERS: dict[Tone, Color] = {
-    Tone.PLAIN: rgba(0x0F2F70, 0.96),
-    Tone.GOOD: rgba(0x35786A, 0.96),
-    Tone.WARNING: rgba(0x806F00, 0.96),
-    Tone.ERROR: rgba(0x700D18, 0.96),
-}
+TONES = {tone: rgba(int(code[1:], 16)) for tone, code in look.TONES.items()}
+BANNERS = {tone: rgba(int(code[1:], 16), 0.96) for tone, code in look.BANNERS.items()}
 CONTACT = rgba(0xE5101C)
 NEAR = rgba(0x4AA5FF)
 ON_SKIN = rgba(0xA6FF66)
-TARGET = rgba(0xFFE14A)
+TARGET = rgba(int(look.TARGET_COLOR[1:], 16))
 TOOL = rgba(0x8CC8FF)
 INSET_EDGE = rgba(0xFFFFFF)
 

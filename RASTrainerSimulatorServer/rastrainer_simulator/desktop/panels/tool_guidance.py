@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from vtkmodules.vtkRenderingCore import vtkRenderer
@@ -14,12 +13,25 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
+from rastrainer_simulator.presentation.look import (
+    BULLS_EYE_FARTHEST_MM,
+    BULLS_EYE_NEAR_MM,
+    BULLS_EYE_RADIUS,
+    BULLS_EYE_RINGS_MM,
+    CLOSED_RING_M,
+    ENTRY_DOT,
+    IN_SIGHT_SHARE,
+    ON_LINE_DEG,
+    ON_LINE_MM,
+    RULER_BEYOND_MM,
+    RULER_TICK_MM,
+    TARGET_RING,
+)
+from rastrainer_simulator.presentation.messages import ProcedureNews, StateNews
 from rastrainer_simulator.presentation.screen import DepthRuler, Tone
 from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
 from rastrainer_simulator.texts.texts import Texts
 
-CLOSED_MM = 5.0
-"""Radius of the ring on the skin; above it, it is larger by the clearance."""
 THICKNESS = 4
 THICKNESS_ON_SKIN = 9
 STEP_PX = 2
@@ -36,7 +48,7 @@ class TouchRing:
 
 
 def touch_ring(
-    state: Mapping[str, Any], tip: np.ndarray, renderer: vtkRenderer, size: tuple[int, int]
+    state: StateNews, tip: np.ndarray, renderer: vtkRenderer, size: tuple[int, int]
 ) -> TouchRing | None:
     """Return the ring of a state; None where the tip is far from the head or not in the picture.
 
@@ -46,7 +58,7 @@ def touch_ring(
         renderer: of the main view.
         size: of the window, in pixels.
     """
-    stage = TouchStage(state["touch"])
+    stage = state.touch
     if stage is TouchStage.FAR:
         return None
     camera = renderer.GetActiveCamera()
@@ -55,7 +67,7 @@ def touch_ring(
     if w <= 0.0 or abs(x) > w or abs(y) > w:
         return None
     half_height_m = w * math.tan(math.radians(camera.GetViewAngle()) / 2.0)
-    radius_m = (CLOSED_MM + max(0.0, state["clearanceMm"])) / MM_PER_M
+    radius_m = (MM_PER_M * CLOSED_RING_M + max(0.0, state.clearance_mm)) / MM_PER_M
     radius = 0.5 * size[1] * radius_m / half_height_m
     return TouchRing(
         round(0.5 * size[0] * (1.0 + x / w)),
@@ -77,10 +89,6 @@ def paint_ring(look: tuple[int, TouchStage], brush: Brush) -> np.ndarray:
         color = theme.CONTACT
     canvas.frame(Box(0, 0, 2 * reach, 2 * reach), color, reach, thickness)
     return canvas.pixels()
-
-
-EDGE_SHARE = 0.90
-"""How much of the picture, from its middle, counts as in sight."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +114,7 @@ def direction_out_of_sight(
     aspect = size[0] / size[1]
     matrix = camera.GetCompositeProjectionTransformMatrix(aspect, -1.0, 1.0)
     x, y, _z, w = matrix.MultiplyPoint((*point, 1.0))
-    if w > 0.0 and abs(x) <= EDGE_SHARE * w and abs(y) <= EDGE_SHARE * w:
+    if w > 0.0 and abs(x) <= IN_SIGHT_SHARE * w and abs(y) <= IN_SIGHT_SHARE * w:
         return None
     # Behind the camera left and right are swapped with the sign of w.
     sign = -1.0 if w < 0.0 else 1.0
@@ -180,13 +188,6 @@ def target_arrow(target: tuple[float, int | None], brush: Brush) -> np.ndarray:
 
 
 EYE_WIDTH, EYE_HEIGHT = 360, 420
-EYE_RADIUS = 156
-RINGS_MM = (1.0, 5.0, 20.0)
-FARTHEST_MM, NEAR_MM = 60.0, 0.6
-"""What the outer edge stands for, and where the scale turns from even to logarithmic."""
-GOOD_MM, GOOD_DEG = 0.5, 0.5
-"""Within this distance, a hand is on the line."""
-DOT, RING = 9, 15
 
 Place = tuple[float, float]
 
@@ -211,22 +212,24 @@ class BullsEye:
     @property
     def is_good(self) -> bool:
         """Whether the guide is on the line, as far as a hand can bring it."""
-        return self.entry_mm <= GOOD_MM and self.angle_deg <= GOOD_DEG
+        return self.entry_mm <= ON_LINE_MM and self.angle_deg <= ON_LINE_DEG
 
 
-def bulls_eye(procedure: Mapping[str, Any] | None, texts: Texts) -> BullsEye | None:
+def bulls_eye(procedure: ProcedureNews | None, texts: Texts) -> BullsEye | None:
     """Return what a state's procedure says; None while no guide is aligned."""
-    aim = None if procedure is None else procedure["aim"]
+    aim = None if procedure is None else procedure.aim
     if aim is None:
         return None
-    entry_mm, angle_deg = round(aim["entryDistanceMm"], 1), round(aim["angleDeg"], 1)
+    entry_mm, angle_deg = round(aim.entry_distance_mm, 1), round(aim.angle_deg, 1)
     figures = (texts.say("panel.mm", value=entry_mm), texts.say("panel.deg", value=angle_deg))
-    return BullsEye(_place(aim["entryMm"]), _place(aim["targetMm"]), entry_mm, angle_deg, figures)
+    return BullsEye(_place(aim.entry_mm), _place(aim.target_mm), entry_mm, angle_deg, figures)
 
 
 def shown_radius(distance_mm: float) -> float:
     """Return where a distance is drawn, as a share of the radius: near ones are spread."""
-    share = math.log1p(distance_mm / NEAR_MM) / math.log1p(FARTHEST_MM / NEAR_MM)
+    share = math.log1p(distance_mm / BULLS_EYE_NEAR_MM) / math.log1p(
+        BULLS_EYE_FARTHEST_MM / BULLS_EYE_NEAR_MM
+    )
     return min(1.0, share)
 
 
@@ -236,38 +239,38 @@ def paint_bulls_eye(look: BullsEye, brush: Brush) -> np.ndarray:
     whole = Box(0, 0, canvas.width, canvas.height)
     canvas.box(whole, theme.GLASS, brush.px(theme.RADIUS))
     middle = canvas.width / 2
-    for ring_mm in (*RINGS_MM, FARTHEST_MM):
+    for ring_mm in (*BULLS_EYE_RINGS_MM, BULLS_EYE_FARTHEST_MM):
         _circle(
             canvas,
             (middle, middle),
-            brush.px(EYE_RADIUS) * shown_radius(ring_mm),
+            brush.px(BULLS_EYE_RADIUS) * shown_radius(ring_mm),
             theme.CAP_EDGE,
             3,
         )
-    cross = brush.px(EYE_RADIUS)
+    cross = brush.px(BULLS_EYE_RADIUS)
     for along, across in ((1, 0), (0, 1)):
         ends = [(middle - s * cross * along, middle - s * cross * across) for s in (1, -1)]
         canvas.stroke(ends, brush.px(2), theme.CAP_EDGE)
     color = theme.TONES[Tone.GOOD if look.is_good else Tone.WARNING]
     entry, target = (_shown(place, middle, brush) for place in (look.entry, look.target))
     canvas.stroke([entry, target], brush.px(4), color)
-    _circle(canvas, target, brush.px(RING), color, brush.px(5))
-    dot = brush.px(DOT)
+    _circle(canvas, target, brush.px(TARGET_RING), color, brush.px(5))
+    dot = brush.px(ENTRY_DOT)
     canvas.box(Box(round(entry[0]) - dot, round(entry[1]) - dot, 2 * dot, 2 * dot), color, dot)
     _write(canvas, look, brush)
     return canvas.pixels()
 
 
-def _place(values: Any) -> Place:
+def _place(values: Place) -> Place:
     right, up = values
-    return round(float(right), 1), round(float(up), 1)
+    return round(right, 1), round(up, 1)
 
 
 def _shown(place: Place, middle: float, brush: Brush) -> tuple[float, float]:
     distance = math.hypot(*place)
     if distance == 0.0:
         return middle, middle
-    far = brush.px(EYE_RADIUS) * shown_radius(distance) / distance
+    far = brush.px(BULLS_EYE_RADIUS) * shown_radius(distance) / distance
     return middle + far * place[0], middle - far * place[1]
 
 
@@ -288,9 +291,6 @@ def _write(canvas: Canvas, look: BullsEye, brush: Brush) -> None:
 
 GAUGE_WIDTH, GAUGE_HEIGHT = 360, 520
 TRACK_LEFT, TRACK_WIDTH, TRACK_TOP, TRACK_BOTTOM = 80, 36, 76, 24
-TICK_MM = 10.0
-BEYOND_MM = 10.0
-"""How far the scale goes past the target."""
 
 
 @dataclass(frozen=True)
@@ -307,16 +307,16 @@ class DepthGauge:
     @property
     def longest_mm(self) -> float:
         """Length of the scale."""
-        return max(self.ruler.target, self.depth_mm, 1.0) + BEYOND_MM
+        return max(self.ruler.target_mm, self.depth_mm, 1.0) + RULER_BEYOND_MM
 
 
 def depth_gauge(
-    ruler: DepthRuler | None, procedure: Mapping[str, Any] | None, texts: Texts
+    ruler: DepthRuler | None, procedure: ProcedureNews | None, texts: Texts
 ) -> DepthGauge | None:
     """Return what a screen's ruler and a state's procedure say; None while nothing is fed."""
     if ruler is None or procedure is None:
         return None
-    depth_mm = round(procedure["feedMm"], 1)
+    depth_mm = round(procedure.feed_mm, 1)
     return DepthGauge(ruler, depth_mm, texts.say("panel.mm", value=depth_mm))
 
 
@@ -332,13 +332,13 @@ def paint_gauge(look: DepthGauge, brush: Brush) -> np.ndarray:
 
     canvas.box(Box(left, top, wide, bottom - top), theme.FIELD, 4)
     ruler = look.ruler
-    if ruler.outer is not None and ruler.inner is not None:
-        bone = Box(left, y(ruler.outer), wide, max(1, y(ruler.inner) - y(ruler.outer)))
+    if ruler.outer_mm is not None and ruler.inner_mm is not None:
+        bone = Box(left, y(ruler.outer_mm), wide, max(1, y(ruler.inner_mm) - y(ruler.outer_mm)))
         canvas.box(bone, theme.CAP_EDGE, 0)
     canvas.box(Box(left + wide // 3, top, wide // 3, y(look.depth_mm) - top), theme.ACCENT, 0)
-    for tick in np.arange(0.0, look.longest_mm, TICK_MM):
+    for tick in np.arange(0.0, look.longest_mm, RULER_TICK_MM):
         canvas.box(Box(left - brush.px(14), y(tick), brush.px(14), 2), theme.TEXT_PALE, 0)
-        if tick % (2 * TICK_MM) == 0.0:
+        if tick % (2 * RULER_TICK_MM) == 0.0:
             text = f"{tick:.0f}"
             start = left - brush.px(22) - brush.width(text, theme.SMALL)
             height = brush.line_height(theme.SMALL)
@@ -351,7 +351,7 @@ def paint_gauge(look: DepthGauge, brush: Brush) -> np.ndarray:
 def _marks(canvas: Canvas, look: DepthGauge, brush: Brush, y: Callable[[float], int]) -> None:
     """Mark entry, tables of the skull and target, with depths and names beside the track."""
     ruler = look.ruler
-    depths = (ruler.entry, ruler.outer, ruler.inner, ruler.target)
+    depths = (ruler.entry_mm, ruler.outer_mm, ruler.inner_mm, ruler.target_mm)
     tones = (Tone.GOOD, Tone.WARNING, Tone.WARNING, Tone.GOOD)
     left = brush.px(TRACK_LEFT) - 4
     wide = brush.px(TRACK_WIDTH) + 4 + brush.px(20)

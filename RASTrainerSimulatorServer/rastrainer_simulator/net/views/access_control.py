@@ -15,42 +15,28 @@ import secrets
 import socket
 from collections import deque
 from collections.abc import Callable, Mapping
-from enum import Enum
 from pathlib import Path
+from typing import Any, TypeVar
 
 from aiohttp import hdrs, web
 from aiohttp.typedefs import Handler
 
-from rastrainer.command_arguments import decode_json_object
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import write_private_json
-from rastrainer.json_checks import one_of, text
+from rastrainer.json_checks import decode_message_object
+from rastrainer.json_records import record_from_json
 from rastrainer_simulator.loop.timing import AsyncRateLimiter
 from rastrainer_simulator.ops.instructor_pin import WRONG_GUESSES, GuessLimit
+from rastrainer_simulator.presentation.messages import PairingRequest, ViewRole
 
+T = TypeVar("T")
 KEY_BYTES = 32
 SHORTEST_KEY = 32
 LONGEST_KEY = 200
 BOARDS_FILE = "boards.json"
 _MAX_BYTES = 100_000
 _HASH_DIGITS = 64
-
-
-class ViewRole(str, Enum):
-    """The role for which a client was paired."""
-
-    VIEW = "view"
-    """To see and to drive."""
-    SPECTATOR = "spectator"
-    """To see everything and to drive nothing."""
-    BOARD = "board"
-    """As a spectator, from a teacher's board; its key outlives the simulator's process."""
-
-    @property
-    def is_watch_only(self) -> bool:
-        """Whether its views may drive nothing."""
-        return self is not ViewRole.VIEW
 
 
 class Sessions:
@@ -148,14 +134,8 @@ def _new_code() -> str:
 
 COOKIE = "rastrainer-view"
 PAIR_FIRST = "Pair first: POST /pair with the code that the simulator shows."
-NOT_A_CODE = (
-    f'Send {{"code": "…"}} with the {DIGITS} digits that the simulator shows, and for who only '
-    f'watches also {{"role": "{ViewRole.SPECTATOR.value}"}} or "{ViewRole.BOARD.value}".'
-)
 BODY_S = 5.0
 _BEARER = "Bearer "
-_code_text = text(64)
-_role_name = one_of(*(role.value for role in ViewRole))
 ROLE = web.RequestKey("role", ViewRole)
 """Where a request that has passed has the role of its key."""
 WRONG_HOST = "The simulator is not known under this name: use its address."
@@ -216,12 +196,12 @@ class Gate:
 
     async def pair(self, request: web.Request) -> web.Response:
         """Give a key, and a cookie with it, for the pairing code; a spectator's only watches."""
-        code, role = await _code_and_role(request)
+        asked = await read_body(request, PairingRequest)
         self._check_pause()
-        if not self._code.accepts(code):
+        if not self._code.accepts(asked.code):
             self._check_pause()
             raise web.HTTPForbidden(text=WRONG)
-        key = self._sessions.open(role)
+        key = self._sessions.open(asked.role)
         response = web.json_response({"key": key}, headers={hdrs.CACHE_CONTROL: "no-store"})
         response.set_cookie(
             COOKIE, key, path="/", httponly=True, samesite="Strict", secure=request.secure
@@ -258,14 +238,21 @@ def _key(request: web.Request) -> str:
     return request.cookies.get(COOKIE, "")
 
 
-async def _code_and_role(request: web.Request) -> tuple[str, ViewRole]:
+async def read_body(request: web.Request, kind: type[T]) -> T:
+    """Return the record that a request's body holds."""
     try:
-        body = await asyncio.wait_for(request.read(), BODY_S)
-        values = decode_json_object(body.decode())
-        role = ViewRole(_role_name(values.get("role", ViewRole.VIEW.value)))
-        return _code_text(values.get("code")), role
-    except (InputError, ValueError, asyncio.TimeoutError, ConnectionError):
-        raise web.HTTPBadRequest(text=NOT_A_CODE) from None
+        return record_from_json(kind, await read_object(request), "The body")
+    except InputError as error:
+        raise web.HTTPBadRequest(text=str(error)) from None
+
+
+async def read_object(request: web.Request) -> dict[str, Any]:
+    """Return the JSON object of a request's body, which must arrive within `BODY_S`."""
+    try:
+        body = (await asyncio.wait_for(request.read(), BODY_S)).decode()
+        return decode_message_object(body, "The body")
+    except (ValueError, asyncio.TimeoutError, ConnectionError):
+        raise web.HTTPBadRequest(text="Send one JSON object.") from None
 
 
 def check_origin(request: web.Request) -> None:

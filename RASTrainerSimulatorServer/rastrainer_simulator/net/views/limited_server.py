@@ -22,9 +22,9 @@ from rastrainer_simulator.net.views.access_control import (
     Gate,
     PairingCode,
     Sessions,
-    ViewRole,
     add_security_headers,
 )
+from rastrainer_simulator.presentation.messages import ViewRole
 
 KEEP_ALIVE_S = 75.0
 SHUTDOWN_S = 1.0

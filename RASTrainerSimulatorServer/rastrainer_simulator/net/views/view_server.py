@@ -27,23 +27,28 @@ from rastrainer_simulator.net.views.access_control import (
     SHORTEST_KEY,
     PairingCode,
     Sessions,
-    ViewRole,
 )
 from rastrainer_simulator.net.views.boards import InstructorOrders
-from rastrainer_simulator.net.views.incoming import HELLO, ONLY_WATCH, SUBPROTOCOL, check_message
 from rastrainer_simulator.net.views.joined_views import JoinedViews
 from rastrainer_simulator.net.views.limited_server import GuardedServer
 from rastrainer_simulator.net.views.view_socket import ViewSocket
 from rastrainer_simulator.ops.instructor_pin import PinGuesses
 from rastrainer_simulator.ops.processes import VIEW_KEY_VARIABLE
-from rastrainer_simulator.presentation.presenter import Hello, Presenter
+from rastrainer_simulator.presentation.messages import (
+    SUBPROTOCOL,
+    WATCHING_KINDS,
+    Hello,
+    ViewRole,
+    read_view_input,
+)
+from rastrainer_simulator.presentation.presenter import Presenter
 from rastrainer_simulator.scene.scene_files import SceneFiles, cache_folder, gzipped_scene
 
 FOREVER = "private, max-age=31536000, immutable"
 FULL_SIZE = "X-File-Size"
 FULL = "The maximum number of views is connected."
 HELLO_FIRST = "The first message of a view must be a hello."
-ONLY_WATCHES = f"This key only watches: the kind of the view must be {' or '.join(ONLY_WATCH)}."
+ONLY_WATCHES = f"This key only watches: the kind of the view must be {' or '.join(WATCHING_KINDS)}."
 
 
 class ViewServer:
@@ -221,11 +226,10 @@ class ViewServer:
             raise InputError(HELLO_FIRST) from None
         if first.type is not WSMsgType.TEXT:
             raise InputError(HELLO_FIRST)
-        received = check_message(first.data)
-        if received.type != HELLO:
+        hello = read_view_input(first.data)
+        if not isinstance(hello, Hello):
             raise InputError(HELLO_FIRST)
-        hello = Hello(*received.values)
-        if role.is_watch_only and hello.kind not in ONLY_WATCH:
+        if role.is_watch_only and hello.kind not in WATCHING_KINDS:
             raise InputError(ONLY_WATCHES)
         return hello
 

@@ -13,7 +13,7 @@ import {
 } from "three";
 
 import { COLORS } from "../panels/pen";
-import type { StateNews } from "../stream/messages";
+import type { StateNews } from "../generated";
 import type { Stage } from "../scene/stage";
 import { Viewpoint } from "../scene/viewpoint";
 

@@ -4,7 +4,7 @@ import { PerspectiveCamera, Vector3 } from "three";
 
 import type { Connection } from "../stream/connection";
 import type { FrameCount } from "../stream/frame_count";
-import type { Aim, ControlNews, DepthRuler, EventNews, Hello, SceneNews, Screen, StateNews } from "../stream/messages";
+import type { GuideAim, ControlNews, DepthRuler, Feedback, Hello, SceneNews, Screen, StateNews } from "../generated";
 import type { SceneModel } from "../scene/scene_model";
 import type { Sounds } from "../audio/sounds";
 import type { Stage } from "../scene/stage";
@@ -15,7 +15,7 @@ import { Hands } from "./hands";
 import { Placement } from "./placement";
 import { SightArrow } from "./sight_arrow";
 import { Seating } from "./seating";
-import { WornPoses } from "./worn_poses";
+import { HeadsetPoses } from "./headset_poses";
 
 const HIGHEST_HZ = 90;
 const MAX_FOVEATION = 1;
@@ -31,7 +31,7 @@ export class Headset {
   private readonly arrow = new SightArrow();
   private hasArrow = false;
   private readonly hands: Hands;
-  private readonly worn: WornPoses;
+  private readonly poses: HeadsetPoses;
   private base: XRReferenceSpace | null = null;
   private mustRecenter = false;
   private looked = 0;
@@ -48,7 +48,7 @@ export class Headset {
     private readonly leave: () => void,
   ) {
     const { scene, renderer } = stage;
-    this.worn = new WornPoses(connection, stage.world);
+    this.poses = new HeadsetPoses(connection, stage.world);
     this.placement.rig.add(this.camera);
     scene.add(this.placement.rig, this.panels.room);
     this.panels.room.add(this.arrow.group);
@@ -74,9 +74,9 @@ export class Headset {
       const isVisible = this.session.visibilityState === "visible";
       if (!isVisible) {
         this.hands.release();
-        if (this.session.visibilityState === "hidden") this.worn.takeOff();
+        if (this.session.visibilityState === "hidden") this.poses.sendDoffed();
       }
-      this.connection.send("visibility", { isVisible });
+      this.connection.send({ type: "visibility", isVisible });
     });
     this.sounds.setSpatial(true);
     this.connection.rejoin(this.hello());
@@ -97,7 +97,7 @@ export class Headset {
   }
 
   showScreen(screen: Screen): void {
-    this.hasArrow = screen.menu === null && screen.has_arrow;
+    this.hasArrow = screen.menu === null && screen.hasArrow;
     this.panels.show(screen);
     this.hands.isStepped = this.panels.isStepped;
   }
@@ -106,7 +106,7 @@ export class Headset {
     this.panels.showControl(control);
   }
 
-  showGuiding(aim: Aim | null, ruler: DepthRuler | null, depth: number): void {
+  showGuiding(aim: GuideAim | null, ruler: DepthRuler | null, depth: number): void {
     this.panels.showGuiding(aim, ruler, depth);
     this.hands.isAligning = aim !== null;
   }
@@ -115,7 +115,7 @@ export class Headset {
     this.panels.setNotice(text);
   }
 
-  feel(event: EventNews): void {
+  feel(event: Feedback): void {
     this.hands.feel(event);
   }
 
@@ -142,12 +142,12 @@ export class Headset {
     this.looked = now;
     // A device may go on asking for pictures of a headset that was taken off.
     if (this.session.visibilityState !== "hidden") {
-      this.worn.tell(now, this.camera, this.hands.controller("left"), this.hands.controller("right"));
+      this.poses.send(now, this.camera, this.hands.controller("left"), this.hands.controller("right"));
     }
     this.hear(model);
     this.panels.closeUp.draw(this.stage, this.panels.room, state);
     this.arrow.show(model, this.camera, state.next, this.hasArrow);
-    model.seeThrough(state.translucent.worn);
+    model.seeThrough(state.translucent.headset);
     this.stage.renderer.render(this.stage.scene, this.camera);
   }
 
@@ -214,7 +214,7 @@ export class Headset {
         this.leave();
         break;
       default:
-        this.connection.send("item", { name });
+        this.connection.send({ type: "item", name });
     }
   }
 
@@ -227,6 +227,6 @@ export class Headset {
 
   private hello(): Hello {
     const device = headsetModel(this.session, navigator.userAgent);
-    return { kind: "headset", device, refreshHz: this.frames.fixedHz };
+    return { type: "hello", kind: "headset", device, refreshHz: this.frames.fixedHz };
   }
 }

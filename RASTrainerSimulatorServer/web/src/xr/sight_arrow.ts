@@ -1,5 +1,6 @@
 /** An arrow before the eyes toward a next point that is out of sight. */
 
+import { TARGET_COLOR } from "../generated";
 import { ConeGeometry, CylinderGeometry, Group, Mesh, MeshBasicMaterial, type PerspectiveCamera, Vector3 } from "three";
 
 import type { SceneModel } from "../scene/scene_model";
@@ -11,7 +12,6 @@ const IN_SIGHT_RAD = 0.45;
 const AHEAD_M = 0.6;
 const DOWN_M = 0.16;
 const LENGTH_M = 0.1;
-const COLOR = 0xffe14a;
 /** After the panels. */
 const ORDER = 30;
 
@@ -24,7 +24,7 @@ export class SightArrow {
   private readonly down = new Vector3();
 
   constructor() {
-    const material = new MeshBasicMaterial({ color: COLOR, toneMapped: false, depthTest: false });
+    const material = new MeshBasicMaterial({ color: TARGET_COLOR, toneMapped: false, depthTest: false });
     const shaft = new Mesh(new CylinderGeometry(0.007, 0.007, 0.6 * LENGTH_M), material);
     const head = new Mesh(new ConeGeometry(0.02, 0.4 * LENGTH_M), material);
     shaft.position.y = -0.2 * LENGTH_M;
