@@ -17,6 +17,7 @@ import numpy as np
 from playwright.sync_api import Page
 
 from rastrainer.igtl.client import Client
+from rastrainer.json_records import camel_case
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
@@ -67,7 +68,8 @@ class Place:
         config.mkdir()
         preferences = {"order": "any", **preferences}
         (config / "preferences.json").write_text(json.dumps(preferences), encoding="utf-8")
-        (config / "limits.json").write_text(json.dumps({"views": limits}), encoding="utf-8")
+        views = {camel_case(name): value for name, value in limits.items()}
+        (config / "limits.json").write_text(json.dumps({"views": views}), encoding="utf-8")
         key = secrets.token_urlsafe(32)
         options = ["--view-port", "0", "--seed", "7", *arguments]
         if not has_gamepad:

@@ -32,7 +32,12 @@ from rastrainer_simulator.presentation.feedback_event import (
     feedback_of,
 )
 from rastrainer_simulator.presentation.messages import Frames, Hello, InstructorOrder, Seat
-from rastrainer_simulator.presentation.presenter import Control, TraceGuidance, ViewUpdate
+from rastrainer_simulator.presentation.presenter import (
+    Control,
+    Presenter,
+    TraceGuidance,
+    ViewUpdate,
+)
 from rastrainer_simulator.presentation.screen import PRESS, Screen, Tone
 from rastrainer_simulator.record.trial_context import DisplayReport
 from rastrainer_simulator.replay.playback import PlaybackSwitch
@@ -46,7 +51,7 @@ _IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlNam
 """What a view's own buttons mean while a menu is open: those of a headset have no bindings."""
 
 
-class FlowPresenter:
+class FlowPresenter(Presenter):
     """A `Presenter` for one trainee.
 
     Everything but what the control loop calls belongs to one thread. `advance` is to be called

@@ -16,7 +16,6 @@ from yarl import URL
 
 from rastrainer.errors import InputError
 from rastrainer.study.database.database import StudyPlace
-from rastrainer_simulator.loop.timing import AsyncRateLimiter
 from rastrainer_simulator.lti.course_study import CourseStudy, GradeReturn
 from rastrainer_simulator.lti.launch_message import (
     LARGEST_TOKEN,
@@ -35,7 +34,7 @@ from rastrainer_simulator.lti.platform_client import (
 )
 from rastrainer_simulator.lti.settings import KEYS, LAUNCH, LOGIN, LtiSettings, ToolKey
 from rastrainer_simulator.net.limits import ViewLimits
-from rastrainer_simulator.net.views.limited_server import Connections, LimitedServer
+from rastrainer_simulator.net.views.limited_server import LimitedServer
 from rastrainer_simulator.ops.study_thread import StudyThread
 
 _log = logging.getLogger(__name__)
@@ -70,21 +69,18 @@ class LtiServer:
         limits: ViewLimits | None = None,
     ) -> None:
         """Serve a study to the platforms of the settings; in the event loop's thread."""
-        limits = limits or ViewLimits()
         clock = asyncio.get_running_loop().time
         self._settings, self._key = settings, key
         self._study = StudyThread(lambda: CourseStudy(study))
         self._key_sets = KeySets(client, clock)
         self._logins = OpenLogins(clock)
-        self._connections = Connections(limits.connections, limits.first_message_s)
-        self._rate_limiter = AsyncRateLimiter(limits.requests_per_s)
         routes = [
             web.get(LOGIN, self._login),
             web.post(LOGIN, self._login),
             web.post(LAUNCH, self._launch),
             web.get(KEYS, self._send_keys),
         ]
-        self._http = LimitedServer(self._connections, limits, self._check, routes, LARGEST_BODY)
+        self._http = LimitedServer(limits or ViewLimits(), self._check, routes, LARGEST_BODY)
         self.grades = GradeReturn(settings, key, client, self._study, clock)
         self._returning: asyncio.Task[None] | None = None
 
@@ -108,8 +104,6 @@ class LtiServer:
 
     @web.middleware
     async def _check(self, request: web.Request, handler: Handler) -> web.StreamResponse:
-        self._connections.note(request)
-        await self._rate_limiter.passed()
         try:
             return await handler(request)
         except RefusedLaunchError as error:

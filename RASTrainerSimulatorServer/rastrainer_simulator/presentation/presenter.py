@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -51,48 +50,54 @@ class TraceGuidance:
     next_place: SkinPlace | None = None
 
 
-class Presenter(Protocol):
+class Presenter:
     """The flow and the controls, as the view server sees them.
 
     Everything is called in the event loop's thread, and what is subscribed is called there too;
     every call returns at once. Values have been checked: numbers are finite and within their
-    range, texts short and printable, `view` is the number of a view that has joined.
+    range, texts short and printable, `view` is the number of a view that has joined. Each message
+    of a view goes to the method of its type, which ignores it here.
+
+    Attributes:
+        screen: what the trainee reads now.
+        control: what drives the arm now.
     """
 
-    @property
-    def screen(self) -> Screen:
-        """What the trainee reads now."""
-
-    @property
-    def control(self) -> Control:
-        """What drives the arm now."""
+    screen: Screen
+    control: Control
 
     def pictures(self, now: SimulationState) -> Pictures:
         """Return the viewpoint of the pictures of a state."""
+        raise NotImplementedError
 
     def ghost(self, now: SimulationState) -> tuple[np.ndarray, ...] | None:
         """Return the poses of the ghost beside the arm in a state, in the order of `GHOST_BODIES`.
 
         Each is (4, 4) float, to World, m; None where none is shown.
         """
+        raise NotImplementedError
 
     def trace_guidance(self, now: SimulationState) -> TraceGuidance:
         """Return how a trainee who traces the skin is guided in a state."""
+        raise NotImplementedError
 
     def seat(self) -> Seat:
         """Return what a teacher's board shows of this seat."""
+        raise NotImplementedError
 
     def instruct(self, order: InstructorOrder, text: str) -> str:
         """Carry out an order of a teacher who knows the PIN; return why it is impossible, or "".
 
         `text` is the sentence of `InstructorOrder.SAY`, else "".
         """
+        raise NotImplementedError
 
     def subscribe(self, listener: Callable[[ViewUpdate], None]) -> Callable[[], None]:
         """Have `listener` called with each new screen, feedback and holder of the control.
 
         Returns what ends the subscription.
         """
+        raise NotImplementedError
 
     def view_joined(self, view: int, hello: Hello) -> None:
         """Register a view."""
@@ -101,20 +106,17 @@ class Presenter(Protocol):
         """Forget a view; what it held has been released before."""
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
-        """Process a key: W3C `KeyboardEvent.code`, and what it types or "".
+        """Process a `KeyInput`.
 
         While a key is held it may come down again and again, as keyboards repeat it. A view
         that leaves or falls silent releases each key that it held, with `is_down` False.
         """
 
     def on_layout(self, view: int, keys: Mapping[str, str]) -> None:
-        """Process what is written on a view's keys, by their W3C codes: "q" on KeyA in France."""
+        """Process a `LayoutInput`."""
 
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
-        """Process a gamepad that a browser reads: the W3C standard gamepad, axes −1…1, buttons 0…1.
-
-        A view that leaves or falls silent sends it once again with nothing pressed.
-        """
+        """Process a `PadInput`; one of a view that leaves or falls silent has nothing pressed."""
 
     def on_sticks(
         self,
@@ -124,33 +126,28 @@ class Presenter(Protocol):
         is_fine: bool,
         yaw_deg: float,
     ) -> None:
-        """Process the sticks of XR controllers, −1…1, as in `OperatorInput`.
-
-        `yaw_deg` is where the eyes look, counterclockwise from World's x: forward is there.
-
-        A view that leaves or falls silent releases them: zeros.
-        """
+        """Process a `SticksInput`; a view that leaves or falls silent releases them: zeros."""
 
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
-        """Process a turn of the view: around to the right, higher, and its distance multiplied."""
+        """Process an `OrbitInput`."""
 
     def on_press(self, view: int, control: str) -> None:
-        """Process one press of a control by its name in the settings of the controls; any name."""
+        """Process a `PressInput`; any name."""
 
     def on_item(self, view: int, name: str) -> None:
-        """Process a click on an item of the menu; any name, the menu may have changed."""
+        """Process an `ItemInput`; any name, the menu may have changed."""
 
     def on_text(self, view: int, name: str, value: str) -> None:
-        """Process the new text of a text item; any name, the menu may have changed."""
+        """Process a `TextInput`; any name, the menu may have changed."""
 
     def on_frames(self, view: int, frames: Frames) -> None:
         """Process how smoothly a view draws, once a second."""
 
     def on_picture(self, view: int, task: str, share: float) -> None:
-        """Process how much of a task's scene a view has loaded, 0 to 1; 1 once it is drawn."""
+        """Process a `PictureProgress`."""
 
     def on_visibility(self, view: int, is_visible: bool) -> None:
-        """Process whether the trainee sees the view: the headset was doffed, the page hidden."""
+        """Process a `Visibility`."""
 
     def on_silence(self, view: int) -> None:
         """Process that a view has been silent for so long that its picture must be frozen."""

@@ -13,8 +13,13 @@ from rastrainer_simulator.input.gamepads import w3c_gamepad_inputs
 from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice
 from rastrainer_simulator.loop.results import Subscribers
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_of
-from rastrainer_simulator.presentation.messages import Frames, Hello, InstructorOrder, Seat
-from rastrainer_simulator.presentation.presenter import Control, TraceGuidance, ViewUpdate
+from rastrainer_simulator.presentation.messages import InstructorOrder, Seat
+from rastrainer_simulator.presentation.presenter import (
+    Control,
+    Presenter,
+    TraceGuidance,
+    ViewUpdate,
+)
 from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.rating.rating_pages import DomainPage, LoadingPage, RatedPage, RatingWork
 from rastrainer_simulator.replay.playback import Playback, ShownPlayback
@@ -28,7 +33,7 @@ _REPEATED = ("ArrowLeft", "ArrowRight")
 _IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlName.BACK}
 
 
-class RatingPresenter:
+class RatingPresenter(Presenter):
     """A `Presenter` for one rater: replays under numbers, and the pages of the forms over them.
 
     Attributes:
@@ -130,9 +135,6 @@ class RatingPresenter:
         """Refuse: a recorded trial takes no orders."""
         return self._replay.instruct(order, text)
 
-    def view_joined(self, view: int, hello: Hello) -> None:
-        """Register a view."""
-
     def view_left(self, view: int) -> None:
         self._held.pop(view, None)
         self._keys.pop(view, None)
@@ -183,9 +185,6 @@ class RatingPresenter:
             name = ControlName(control)
             self._do(lambda: self.pages.pressed(_IN_MENUS.get(name, name)))
 
-    def on_sticks(self, view: int, *positions: object) -> None:
-        """Ignore it: no one drives."""
-
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
         self._replay.on_orbit(view, around_deg, higher_deg, zoom)
 
@@ -195,15 +194,6 @@ class RatingPresenter:
             self._do(self.rate)
         else:
             self._do(lambda: self.pages.choose(name))
-
-    def on_text(self, view: int, name: str, value: str) -> None:
-        """Ignore it: there is no text item."""
-
-    def on_frames(self, view: int, frames: Frames) -> None:
-        """Ignore it: nothing is recorded."""
-
-    def on_picture(self, view: int, task: str, share: float) -> None:
-        """Ignore it: no clock runs."""
 
     def on_visibility(self, view: int, is_visible: bool) -> None:
         """Pause while no one is watching."""

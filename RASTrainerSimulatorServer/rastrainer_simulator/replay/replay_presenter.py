@@ -11,8 +11,13 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.loop.results import Subscribers
 from rastrainer_simulator.presentation.feedback_event import feedback_event, feedback_of
-from rastrainer_simulator.presentation.messages import Frames, Hello, InstructorOrder, Seat
-from rastrainer_simulator.presentation.presenter import Control, TraceGuidance, ViewUpdate
+from rastrainer_simulator.presentation.messages import InstructorOrder, Seat
+from rastrainer_simulator.presentation.presenter import (
+    Control,
+    Presenter,
+    TraceGuidance,
+    ViewUpdate,
+)
 from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage
 from rastrainer_simulator.replay.playback import PERIOD_S, Playback
 from rastrainer_simulator.state import SimulationState, StepResult
@@ -160,7 +165,7 @@ _HINTS = (
 """Keys, and the text of what they do."""
 
 
-class ReplayPresenter:
+class ReplayPresenter(Presenter):
     """A `Presenter` for playing, pausing and seeking; the arm is not driven.
 
     Attributes:
@@ -228,9 +233,6 @@ class ReplayPresenter:
         """Have `listener` called with each new screen and event; returns what ends that."""
         return self._subscribers.add(listener)
 
-    def view_joined(self, view: int, hello: Hello) -> None:
-        """Register a view."""
-
     def view_left(self, view: int) -> None:
         self._held.pop(view, None)
 
@@ -252,21 +254,6 @@ class ReplayPresenter:
     def on_press(self, view: int, control: str) -> None:  # noqa: ARG002
         """Process a button of an XR controller."""
         self._do(_PRESSES.get(control))
-
-    def on_sticks(self, view: int, *positions: object) -> None:
-        """Ignore it: no one drives."""
-
-    def on_item(self, view: int, name: str) -> None:
-        """Ignore it: there is no menu."""
-
-    def on_text(self, view: int, name: str, value: str) -> None:
-        """Ignore it: there is no menu."""
-
-    def on_frames(self, view: int, frames: Frames) -> None:
-        """Ignore it: nothing is recorded."""
-
-    def on_picture(self, view: int, task: str, share: float) -> None:
-        """Ignore it: no clock runs."""
 
     def on_visibility(self, view: int, is_visible: bool) -> None:  # noqa: ARG002
         """Ignore it: nothing is missed."""

@@ -7,6 +7,7 @@ import pytest
 
 from rastrainer_simulator.desktop.head_marks import ShownTrace, SkinPaint
 from rastrainer_simulator.desktop.viewports import Quality
+from rastrainer_simulator.presentation.messages import SkinPlace, TraceNews
 from Testing.simulator.desktop.conftest import SCREEN, state_text
 
 MARKS, RING = ((0, 15, 80), (30, 60, 130)), ((240, 210, 50), (255, 235, 100))
@@ -15,11 +16,11 @@ AHEAD = [[x, -98.0, 20.0] for x in np.arange(-20.0, 21.0, 2.0)]
 """Points on the forehead of the ball that is the head, mm."""
 WIDE_MM = 60.0
 """The ball has few corners, and only corners are painted."""
-NEXT = {"positionMm": [0.0, -95.4, -30.0], "normal": [0.0, -0.954, -0.3]}
+NEXT = SkinPlace((0.0, -95.4, -30.0), (0.0, -0.954, -0.3))
 
 
 def news(points=(), known=0, covered_mm=WIDE_MM, next_place=NEXT):
-    return {"known": known, "points": points, "coveredMm": covered_mm, "next": next_place}
+    return TraceNews(known, points, covered_mm, next_place)
 
 
 @pytest.fixture

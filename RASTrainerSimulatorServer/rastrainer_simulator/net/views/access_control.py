@@ -19,16 +19,14 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from aiohttp import hdrs, web
-from aiohttp.typedefs import Handler
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import write_private_json
 from rastrainer.json_checks import decode_message_object
 from rastrainer.json_records import record_from_json
-from rastrainer_simulator.loop.timing import AsyncRateLimiter
 from rastrainer_simulator.ops.instructor_pin import WRONG_GUESSES, GuessLimit
-from rastrainer_simulator.presentation.messages import PairingRequest, ViewRole
+from rastrainer_simulator.presentation.messages import ViewRole
 
 T = TypeVar("T")
 KEY_BYTES = 32
@@ -154,65 +152,6 @@ HEADERS = {
 }
 
 
-class Gate:
-    """Lets paired views pass, and everyone else to the page and to the pairing only."""
-
-    def __init__(
-        self,
-        sessions: Sessions,
-        code: PairingCode,
-        note: Callable[[web.Request], None],
-        note_key: Callable[[web.Request, ViewRole], None],
-        rate_limiter: AsyncRateLimiter,
-    ) -> None:
-        """Make a gate.
-
-        Args:
-            sessions: whose keys open it.
-            code: that a new session is given for.
-            note: is called with every request that arrives, and
-            note_key: of every one that shows a session's key, with the role of this key.
-            rate_limiter: every request waits for its turn at it.
-        """
-        self._rate_limiter = rate_limiter
-        self._sessions = sessions
-        self._code = code
-        self._note = note
-        self._note_key = note_key
-
-    @web.middleware
-    async def check(self, request: web.Request, handler: Handler) -> web.StreamResponse:
-        """Refuse what comes from elsewhere or without a session's key."""
-        self._note(request)
-        await self._rate_limiter.passed()
-        check_origin(request)
-        role = self._sessions.role(_key(request))
-        if role is not None:
-            request[ROLE] = role
-            self._note_key(request, role)
-        elif not _is_public(request):
-            raise web.HTTPUnauthorized(text=PAIR_FIRST)
-        return await handler(request)
-
-    async def pair(self, request: web.Request) -> web.Response:
-        """Give a key, and a cookie with it, for the pairing code; a spectator's only watches."""
-        asked = await read_body(request, PairingRequest)
-        self._check_pause()
-        if not self._code.accepts(asked.code):
-            self._check_pause()
-            raise web.HTTPForbidden(text=WRONG)
-        key = self._sessions.open(asked.role)
-        response = web.json_response({"key": key}, headers={hdrs.CACHE_CONTROL: "no-store"})
-        response.set_cookie(
-            COOKIE, key, path="/", httponly=True, samesite="Strict", secure=request.secure
-        )
-        return response
-
-    def _check_pause(self) -> None:
-        """Refuse while pairing is paused; the one who caused the pause is sent the new code."""
-        refuse_for(self._code.seconds_to_wait(), TOO_MANY)
-
-
 def refuse_for(wait_s: float, why: str) -> None:
     """Refuse with a sentence where there are seconds to wait.
 
@@ -224,14 +163,16 @@ def refuse_for(wait_s: float, why: str) -> None:
         raise web.HTTPTooManyRequests(text=why, headers=headers)
 
 
-def _is_public(request: web.Request) -> bool:
+def is_public(request: web.Request) -> bool:
+    """Return whether a request needs no key: for the page, its files, or pairing."""
     resource = request.match_info.route.resource
     return isinstance(resource, web.StaticResource) or (
         resource is not None and resource.canonical in ("/", "/pair")
     )
 
 
-def _key(request: web.Request) -> str:
+def session_key(request: web.Request) -> str:
+    """Return the key that a request shows, "" for none."""
     authorization = request.headers.get(hdrs.AUTHORIZATION, "")
     if authorization.startswith(_BEARER):
         return authorization.removeprefix(_BEARER)

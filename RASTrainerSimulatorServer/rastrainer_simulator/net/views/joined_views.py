@@ -45,6 +45,7 @@ from rastrainer_simulator.viewpoint.view_control import Pictures
 
 _log = logging.getLogger(__name__)
 
+STATE_HZ = 60.0
 _WATCH_PERIOD_S = 0.05
 _BEFORE_BUILDING_AHEAD_S = 3.0
 ENDING = "The simulator has been stopped."
@@ -67,7 +68,7 @@ class JoinedViews:
         self._views: dict[int, ViewSocket] = {}
         self._boards = Boards()
         self._numbers = itertools.count(1)
-        self._pacer = Pacer(limits.state_hz)
+        self._pacer = Pacer(STATE_HZ)
         self._setup: SimulationSetup | None = None
         self._task = ""
         self._scene = ""

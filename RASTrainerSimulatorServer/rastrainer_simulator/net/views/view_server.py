@@ -46,6 +46,11 @@ from rastrainer_simulator.scene.scene_files import SceneFiles, cache_folder, gzi
 
 FOREVER = "private, max-age=31536000, immutable"
 FULL_SIZE = "X-File-Size"
+MAX_SESSIONS = 64
+"""Keys of each role that are remembered; then the oldest is forgotten."""
+MAX_MESSAGE_BYTES = 16 * 1024
+SEND_BUFFER_BYTES = 32 * 1024
+"""Passed to the operating system ahead of a view that reads slowly."""
 FULL = "The maximum number of views is connected."
 HELLO_FIRST = "The first message of a view must be a hello."
 ONLY_WATCHES = f"This key only watches: the kind of the view must be {' or '.join(WATCHING_KINDS)}."
@@ -92,11 +97,7 @@ class ViewServer:
         self.addresses: list[str] = []
         self._on_new_code = on_new_code
         self.sessions = Sessions(
-            {
-                ViewRole.VIEW: self._limits.sessions,
-                ViewRole.SPECTATOR: self._limits.spectator_sessions,
-                ViewRole.BOARD: self._limits.spectator_sessions,
-            },
+            dict.fromkeys(ViewRole, MAX_SESSIONS),
             None if config is None else config / BOARDS_FILE,
         )
         self._instructor = InstructorOrders(pin, presenter)
@@ -185,7 +186,7 @@ class ViewServer:
     async def _stream(self, request: web.Request) -> web.StreamResponse:
         stream = web.WebSocketResponse(
             protocols=(SUBPROTOCOL,),
-            max_msg_size=self._limits.message_bytes,
+            max_msg_size=MAX_MESSAGE_BYTES,
             heartbeat=self._limits.gone_s / 2.0,
             compress=False,
             # Pings are answered by the view, where they count as any message does.
@@ -246,7 +247,7 @@ class ViewServer:
             under_tls.set_write_buffer_limits(high=0)
         with contextlib.suppress(OSError):
             peer = transport.get_extra_info("socket")
-            peer.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, self._limits.buffer_bytes)
+            peer.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER_BYTES)
 
 
 async def _send_role(request: web.Request) -> web.Response:

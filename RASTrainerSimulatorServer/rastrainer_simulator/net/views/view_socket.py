@@ -43,6 +43,8 @@ TOO_MANY_EVENTS = "The view has not read its events; it may come back."
 NOT_TEXT = "Messages must be text."
 ONLY_WATCHES = f"A spectator drives nothing: it may send {Alive.type} and nothing else."
 MAX_KEYS = 32
+MAX_WAITING_EVENTS = 256
+"""For a view; one more drops it."""
 CLOSE_S = 3.0
 """How long a view has to read its pending messages, and to confirm the end."""
 _BEFORE_EVENTS = tuple(
@@ -74,7 +76,7 @@ class ViewSocket:
         self.number = number
         self.hello = hello
         self.is_local = is_local
-        self.outbox = Outbox(limits.waiting_events)
+        self.outbox = Outbox()
         self.held = HeldInput(number, presenter)
         self._socket = socket
         self._presenter = presenter
@@ -224,8 +226,7 @@ class HeldInput:
 class Outbox:
     """The messages for a view; it belongs to the event loop's thread."""
 
-    def __init__(self, most_events: int) -> None:
-        self._most_events = most_events
+    def __init__(self) -> None:
         self._latest: dict[str, str] = {}
         self._events: deque[str] = deque()
         self._is_filled = asyncio.Event()
@@ -239,7 +240,7 @@ class Outbox:
 
     def put_event(self, text: str) -> None:
         """Have a text sent after the previous ones, none of them left out."""
-        if len(self._events) >= self._most_events:
+        if len(self._events) >= MAX_WAITING_EVENTS:
             self.is_overfull = True
         else:
             self._events.append(text)
