@@ -16,6 +16,7 @@ from rastrainer_simulator.desktop.shown_scene import pose_matrix
 from rastrainer_simulator.flow.flow import PICTURE_GRACE_S
 from rastrainer_simulator.presentation.screen import Menu, Screen
 from rastrainer_simulator.teleoperation.steering import camera_axes
+from rastrainer_simulator.viewpoint.view_control import CameraPose
 from Testing.end_to_end.window_process import wait_until
 from Testing.simulator.net.views.served import ViewClient
 
@@ -80,6 +81,11 @@ class WatchingView:
     def pose(self, body: str) -> np.ndarray:
         """Return (4, 4) float, to World in m."""
         return pose_matrix(self.state["poses"][self._bodies.index(body)])
+
+    @property
+    def viewpoint(self) -> Viewpoint:
+        """Where the main picture is looked from."""
+        return Viewpoint.of(record_from_json(CameraPose, self.state["view"], "The view"))
 
     def next_state(self) -> None:
         """Wait for the next state."""
@@ -289,7 +295,7 @@ class StreamTrainee:
         first = np.cross(outward, (0.0, 0.0, 1.0))
         first /= np.linalg.norm(first)
         fiducials = np.array([self.place_of(label) for label in self.view.scene["fiducials"]])
-        eye = Viewpoint.from_json(self.view.state["view"]).position
+        eye = self.view.viewpoint.position
         angles = np.arange(0.0, 2.0 * np.pi, np.pi / 8.0)
         sides = np.outer(np.cos(angles), first)
         sides += np.outer(np.sin(angles), np.cross(outward, first))
@@ -387,7 +393,7 @@ class StreamTrainee:
 
     def _stick_axes(self) -> np.ndarray:
         """Return (3, 3) float: right, forward and up as the picture shows them, as rows."""
-        camera = Viewpoint.from_json(self.view.state["view"])
+        camera = self.view.viewpoint
         line = tuple((camera.focal_point - camera.position).tolist())
         axes = camera_axes(line, tuple(camera.view_up.tolist()))
         return np.array([axes.right, axes.forward, axes.up])

@@ -21,6 +21,7 @@ from rastrainer.json_checks import (
     number,
     numbers,
     text,
+    texts,
     whole_number,
 )
 from rastrainer.json_records import record_fields, record_from_json
@@ -139,9 +140,7 @@ class SceneNews(ViewMessage):
     sticks: AxesChoice
     cameras: Annotated[Mapping[str, CameraPose], _names_of(_record(CameraPose))]
     fiducials: Annotated[Mapping[str, Vector], _names_of(numbers(3, 5000.0))]
-    no_go: Annotated[
-        Mapping[str, tuple[str, ...]], _names_of(lambda names: tuple(map(text(), names)))
-    ]
+    no_go: Annotated[Mapping[str, tuple[str, ...]], _names_of(texts(0, 256))]
 
 
 @dataclass(frozen=True)

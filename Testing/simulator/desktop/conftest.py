@@ -40,6 +40,10 @@ CAMERA = {
 }
 FAR = {**CAMERA, "position": [0.0, -2.4, 0.0]}
 CAMERAS = {"close-up": CAMERA, "far": FAR}
+VIEWPOINTS = {
+    name: Viewpoint.of(record_from_json(CameraPose, value, "The camera"))
+    for name, value in CAMERAS.items()
+}
 
 
 def ball(name, radius, center, material, children=()):
@@ -134,11 +138,7 @@ def inbox(glb):
     """What a window of that scene has received."""
     inbox = Inbox()
     inbox.bodies = BODIES
-    views = {
-        name: Viewpoint.of(record_from_json(CameraPose, value, "The camera"))
-        for name, value in CAMERAS.items()
-    }
-    inbox.scene = LoadedScene(read_parts(glb, BODIES), views, FIDUCIALS)
+    inbox.scene = LoadedScene(read_parts(glb, BODIES), VIEWPOINTS, FIDUCIALS)
     return inbox
 
 

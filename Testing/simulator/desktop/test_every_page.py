@@ -7,14 +7,14 @@ import itertools
 import numpy as np
 import pytest
 
-from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, Viewpoint, read_parts
+from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, read_parts
 from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.menu_panel import menu_panel
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.desktop.viewports import Quality
 from rastrainer_simulator.presentation.screen import ErrorArrow, Screen, Tone
-from Testing.simulator.desktop.conftest import BODIES, CAMERAS, FIDUCIALS, state_text
+from Testing.simulator.desktop.conftest import BODIES, FIDUCIALS, VIEWPOINTS, state_text
 from Testing.simulator.flow.conftest import loop, outside, presenter, shared  # noqa: F401
 from Testing.simulator.flow.every_page import every_screen, names_of_pages
 from Testing.simulator.flow.languages import LONGEST_OR_EACH, screens_in
@@ -25,8 +25,7 @@ def show(gl_window, glb):
     """Return a function that shows a screen in the window and returns its pixels."""
     inbox = Inbox()
     inbox.bodies = BODIES
-    views = {name: Viewpoint.from_json(value) for name, value in CAMERAS.items()}
-    inbox.scene = LoadedScene(read_parts(glb, BODIES), views, FIDUCIALS)
+    inbox.scene = LoadedScene(read_parts(glb, BODIES), VIEWPOINTS, FIDUCIALS)
     picture = Picture(gl_window, inbox, Quality.LOW)
     times = itertools.count(0.0, 10.0)
 

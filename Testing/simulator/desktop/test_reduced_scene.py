@@ -5,10 +5,10 @@ import pytest
 
 from rastrainer_simulator.desktop import kept_view
 from rastrainer_simulator.desktop.gl_window import GlWindow
-from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, Viewpoint, read_parts
+from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, read_parts
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.desktop.viewports import Quality
-from Testing.simulator.desktop.conftest import BODIES, CAMERAS, FIDUCIALS, SCREEN, state_text
+from Testing.simulator.desktop.conftest import BODIES, FIDUCIALS, SCREEN, VIEWPOINTS, state_text
 
 SIZE = (1601, 901)
 """Odd: half of it is no whole number of pixels."""
@@ -20,8 +20,7 @@ def draw(glb, monkeypatch):
     monkeypatch.setenv("SDL_VIDEODRIVER", "offscreen")
     inbox = Inbox()
     inbox.bodies, inbox.screen, inbox.problem = BODIES, SCREEN, ""
-    views = {name: Viewpoint.from_json(value) for name, value in CAMERAS.items()}
-    inbox.scene = LoadedScene(read_parts(glb, BODIES), views, FIDUCIALS)
+    inbox.scene = LoadedScene(read_parts(glb, BODIES), VIEWPOINTS, FIDUCIALS)
     window = GlWindow(SIZE, is_fullscreen=False)
 
     def draw(quality, most=kept_view.MAX_PIXELS):
