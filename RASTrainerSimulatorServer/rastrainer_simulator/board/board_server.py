@@ -213,7 +213,9 @@ class BoardServer:
         if not pin:
             return web.json_response({"needsPin": True})
         try:
-            await self._client.order(entry, OrderRequest(pin, asked.order, asked.text))
+            await self._client.request(
+                entry, "/instructor", OrderRequest(pin, asked.order, asked.text)
+            )
         except RefusedError as error:
             self._pins.pop(entry.id, None)
             raise _conflict(error) from None

@@ -9,7 +9,7 @@ import asyncio
 import hashlib
 import re
 import ssl
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -184,7 +184,10 @@ class RefusedError(InputError):
 
 
 class SeatClient:
-    """Requests to simulators; certificates are checked by fingerprint, not by issuer."""
+    """Requests to simulators; certificates are checked by fingerprint, not by issuer.
+
+    They raise `SeatUnreachableError`, `OtherCertificateError`, `UnpairedError` or `RefusedError`.
+    """
 
     def __init__(self) -> None:
         """Open nothing yet; in the event loop's thread."""
@@ -202,11 +205,7 @@ class SeatClient:
         await self._session.close()
 
     async def fingerprint(self, address: str) -> str:
-        """Return the fingerprint of the certificate at an https address, to be compared.
-
-        Raises:
-            SeatUnreachableError: no server answers by TLS.
-        """
+        """Return the fingerprint of the certificate at an https address, to be compared."""
         parts = urlsplit(address)
         place = (parts.hostname or "", parts.port or 0)
         try:
@@ -217,50 +216,18 @@ class SeatClient:
         return digest.hex(":").upper()
 
     async def pair(self, address: str, fingerprint: str, code: str) -> str:
-        """Return a key for a pairing code.
-
-        Raises:
-            RefusedError: the code is wrong.
-            SeatUnreachableError, OtherCertificateError, UnpairedError: see there.
-            InputError: something else answers.
-        """
+        """Return a key for a pairing code."""
         entry = SeatEntry("", "", address, "", fingerprint)
         body = PairingRequest(code, ViewRole.BOARD)
-        answer = decode_message_object(
-            (await self._request(entry, hdrs.METH_POST, "/pair", body)).decode(errors="replace"),
-            "The answer of the simulator",
-        )
-        key = answer.get("key")
+        content, _headers = await self.request(entry, "/pair", body)
+        what = "The answer of the simulator"
+        key = decode_message_object(content.decode(errors="replace"), what).get("key")
         if not isinstance(key, str) or not SHORTEST_KEY <= len(key) <= LONGEST_KEY:
             raise InputError(NOT_OURS.format(address=address))
         return key
 
-    async def order(self, entry: SeatEntry, order: OrderRequest) -> None:
-        """Have something done at a seat.
-
-        Raises:
-            RefusedError: the PIN is wrong, or it cannot be done now.
-            SeatUnreachableError, OtherCertificateError, UnpairedError: see there.
-        """
-        await self._request(entry, hdrs.METH_POST, "/instructor", order)
-
-    async def file(self, entry: SeatEntry, path: str) -> tuple[bytes, dict[str, str]]:
-        """Return a file of a simulator, and those of its headers that a page needs.
-
-        Raises:
-            RefusedError: there is none.
-            SeatUnreachableError, OtherCertificateError, UnpairedError: see there.
-        """
-        headers: dict[str, str] = {}
-        content = await self._request(entry, hdrs.METH_GET, path, None, headers)
-        return content, headers
-
     async def stream(self, entry: SeatEntry) -> aiohttp.ClientWebSocketResponse:
-        """Open the stream of a simulator; the caller sends the hello.
-
-        Raises:
-            SeatUnreachableError, OtherCertificateError, UnpairedError: see there.
-        """
+        """Open the stream of a simulator; the caller sends the hello."""
         try:
             return await self._session.ws_connect(
                 f"{entry.address}/stream",
@@ -275,17 +242,13 @@ class SeatClient:
         except (aiohttp.ClientError, OSError, asyncio.TimeoutError) as error:
             raise _no_connection(entry, error) from None
 
-    async def _request(
-        self,
-        entry: SeatEntry,
-        method: str,
-        path: str,
-        body: PairingRequest | OrderRequest | None,
-        headers: dict[str, str] | None = None,
-    ) -> bytes:
+    async def request(
+        self, entry: SeatEntry, path: str, body: PairingRequest | OrderRequest | None = None
+    ) -> tuple[bytes, Mapping[str, str]]:
+        """Return content and headers of the answer to a POST, or without a body to a GET."""
         try:
             async with self._session.request(
-                method,
+                hdrs.METH_GET if body is None else hdrs.METH_POST,
                 f"{entry.address}{path}",
                 json=None if body is None else record_to_json(body, with_defaults=True),
                 headers=_headers(entry),
@@ -299,9 +262,7 @@ class SeatClient:
         except (aiohttp.ClientError, OSError, asyncio.TimeoutError) as error:
             raise _no_connection(entry, error) from None
         if response.status == 200:
-            if headers is not None:
-                headers.update(response.headers)
-            return content
+            return content, response.headers
         if response.status in (401, 503):
             raise _problem(entry, response.status)
         reason = content[:MAX_REASON].decode(errors="replace")

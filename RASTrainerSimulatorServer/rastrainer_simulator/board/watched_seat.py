@@ -149,7 +149,7 @@ class LiveView:
             entry = self._entry(request)
             path = request.path.removeprefix(f"/seat/{entry.id}")
             try:
-                content, found = await self._client.file(entry, path)
+                content, found = await self._client.request(entry, path)
             except RefusedError:
                 raise web.HTTPNotFound from None
             except InputError as error:

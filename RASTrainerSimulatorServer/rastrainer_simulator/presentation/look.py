@@ -1,4 +1,4 @@
-"""What every view draws in the same way; `tools/page_types.py` writes it for the page.
+"""Colors, sizes and times that all views share; `tools/page_types.py` writes it for the page.
 
 Colors are sRGB. Lengths of panels are units: one is a pixel where the window is 1920 × 1080.
 """
@@ -28,7 +28,7 @@ BANNERS: Mapping[Tone, str] = {
     Tone.ERROR: "#700d18",
 }
 TARGET_COLOR = "#ffe14a"
-"""Of what leads to a next point out of sight."""
+"""Color of the arrow to a next point that is out of sight."""
 
 SCENE_COLORS: Mapping[str, nodes.Color] = {
     "waiting": nodes.WAITING.color,
@@ -43,12 +43,12 @@ SCENE_COLORS: Mapping[str, nodes.Color] = {
     "ghost": nodes.GHOST.color,
 }
 PULSE_COLOR = (1.0, 0.97, 0.75)
-"""To which the next fiducial brightens, once every `PULSE_S`; linear."""
+"""Brightest color of the next fiducial, which pulses once every `PULSE_S`; linear RGB."""
 PULSE_S = 1.4
 GHOST_OPACITY = nodes.GHOST_OPACITY
 CLEAR_SKIN_OPACITY = 0.3
 COVER_OPACITY = 0.3
-"""Of a body that covers tip or next point."""
+"""Opacity of a body that covers the tip or the next point."""
 
 TOOL_NODES: Mapping[Tool, tuple[str, ...]] = {
     Tool.POINTER: (),
@@ -61,7 +61,7 @@ INSTRUMENTS = ("drill", "electrode")
 """Nodes scaled to their insertion depth; they are 1 m long in the glTF."""
 
 FLIGHT_S = 0.7
-"""From one camera to another."""
+"""Time that the view takes from one camera to another."""
 IN_SIGHT_SHARE = 0.9
 """How much of the picture, from its middle, counts as in sight."""
 
@@ -83,7 +83,7 @@ FULL_PAINT_SHARE = 0.5
 BULLS_EYE_RADIUS = 156
 BULLS_EYE_RINGS_MM = (1, 5, 20)
 BULLS_EYE_FARTHEST_MM, BULLS_EYE_NEAR_MM = 60, 0.6
-"""What the outer edge stands for, and where the scale turns from even to logarithmic."""
+"""Distance at the outer edge, and distance from which the scale is logarithmic."""
 ON_LINE_MM, ON_LINE_DEG = 0.5, 0.5
 """Within this distance, a hand is on the planned line."""
 ENTRY_DOT, TARGET_RING = 9, 15

@@ -43,7 +43,7 @@ MAX_LAYOUT_KEYS = 80
 MAX_KEY_TEXT, MAX_ITEM_TEXT, MAX_DEVICE_TEXT = 16, 200, 80
 MAX_FRAMES = 10_000
 STICK_SLACK = 1.5
-"""Gamepads go a little beyond ±1; what is farther out is no position of a stick."""
+"""Gamepads go a little beyond ±1; a message with a larger value is refused."""
 MAX_SEAT_WARNINGS = 8
 NEARLY_UNIT = 0.01
 """How much the length of a rounded quaternion may differ from 1."""
@@ -103,7 +103,7 @@ class HeadsetPose:
     Attributes:
         eyes: middle between the eyes, which look along −z with y up; None while nobody wears the
             headset.
-        left, right: controllers, which point along −z; None where there is none.
+        left, right: controllers, which point along −z; None without one.
     """
 
     eyes: HeadsetPart
@@ -145,7 +145,7 @@ class SceneNews(ViewMessage):
 
 @dataclass(frozen=True)
 class GuideAim:
-    """The planned line beside the guide's axis, seen along the axis: right and up."""
+    """Offset of the planned line from the guide's axis, seen along the axis: right and up."""
 
     entry_mm: Millimeters2
     target_mm: Millimeters2
@@ -155,7 +155,7 @@ class GuideAim:
 
 @dataclass(frozen=True)
 class ProcedureNews:
-    """What moves in a procedure.
+    """State of the tool in a procedure.
 
     Attributes:
         feed_mm: how far drill or electrode is beyond the guide's tip.
@@ -184,11 +184,11 @@ class CoveringBodies:
 
 @dataclass(frozen=True)
 class StateNews(ViewMessage):
-    """What moves, 60 times a second.
+    """State of the simulation, sent 60 times a second.
 
     Attributes:
         poses: of `WelcomeNews.bodies`.
-        ghost: poses by body of an earlier trial beside the arm; None without one.
+        ghost: poses by body of an earlier trial that is shown next to the arm; None without one.
         view: camera of the main picture.
         inset: camera along the skin or across the line of a procedure; None without either.
         next: label; None without one.
@@ -222,7 +222,7 @@ class StateNews(ViewMessage):
 
 @dataclass(frozen=True)
 class ScreenNews(ViewMessage):
-    """What the trainee reads."""
+    """A new screen: everything that the trainee reads."""
 
     type = "screen"
     screen: Screen
@@ -251,7 +251,7 @@ class Feedback(ViewMessage):
 
 @dataclass(frozen=True)
 class ControlNews(ViewMessage):
-    """What drives the arm, "" for nothing; whether it is this view."""
+    """The holder of control, "" for nobody; `is_you` is true for the view that holds it."""
 
     type = "control"
     holder: Words
@@ -277,13 +277,13 @@ class SkinPlace:
 
 @dataclass(frozen=True)
 class TraceNews(ViewMessage):
-    """What is new of a trace over the skin.
+    """New points of a trace over the skin.
 
     Attributes:
         known: how many of the points sent before remain.
-        points: new ones after these, in the head's frame, mm.
-        covered_mm: so far around the points the skin is painted; 0 where it is not.
-        next: where the next points would help most; None where that is not shown.
+        points: new points after these, in the head's frame, mm.
+        covered_mm: distance around the points within which the skin is painted; 0 for no paint.
+        next: the place to draw next; None if it is not shown.
     """
 
     type = "trace"
@@ -320,7 +320,7 @@ Points = Annotated[int, whole_number(0, 1000)]
 
 @dataclass(frozen=True)
 class Seat:
-    """What a teacher's board shows of a seat beside the trial's state.
+    """State of a seat on a teacher's board, except for its trial.
 
     Attributes:
         trainee: whose trial it is, or whose ID is entered; "" for none.
@@ -328,7 +328,7 @@ class Seat:
         count: points of this task; 0 without a trial.
         screen: title of the open menu, "" while the trainee works.
         instruction: what the trainee is asked to do.
-        warnings: what is wrong, as the trainee reads it.
+        warnings: in the words that the trainee reads.
         score: the trainee's latest; None before the first.
         holder: what drives the arm, "" for nothing.
         slicer: whether a Slicer is connected.
@@ -351,7 +351,7 @@ class Seat:
 
 @dataclass(frozen=True, kw_only=True)
 class SeatNews(Seat, ViewMessage):
-    """What a board is sent: the seat, and its trial. `rejected` counts refused touches."""
+    """State of a seat and its trial, for boards. `rejected` counts refused touches."""
 
     type = "seat"
     phase: Phase
@@ -382,8 +382,8 @@ class Hello(ViewMessage):
     """A view's description of itself when it joins.
 
     Attributes:
-        device: model of the headset or name of the browser; "" where unknown.
-        refresh_hz: of its display; 0 where unknown.
+        device: model of the headset or name of the browser; "" if unknown.
+        refresh_hz: of its display; 0 if unknown.
     """
 
     type = "hello"
@@ -394,7 +394,7 @@ class Hello(ViewMessage):
 
 @dataclass(frozen=True)
 class KeyInput(ViewMessage):
-    """A key went down or up: its W3C `KeyboardEvent.code`, and what it types or ""."""
+    """A key went down or up: its W3C `KeyboardEvent.code`, and the text that it types."""
 
     type = "key"
     code: Annotated[str, text(32)]
@@ -404,7 +404,7 @@ class KeyInput(ViewMessage):
 
 @dataclass(frozen=True)
 class LayoutInput(ViewMessage):
-    """What is written on the keys, by their codes: "q" on KeyA in France."""
+    """Labels of the keys by their codes, such as "q" on KeyA in France."""
 
     type = "layout"
     keys: Annotated[Mapping[str, str], mapping(MAX_LAYOUT_KEYS, "names of keys", text(8), text(32))]
@@ -506,7 +506,7 @@ class HeadsetInput(HeadsetPose, ViewMessage):
 
 @dataclass(frozen=True)
 class Alive(ViewMessage):
-    """A sign of life: what is held is still held."""
+    """A sign of life: everything held is still held."""
 
     type = "alive"
 
@@ -536,11 +536,11 @@ class ViewRole(str, Enum):
     """The role for which a client was paired."""
 
     VIEW = "view"
-    """To see and to drive."""
+    """May see and drive."""
     SPECTATOR = "spectator"
-    """To see everything and to drive nothing."""
+    """May see everything and drive nothing."""
     BOARD = "board"
-    """As a spectator, from a teacher's board; its key outlives the simulator's process."""
+    """A teacher's board: a spectator whose key outlives the simulator's process."""
 
     @property
     def is_watch_only(self) -> bool:
@@ -593,7 +593,7 @@ def message_text(message: ViewMessage) -> str:
 
 
 def _members(record: Any) -> dict[str, Any]:
-    """Return the members of a record, nested ones as they are: faster than `record_to_json`."""
+    """Return the members of a record; faster than `record_to_json`, as nested ones stay records."""
     fields = record_fields(cast("Any", type(record)))
     return {each.key: getattr(record, each.name) for each in fields}
 

@@ -56,7 +56,7 @@ export type Phase = "idle" | "running" | "paused" | "complete" | "verifying" | "
 /** What the robot holds. All have the pointer's tip and axis; drill and electrode pass through */
 export type Tool = "pointer" | "guide" | "drill" | "electrode";
 
-/** The planned line beside the guide's axis, seen along the axis: right and up. */
+/** Offset of the planned line from the guide's axis, seen along the axis: right and up. */
 export interface GuideAim {
   readonly entryMm: readonly [number, number];
   readonly targetMm: readonly [number, number];
@@ -64,7 +64,7 @@ export interface GuideAim {
   readonly angleDeg: number;
 }
 
-/** What moves in a procedure. */
+/** State of the tool in a procedure. */
 export interface ProcedureNews {
   readonly name: string;
   readonly tool: Tool;
@@ -79,7 +79,7 @@ export interface HeadsetPose {
   readonly right: Pose | null;
 }
 
-/** What moves, 60 times a second. */
+/** State of the simulation, sent 60 times a second. */
 export interface StateNews {
   readonly type: "state";
   readonly tick: number;
@@ -195,7 +195,7 @@ export interface Screen {
   readonly isPrivate: boolean;
 }
 
-/** What the trainee reads. */
+/** A new screen: everything that the trainee reads. */
 export interface ScreenNews {
   readonly type: "screen";
   readonly screen: Screen;
@@ -212,7 +212,7 @@ export interface Feedback {
   readonly rumbleMs: number;
 }
 
-/** What drives the arm, "" for nothing; whether it is this view. */
+/** The holder of control, "" for nobody; `is_you` is true for the view that holds it. */
 export interface ControlNews {
   readonly type: "control";
   readonly holder: string;
@@ -232,7 +232,7 @@ export interface SkinPlace {
   readonly normal: Vector;
 }
 
-/** What is new of a trace over the skin. */
+/** New points of a trace over the skin. */
 export interface TraceNews {
   readonly type: "trace";
   readonly known: number;
@@ -249,7 +249,7 @@ export interface Hello {
   readonly refreshHz: number;
 }
 
-/** A key went down or up: its W3C `KeyboardEvent.code`, and what it types or "". */
+/** A key went down or up: its W3C `KeyboardEvent.code`, and the text that it types. */
 export interface KeyInput {
   readonly type: "key";
   readonly code: string;
@@ -257,7 +257,7 @@ export interface KeyInput {
   readonly text: string;
 }
 
-/** What is written on the keys, by their codes: "q" on KeyA in France. */
+/** Labels of the keys by their codes, such as "q" on KeyA in France. */
 export interface LayoutInput {
   readonly type: "layout";
   readonly keys: Readonly<Record<string, string>>;
@@ -335,7 +335,7 @@ export interface HeadsetInput {
   readonly right: Pose | null;
 }
 
-/** A sign of life: what is held is still held. */
+/** A sign of life: everything held is still held. */
 export interface Alive {
   readonly type: "alive";
 }
@@ -343,7 +343,7 @@ export interface Alive {
 /** State of the connection to a seat. */
 export type SeatLink = "connecting" | "watching" | "away" | "unpaired" | "other certificate";
 
-/** What a board is sent: the seat, and its trial. `rejected` counts refused touches. */
+/** State of a seat and its trial, for boards. `rejected` counts refused touches. */
 export interface SeatNews {
   readonly type: "seat";
   readonly trainee: string;
