@@ -13,7 +13,7 @@ from aiohttp import hdrs, web
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_from_json
 from rastrainer.study.database.database import StudyPlace
-from rastrainer_simulator.assets import NOT_BUILT, page_folder
+from rastrainer_simulator.assets import page_folder
 from rastrainer_simulator.board.board_messages import (
     BOARD_SUBPROTOCOL,
     NewSeat,
@@ -38,7 +38,7 @@ from rastrainer_simulator.net.views.access_control import (
     read_body,
     read_object,
 )
-from rastrainer_simulator.net.views.limited_server import GuardedServer
+from rastrainer_simulator.net.views.limited_server import GuardedServer, page_answer
 from rastrainer_simulator.presentation.messages import OrderRequest, ViewRole, message_text
 
 TILES_S = 0.25
@@ -76,7 +76,9 @@ class BoardServer:
         self._list = SeatList(config)
         self._changed = asyncio.Event()
         self._pages: set[asyncio.Event] = set()
-        self._seats = {entry.id: self._watched(entry) for entry in self._list}
+        self._seats = {
+            entry.id: WatchedSeat(entry, self._client, self._notify) for entry in self._list
+        }
         self._pins: dict[str, str] = {}
         self._class = ClassWatch(study)
         self._page = page_folder()
@@ -111,26 +113,18 @@ class BoardServer:
             *live.routes(),
         ]
 
-    def _watched(self, entry: SeatEntry) -> WatchedSeat:
-        return WatchedSeat(entry, self._client, self._notify)
-
     def _notify(self) -> None:
         for page in self._pages:
             page.set()
 
-    def _seat(self, request: web.Request) -> WatchedSeat:
+    def _entry(self, request: web.Request) -> SeatEntry:
         seat = self._seats.get(request.match_info["seat"])
         if seat is None:
             raise web.HTTPNotFound(text="There is no such seat on this board.")
-        return seat
-
-    def _entry(self, request: web.Request) -> SeatEntry:
-        return self._seat(request).entry
+        return seat.entry
 
     async def _send_page(self, _request: web.Request) -> web.StreamResponse:
-        if self._page is None:
-            return web.Response(text=NOT_BUILT, content_type="text/html")
-        return web.FileResponse(self._page / "board.html")
+        return page_answer(self._page, "board.html")
 
     async def _send_tiles(self, request: web.Request) -> web.StreamResponse:
         socket = web.WebSocketResponse(
@@ -183,7 +177,7 @@ class BoardServer:
         except InputError as error:
             raise _conflict(error) from None
         await self._forget(entry.id)
-        self._seats[entry.id] = self._watched(entry)
+        self._seats[entry.id] = WatchedSeat(entry, self._client, self._notify)
         self._notify()
         return web.json_response({"id": entry.id})
 

@@ -176,11 +176,7 @@ class UnpairedError(InputError):
 
 
 class RefusedError(InputError):
-    """The simulator has refused; `wait_s` is how long it refuses everything, 0 for no time."""
-
-    def __init__(self, sentence: str, wait_s: int = 0) -> None:
-        super().__init__(sentence)
-        self.wait_s = wait_s
+    """The simulator has refused, for the reason in its answer."""
 
 
 class SeatClient:
@@ -219,7 +215,7 @@ class SeatClient:
         """Return a key for a pairing code."""
         entry = SeatEntry("", "", address, "", fingerprint)
         body = PairingRequest(code, ViewRole.BOARD)
-        content, _headers = await self.request(entry, "/pair", body)
+        content, _ = await self.request(entry, "/pair", body)
         what = "The answer of the simulator"
         key = decode_message_object(content.decode(errors="replace"), what).get("key")
         if not isinstance(key, str) or not SHORTEST_KEY <= len(key) <= LONGEST_KEY:
@@ -265,9 +261,7 @@ class SeatClient:
             return content, response.headers
         if response.status in (401, 503):
             raise _problem(entry, response.status)
-        reason = content[:MAX_REASON].decode(errors="replace")
-        wait = response.headers.get(hdrs.RETRY_AFTER, "0")
-        raise RefusedError(reason, int(wait) if wait.isdecimal() and len(wait) < 6 else 0)
+        raise RefusedError(content[:MAX_REASON].decode(errors="replace"))
 
 
 async def _content(response: aiohttp.ClientResponse) -> bytes:

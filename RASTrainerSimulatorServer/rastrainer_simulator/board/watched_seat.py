@@ -16,7 +16,7 @@ from aiohttp import WSMsgType, hdrs, web
 from rastrainer.errors import InputError
 from rastrainer.json_checks import decode_message_object
 from rastrainer.json_records import record_from_json
-from rastrainer_simulator.assets import NOT_BUILT, page_folder
+from rastrainer_simulator.assets import page_folder
 from rastrainer_simulator.board.board_messages import SeatLink, TileNews
 from rastrainer_simulator.board.seats import (
     OtherCertificateError,
@@ -25,6 +25,7 @@ from rastrainer_simulator.board.seats import (
     SeatEntry,
     UnpairedError,
 )
+from rastrainer_simulator.net.views.limited_server import page_answer
 from rastrainer_simulator.presentation.messages import (
     SUBPROTOCOL,
     Hello,
@@ -130,9 +131,7 @@ class LiveView:
 
     async def _send_page(self, request: web.Request) -> web.StreamResponse:
         self._entry(request)
-        if self._page is None:
-            return web.Response(text=NOT_BUILT, content_type="text/html")
-        return web.FileResponse(self._page / "index.html")
+        return page_answer(self._page, "index.html")
 
     async def _send_code(self, request: web.Request) -> web.StreamResponse:
         if self._page is None:

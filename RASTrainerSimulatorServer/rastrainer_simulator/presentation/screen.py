@@ -53,14 +53,11 @@ class MenuItem:
     """One line of a menu.
 
     Attributes:
-        name: unique in its menu; what a view sends back when the item is clicked.
-        label: what the trainee reads.
-        kind: what one does with it.
+        name: unique in its menu; a view sends it back when the item is clicked.
         value: the chosen option, the typed text or the axis's position, ready to be shown.
-        is_enabled: whether it can be chosen; a view draws others paler.
         help: a sentence shown while the item has the focus, such as why it cannot be chosen.
-        picture: where a picture is that is shown while the item has the focus, a path of the
-            simulator's HTTP server such as "/scenarios/colin27.png"; "" where there is none.
+        picture: shown while the item has the focus, a path of the simulator's HTTP server such as
+            "/scenarios/colin27.png"; "" for none.
     """
 
     name: Words
@@ -86,8 +83,8 @@ class ScoreTrend:
     """A trainee's scores as a small plot of bars.
 
     Attributes:
-        text: every score in words, for who cannot see the plot.
-        scores: 0 to 100, oldest first, at least one.
+        text: every score in words, for people who cannot see the plot.
+        scores: oldest first, at least one.
         mark: score that passes, drawn as a line; 0 for none.
     """
 
@@ -102,14 +99,10 @@ class Menu:
 
     Attributes:
         name: of the screen, such as "start" or "experiment"; for tests and logs, never shown.
-        title: its headline.
-        paragraphs: running text under it.
-        facts: a table under that.
-        items: the lines that can be chosen, in order.
-        focus: name of the item that has the focus; "" when there is none.
-        picture: which drawing of the controls a view puts beside the text; what the table names
-            is colored in it.
-        trend: plot that a view puts there instead; None for none.
+        focus: name of the item that has the focus; "" without one.
+        picture: drawing of the controls next to the text, in which the inputs named by the facts
+            are colored.
+        trend: plot in its place.
     """
 
     name: Words
@@ -168,10 +161,8 @@ class Hint:
     """Which control does what at the moment, such as "A" and "Touch".
 
     Attributes:
-        control: the input's name.
-        action: what it does.
-        item: what a view sends back as the name of an item when the hint is clicked, for who has
-            only a mouse; "" where a click does nothing.
+        item: name of the item that a view sends back when the hint is clicked, for people who
+            have only a mouse; "" if a click does nothing.
     """
 
     control: Words
@@ -184,11 +175,10 @@ class Screen:
     """Everything beside the scene.
 
     Attributes:
-        menu: the open panel; None while the trainee works.
-        instruction: what to do now, at the top in the middle.
-        warnings: what is wrong for as long as it lasts: contact, no gamepad, connection lost.
+        menu: None while the trainee works.
+        warnings: each is shown as long as it lasts: contact, no gamepad, connection lost.
         status: short facts for the edge of the picture, such as "Task 2", "7 of 15", "03:21".
-        hints: the controls that matter just now, for the lower edge.
+        hints: the controls that matter just now.
         language: BCP 47 tag of all texts.
         is_spoken: whether a view that can speak reads the screen aloud.
         has_sticks: whether the view that has control draws two sticks, to be dragged by a mouse.

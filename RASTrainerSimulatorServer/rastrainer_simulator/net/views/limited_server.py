@@ -15,6 +15,7 @@ from aiohttp.http_exceptions import HttpProcessingError
 from aiohttp.typedefs import Handler, Middleware
 
 from rastrainer.errors import InputError
+from rastrainer_simulator.assets import NOT_BUILT
 from rastrainer_simulator.loop.timing import AsyncRateLimiter
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.listener import Listener
@@ -245,3 +246,10 @@ class GuardedServer(LimitedServer):
             COOKIE, key, path="/", httponly=True, samesite="Strict", secure=request.secure
         )
         return response
+
+
+def page_answer(page: Path | None, name: str) -> web.StreamResponse:
+    """Return a file of the built page, or a note that it has not been built."""
+    if page is None:
+        return web.Response(text=NOT_BUILT, content_type="text/html")
+    return web.FileResponse(page / name)

@@ -16,7 +16,7 @@ from aiohttp import WSCloseCode, WSMsgType, web
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_VIEW_PORT
-from rastrainer_simulator.assets import NOT_BUILT, asset_path, page_folder
+from rastrainer_simulator.assets import asset_path, page_folder
 from rastrainer_simulator.loop.results import StateFeed, StateSource
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.listener import is_loopback
@@ -30,7 +30,7 @@ from rastrainer_simulator.net.views.access_control import (
 )
 from rastrainer_simulator.net.views.boards import InstructorOrders
 from rastrainer_simulator.net.views.joined_views import JoinedViews
-from rastrainer_simulator.net.views.limited_server import GuardedServer
+from rastrainer_simulator.net.views.limited_server import GuardedServer, page_answer
 from rastrainer_simulator.net.views.view_socket import ViewSocket
 from rastrainer_simulator.ops.instructor_pin import PinGuesses
 from rastrainer_simulator.ops.processes import VIEW_KEY_VARIABLE
@@ -151,9 +151,7 @@ class ViewServer:
         ]
 
     async def _send_page(self, _request: web.Request) -> web.StreamResponse:
-        if self._page is None:
-            return web.Response(text=NOT_BUILT, content_type="text/html")
-        return web.FileResponse(self._page / "index.html")
+        return page_answer(self._page, "index.html")
 
     async def _send_scene(self, request: web.Request) -> web.Response:
         file = self._scenes.find(request.match_info["sha256"])
