@@ -32,7 +32,7 @@ from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.teleoperation.steering import AxesChoice
 from rastrainer_simulator.training.head_pose import RegisteredPlan
 from rastrainer_simulator.trial_state import Tool, TracedPoint
-from rastrainer_simulator.vectors import Vector, vector
+from rastrainer_simulator.vectors import Vector, in_meters, vector
 from rastrainer_simulator.viewpoint.view_control import CameraPose, Pictures, aim, camera_pose
 
 BODIES = (*map(link_node_name, range(8)), TOOL, "head", "stand", "plan")
@@ -49,7 +49,7 @@ def scene_news(sha256: str, scenario: Scenario, task: str, axes: AxesChoice) -> 
     fiducials = {}
     if task:
         chosen = scenario.task(task)
-        points = (chosen.fiducials / MM_PER_M).tolist()
+        points = map(in_meters, chosen.fiducials)
         fiducials = dict(zip(chosen.labels, points, strict=True))
     return SceneNews(
         url=f"/scene/{sha256}.glb",
