@@ -8,7 +8,12 @@ from typing import Annotated
 
 from rastrainer.json_checks import number, text
 from rastrainer.protocol import AssignmentState
-from rastrainer_simulator.presentation.messages import Count, InstructorOrder, SeatNews, ViewMessage
+from rastrainer_simulator.presentation.messages import (
+    Count,
+    InstructorOrder,
+    SeatReport,
+    ViewMessage,
+)
 from rastrainer_simulator.presentation.screen import Words
 
 BOARD_SUBPROTOCOL = "rastrainer.board.1"
@@ -32,7 +37,7 @@ class TileNews:
     name: Words
     address: Words
     link: SeatLink
-    seat: SeatNews | None
+    seat: SeatReport | None
 
 
 @dataclass(frozen=True)

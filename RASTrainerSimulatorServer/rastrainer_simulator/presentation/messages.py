@@ -350,15 +350,21 @@ class Seat:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SeatNews(Seat, ViewMessage):
-    """State of a seat and its trial, for boards. `rejected` counts refused touches."""
+class SeatReport(Seat):
+    """State of a seat and its trial. `rejected` counts refused touches."""
 
-    type = "seat"
     phase: Phase
     touched: Points
     rejected: Annotated[int, whole_number(0, 1_000_000)]
     elapsed_s: Annotated[int, whole_number(0, 10_000_000)]
     touch: TouchStage
+
+
+@dataclass(frozen=True, kw_only=True)
+class SeatNews(SeatReport, ViewMessage):
+    """A change of a seat, for boards."""
+
+    type = "seat"
 
 
 News = (

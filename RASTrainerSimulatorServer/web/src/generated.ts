@@ -343,9 +343,8 @@ export interface Alive {
 /** State of the connection to a seat. */
 export type SeatLink = "connecting" | "watching" | "away" | "unpaired" | "other certificate";
 
-/** State of a seat and its trial, for boards. `rejected` counts refused touches. */
-export interface SeatNews {
-  readonly type: "seat";
+/** State of a seat and its trial. `rejected` counts refused touches. */
+export interface SeatReport {
   readonly trainee: string;
   readonly task: string;
   readonly count: number;
@@ -370,7 +369,7 @@ export interface TileNews {
   readonly name: string;
   readonly address: string;
   readonly link: SeatLink;
-  readonly seat: SeatNews | null;
+  readonly seat: SeatReport | null;
 }
 
 /** The seats of a board, at most four times a second. */

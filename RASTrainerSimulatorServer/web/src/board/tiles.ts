@@ -1,7 +1,7 @@
 /** One tile a seat: who, task, point, clock, contact, last score, and what the teacher can do. */
 
 import { element } from "../elements";
-import type { InstructorOrder, Phase, SeatNews, TileNews } from "../generated";
+import type { InstructorOrder, Phase, SeatReport, TileNews } from "../generated";
 import { isTouchError } from "../stream/stages";
 import { withUnits } from "../texts/typesetting";
 import { figure, holderName, say, type BoardText } from "./texts";
@@ -86,7 +86,7 @@ function stateOf({ link, seat }: TileNews): string {
 }
 
 /** What the trainee reads: warnings, and the instruction or which menu is open. */
-function saidAt({ warnings, screen, instruction }: SeatNews): string {
+function saidAt({ warnings, screen, instruction }: SeatReport): string {
   const last = screen === "" ? instruction : say("menu", { title: screen });
   return [...warnings, last].filter((text) => text !== "").join(" · ");
 }
@@ -99,7 +99,7 @@ function toneOf(news: TileNews): string {
   return isTraining(news) ? "good" : "";
 }
 
-function factsOf(seat: SeatNews): [string, string][] {
+function factsOf(seat: SeatReport): [string, string][] {
   const facts: [string, string][] = [];
   if (seat.task !== "") {
     facts.push([say("points"), `${seat.touched} / ${seat.count}`], [say("refused"), String(seat.rejected)]);
