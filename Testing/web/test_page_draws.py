@@ -158,7 +158,7 @@ def test_a_trace_is_marked_painted_and_undone(page):
 def test_a_page_that_rejoins_forgets_what_it_knew(page):
     page.evaluate(take_trace(0, [list(NOSE)], GUIDED))
     wait_for(page, "page.trace.marks.count === 1")
-    page.evaluate("page.connection.rejoin({ kind: 'page', device: '', refreshHz: 0 })")
+    page.evaluate("page.connection.rejoin(page.connection.hello)")
     wait_for(page, "page.trace.marks.count === 0")
     assert not page.evaluate("page.trace.ring.visible")
 
@@ -193,7 +193,7 @@ PAINTED = """(procedure) => {
 STEERED = """async (procedure) => {
   const sent = [];
   const { send } = page.connection;
-  page.connection.send = (type, message) => {
+  page.connection.send = ({ type, ...message }) => {
     if (type === "sticks" || type === "press") sent.push(structuredClone(message));
   };
   page.takeState = () => undefined;

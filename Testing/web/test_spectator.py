@@ -56,7 +56,7 @@ NOTE_WHAT_IS_SENT = """() => {
   WebSocket.prototype.send = function (text) { sent.push(text); send.call(this, text); };
 }"""
 USE_PAD = """async () => {
-  page.connection.send("press", { control: "touch" });
+  page.connection.send({ type: "press", control: "touch" });
   press(0, 1);
   await frames_(3);
   press(0, 0);
