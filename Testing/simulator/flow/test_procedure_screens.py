@@ -58,7 +58,8 @@ class Operation:
         trainee.step(15)
         shown = trainee.presenter.shown.latest
         pictures = trainee.presenter.pictures(shown)
-        message = _procedure(shown, pictures)
+        procedure = _procedure(shown, pictures)
+        message = None if procedure is None else record_to_json(procedure)
         self.seen[name] = trainee.presenter.screen, message, shown
 
     def next_step(self, item: str, tool: Tool) -> None:
