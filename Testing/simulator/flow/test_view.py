@@ -149,7 +149,7 @@ def test_the_best_view_shows_the_point_past_the_arm_as_it_stands(by_hand, setup)
     assert covering()["view"]
     by_hand.tap("best_view")
     by_hand.step(200)
-    assert covering() == {"view": []}
+    assert covering() == {"view": ()}
     assert by_hand.presenter.pictures(by_hand.state).main.focal_point == pytest.approx(point)
 
 
