@@ -230,7 +230,8 @@ def everything_shown(rater):
     found.append(
         message_text(scene_news("0" * 64, setup.scenario, state.training.task, setup.settings.axes))
     )
-    return "\n".join(found)
+    # A member of every state; its value would tell.
+    return "\n".join(found).replace('"headset":', "")
 
 
 @pytest.mark.parametrize("language", ["en", "de"])
