@@ -55,11 +55,13 @@ extension-repository: .venv/installed
 	$(BIN)/python tools/extension_repository.py
 
 page: .venv/installed
+	$(BIN)/python tools/page_types.py
 	$(BIN)/python tools/build_page.py
 
 lint: .venv/test-installed
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/python tools/page_types.py --check
 	$(BIN)/python tools/build_page.py --check
 	$(BIN)/python -m mypy --no-error-summary
 	$(BIN)/reuse lint --lines

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import re
 from itertools import combinations
-from pathlib import Path
 
 import pytest
 from coloraide import Color
@@ -14,7 +12,6 @@ from rastrainer.procedure.errors import PLACED_COLOR, PLANNED_COLOR, REGISTERED_
 from rastrainer_simulator.presentation.screen import Tone
 from rastrainer_simulator.scene import nodes
 
-WEB = Path(__file__).parents[1] / "RASTrainerSimulatorServer" / "web"
 LEAST_DIFFERENCE = 19.0
 """CIEDE2000; 1 is about what can be seen side by side."""
 LEAST_CONTRAST = 4.5
@@ -36,10 +33,6 @@ def as_color(values) -> Color:
     return Color("srgb", list(values[:3]))
 
 
-def in_hex(values) -> str:
-    return as_color(values).to_string(hex=True)
-
-
 def seen(color: Color, sight: str) -> Color:
     """Return what a color looks like to someone with that deficiency, wholly, or with none."""
     return color.filter(sight) if sight else color
@@ -58,27 +51,3 @@ def test_text_is_legible_in_every_tone_and_on_every_banner(tone):
     text, panel = as_color(theme.TEXT), as_color(theme.NIGHT)
     assert as_color(theme.TONES[tone]).contrast(panel) >= LEAST_CONTRAST
     assert text.contrast(as_color(theme.BANNERS[tone])) >= LEAST_CONTRAST
-
-
-def test_page_and_headset_have_the_colors_of_the_window():
-    pen = (WEB / "src" / "panels" / "pen.ts").read_text(encoding="utf-8")
-    style = (WEB / "static" / "page.css").read_text(encoding="utf-8")
-    for tone in Tone:
-        color, banner = in_hex(theme.TONES[tone]), in_hex(theme.BANNERS[tone])
-        assert re.findall(rf'  {tone.value}: "(#\w+)"', pen) == [color, banner]
-        assert f"--{tone.value}: {color};" in style
-    model = (WEB / "src" / "scene" / "scene_model.ts").read_text(encoding="utf-8")
-    found = dict(re.findall(r"(\w+): new Color\(\)\.setRGB\(([^)]*), \"srgb\"\)", model))
-    materials = {
-        "waiting": nodes.WAITING,
-        "next": nodes.NEXT,
-        "touched": nodes.TOUCHED,
-        "free": nodes.TIP_FREE,
-        "near": nodes.TIP_NEAR,
-        "onSkin": nodes.TIP_ON_SKIN,
-        "error": nodes.TIP_ERROR,
-        "traced": nodes.TRACED,
-        "covered": nodes.COVERED,
-    }
-    colors = {name: tuple(map(float, values.split(", "))) for name, values in found.items()}
-    assert colors == {name: material.color for name, material in materials.items()}

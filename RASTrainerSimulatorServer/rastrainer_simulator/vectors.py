@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from typing import Annotated
 
+from rastrainer.json_checks import numbers
 from rastrainer.transforms import MM_PER_M
 
 Vector = tuple[float, float, float]
+RecordVector = Annotated[Vector, numbers(3, 5000.0)]
+"""A vector of a record, in any unit of length."""
 
 ZERO: Vector = (0.0, 0.0, 0.0)
 

@@ -11,7 +11,7 @@ from multiprocessing.connection import Connection
 import aiohttp
 from aiohttp import web
 
-from rastrainer_simulator.net.views.incoming import SUBPROTOCOL
+from rastrainer_simulator.presentation.messages import SUBPROTOCOL
 from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.simulator.board.seat_double import serve_seat
 from Testing.simulator.net.views.served import HELLO

@@ -136,8 +136,8 @@ class DrawingTrainee(StreamTrainee):
         """Draw back and forth across a place, on the skin as far as the visible height shows."""
         along = np.cross(outward, (0.0, 0.0, 1.0))
         along /= np.linalg.norm(along)
-        wanted, give_up = self.traced + STROKE_POINTS, self.view.state["time"] + 30.0
-        while self.traced < wanted and self.view.state["time"] < give_up:
+        wanted, give_up = self.traced + STROKE_POINTS, self.view.state["timeS"] + 30.0
+        while self.traced < wanted and self.view.state["timeS"] < give_up:
             away = self.tip - place
             if np.linalg.norm(away) > TURN_BACK_M and away @ along > 0.0:
                 along = -along

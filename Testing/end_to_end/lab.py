@@ -23,7 +23,7 @@ from Testing.simulator.net.views.served import ViewClient
 
 SLICER = (sys.executable, "-m", "rastrainer_headless.main")
 TIMEOUT_S = 600
-PATIENT = {"views": {"silent_s": 10, "lost_s": TIMEOUT_S}}
+PATIENT = {"views": {"silentS": 10, "lostS": TIMEOUT_S}}
 """A machine that is too busy to draw neither releases what is held nor pauses the trial."""
 
 

@@ -76,9 +76,9 @@ class ProcedureTrainee(StreamTrainee):
         """Bring the guide before the entry, turn it along the line, and onto it."""
         self.until(lambda: self._sees_line, "the planned line")
         self.approach("entry", 0.03)
-        give_up = self.view.state["time"] + LONGEST_ALIGNMENT_S
+        give_up = self.view.state["timeS"] + LONGEST_ALIGNMENT_S
         while not self._is_aligned:
-            assert self.view.state["time"] < give_up, f"it was never aligned: {self.procedure}"
+            assert self.view.state["timeS"] < give_up, f"it was never aligned: {self.procedure}"
             self._turn_along()
             entry, target = self.line
             before = entry - BEFORE_ENTRY_M * (target - entry) / np.linalg.norm(target - entry)

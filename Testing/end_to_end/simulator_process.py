@@ -88,7 +88,7 @@ def _keep_views(config: Path) -> None:
     """Let no view count as gone because a busy machine is slow, unless the limits say when."""
     path = config / LIMITS_FILE
     limits = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
-    views = {"gone_s": GONE_S, **limits.get("views", {})}
+    views = {"goneS": GONE_S, **limits.get("views", {})}
     path.write_text(json.dumps({**limits, "views": views}), encoding="utf-8")
 
 

@@ -9,9 +9,9 @@ from contextlib import suppress
 from typing import Protocol
 
 import numpy as np
-from rastrainer_simulator.desktop.connection import screen_from_json
 from scipy.spatial.transform import Rotation
 
+from rastrainer.json_records import record_from_json
 from rastrainer_simulator.flow.flow import PICTURE_GRACE_S
 from rastrainer_simulator.presentation.screen import Menu, Screen
 from rastrainer_simulator.teleoperation.steering import camera_axes
@@ -94,7 +94,7 @@ class WatchingView:
             while True:
                 message = self._client.next()
                 if message["type"] == "screen":
-                    self.screen = screen_from_json(message["screen"])
+                    self.screen = record_from_json(Screen, message["screen"], "The screen")
                 elif message["type"] == "control":
                     self.holder = message["holder"]
                 elif message["type"] == "pairing":
@@ -251,13 +251,13 @@ class StreamTrainee:
 
     def until_running(self) -> None:
         """Wait until the trial no longer waits for its picture."""
-        since = [self.view.state["time"]]
+        since = [self.view.state["timeS"]]
 
         def has_run() -> bool:
             now = self.view.state
             if now["phase"] != "running" or self.menu is not None:
-                since[0] = now["time"]
-            return now["time"] - since[0] > 2.0 * PICTURE_GRACE_S
+                since[0] = now["timeS"]
+            return now["timeS"] - since[0] > 2.0 * PICTURE_GRACE_S
 
         self.until(has_run, "the trial with its picture")
 
@@ -345,8 +345,8 @@ class StreamTrainee:
 
     def sink_onto_skin(self, below: np.ndarray) -> None:
         """Push the tip slowly toward a place below the skin (3,) World, m, until it is on it."""
-        axes, give_up = self._stick_axes(), self.view.state["time"] + LONGEST_WAY_S
-        while self.view.state["proximity"] != "contact" and self.view.state["time"] < give_up:
+        axes, give_up = self._stick_axes(), self.view.state["timeS"] + LONGEST_WAY_S
+        while self.view.state["proximity"] != "contact" and self.view.state["timeS"] < give_up:
             away = below - self.tip
             wanted = LEAST_FINE_PUSH * (axes @ away) / np.linalg.norm(away)
             self.hands.push(*wanted.tolist(), True)
@@ -369,9 +369,9 @@ class StreamTrainee:
             # The simulator pauses where a busy machine keeps the window from drawing.
             self.choose("resume")
         slow, least = (FINE_M, LEAST_FINE_PUSH) if fine else (COARSE_M, LEAST_PUSH)
-        give_up = self.view.state["time"] + LONGEST_WAY_S
+        give_up = self.view.state["timeS"] + LONGEST_WAY_S
         while np.linalg.norm(away := place - self.tip) > near:
-            if self.view.state["time"] > give_up:
+            if self.view.state["timeS"] > give_up:
                 break
             far = float(np.linalg.norm(away))
             wanted = self._stick_axes() @ away / far * max(least, min(1.0, far / slow))

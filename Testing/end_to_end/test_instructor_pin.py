@@ -67,7 +67,7 @@ def test_a_pin_typed_in_one_page_appears_in_no_other_page_and_in_no_file(place):
     spectator = Page(simulator, thread, "spectator")
     page.choose("start", "settings")
     settings = page.until_menu("settings")
-    locked = {item["name"] for item in settings["menu"]["items"] if not item["is_enabled"]}
+    locked = {item["name"] for item in settings["menu"]["items"] if not item["isEnabled"]}
     assert {"order", "tutorial", "coarse", "guidance"} <= locked
     other.tap("KeyM")
     other.until(lambda screen: "Only an instructor can pass it on" in json.dumps(screen))
@@ -84,7 +84,7 @@ def test_a_pin_typed_in_one_page_appears_in_no_other_page_and_in_no_file(place):
     page.tap("Enter")
     opened = page.until_menu("settings")
     order = next(item for item in opened["menu"]["items"] if item["name"] == "order")
-    assert order["is_enabled"]
+    assert order["isEnabled"]
     assert PIN not in "".join(page.received)
     for unseeing in (other, spectator):
         unseeing.until_menu("settings")

@@ -105,9 +105,9 @@ def operate(trainee: ProcedureTrainee, lab: Lab, device: str) -> dict:
     seen["aligned"] = trainee.procedure["aim"]
     trainee.next_step("lock", "drilling")
     trainee.until(lambda: trainee.view.screen.ruler is not None, "the ruler")
-    trainee.feed_to(trainee.ruler.inner + PAST_INNER_MM)
+    trainee.feed_to(trainee.ruler.inner_mm + PAST_INNER_MM)
     trainee.next_step("insert", "inserting")
-    trainee.feed_to(trainee.ruler.target)
+    trainee.feed_to(trainee.ruler.target_mm)
     seen["inserted"] = trainee.procedure, trainee.ruler
     trainee.next_step("release", "registered")
     trainee.until_menu("result")
@@ -161,7 +161,7 @@ def test_the_guide_is_brought_onto_the_line_by_hand_with_the_bulls_eye(operated)
 
 def test_the_ruler_brings_drill_and_needle_to_their_depths(operated):
     procedure, ruler = operated["inserted"]
-    assert procedure["feedMm"] == pytest.approx(ruler.target, abs=1.0)
+    assert procedure["feedMm"] == pytest.approx(ruler.target_mm, abs=1.0)
     assert {"bone", "through"} <= set(operated["events"])
     assert "blocked" not in operated["events"]
     (line,) = operated["scored"]["trajectories"]

@@ -115,7 +115,7 @@ class Menu:
         self.go("skip", "controls")
         self.go("next", "experiment")
         self.type("trainee", "P07")
-        return self.until(lambda menu: items_of(menu)["trial-run"]["is_enabled"])
+        return self.until(lambda menu: items_of(menu)["trial-run"]["isEnabled"])
 
 
 def items_of(menu):
@@ -173,7 +173,7 @@ def test_a_trial_waits_until_the_head_is_loaded_no_matter_who_starts_it(
         assert {(answer.ok, answer.error) for answer in refused} == {(False, LOADING)}
         assert other.ask("ListTasks").data["scenario"] == "colin27"
         assert not loading.done()
-        items = menu.until(lambda menu: not items_of(menu)["trial-run"]["is_enabled"])
+        items = menu.until(lambda menu: not items_of(menu)["trial-run"]["isEnabled"])
         assert items["trial-run"]["help"] == LOADING
         assert items["scenario"]["value"] == "Colin27 head"
     assert loading.result(PATIENCE_S).data["name"] == "ball"

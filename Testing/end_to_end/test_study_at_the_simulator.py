@@ -38,7 +38,7 @@ def screen_where(view, is_wanted):
 
 def enabled(screen):
     items = screen["menu"]["items"]
-    return [item["name"] for item in items if "task" in item["name"] and item["is_enabled"]]
+    return [item["name"] for item in items if "task" in item["name"] and item["isEnabled"]]
 
 
 def trainee(screen):

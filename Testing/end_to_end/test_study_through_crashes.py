@@ -128,7 +128,7 @@ def offered(screen):
     if name_of(screen) != "experiment":
         return None
     names = ("answer", "trial-run", *(f"task-{number}" for number in range(1, 6)))
-    return [i["name"] for i in screen["menu"]["items"] if i["name"] in names and i["is_enabled"]]
+    return [i["name"] for i in screen["menu"]["items"] if i["name"] in names and i["isEnabled"]]
 
 
 @pytest.fixture

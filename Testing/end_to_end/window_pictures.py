@@ -17,6 +17,7 @@ from rastrainer.igtl.client import Client
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.setup import DEFAULT_SCENARIO
+from rastrainer_simulator.presentation.look import FLIGHT_S
 from rastrainer_simulator.virtual.scripted_trial import play_trial, send_hello
 from Testing.end_to_end.hands import GamepadHands
 from Testing.end_to_end.lab import Lab
@@ -26,7 +27,6 @@ from Testing.web.place import CarriedTrainee
 
 FOLDER = Path(__file__).parents[2] / "Screenshots"
 SIZE = (1400, 788)
-FLIGHT_S = 0.7
 SEED = 9
 TRAINEE = "P7"
 TOUCHED = 6

@@ -28,7 +28,7 @@ MESSAGES = (
     {"type": "picture", "task": "task-1", "share": 0.5},
     {"type": "frames", "shown": 60, "dropped": 0, "refreshHz": 60},
     {"type": "visibility", "isVisible": True},
-    {"type": "worn", "eyes": POSE, "left": None, "right": POSE},
+    {"type": "headsetPose", "eyes": POSE, "left": None, "right": POSE},
     {"type": "alive"},
 )
 """One of each type; the first is the hello."""

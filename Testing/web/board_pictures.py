@@ -6,7 +6,6 @@ virtual trainees.
 
 from __future__ import annotations
 
-import dataclasses
 import tempfile
 from collections.abc import Awaitable, Callable, Iterable
 from pathlib import Path
@@ -14,11 +13,11 @@ from pathlib import Path
 from aiohttp import web
 from playwright.sync_api import sync_playwright
 
+from rastrainer.number_text import with_units
 from rastrainer.protocol import Phase
 from rastrainer_simulator.board.class_table import ClassReader, ClassStanding
 from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
-from rastrainer_simulator.net.views.outgoing import seat as seat_text
-from rastrainer_simulator.presentation.presenter import Seat
+from rastrainer_simulator.presentation.messages import SeatNews, message_text
 from rastrainer_simulator.state import TouchStage
 from rastrainer_simulator.texts.texts import Texts
 from Testing.simulator.board.class_study import play_class
@@ -48,14 +47,8 @@ def seat(
     phase, touch, touched, elapsed = state
     known = {"trainee": trainee, "task": task, "count": 15 if task else 0, "slicer": True}
     known["holder"] = "gamepad" if task else ""
-    return seat_text(
-        **dataclasses.asdict(Seat(**{**known, **others})),
-        phase=phase.value,
-        touched=touched,
-        rejected=0,
-        elapsed=elapsed,
-        touch=touch.value,
-    )
+    trial = {"phase": phase, "touched": touched, "rejected": 0, "elapsed_s": elapsed}
+    return with_units(message_text(SeatNews(**{**known, **others}, **trial, touch=touch)))
 
 
 def seats(found: ClassStanding) -> dict[str, str]:

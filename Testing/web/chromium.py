@@ -14,7 +14,7 @@ import numpy as np
 from PIL import Image
 from playwright.sync_api import Browser, Page, Playwright, Response
 
-from rastrainer_simulator.net.views import outgoing
+from rastrainer_simulator.net.views.outgoing import screen_text
 from rastrainer_simulator.presentation.screen import Screen, without_secrets
 from Testing.end_to_end.window_process import wait_until
 from Testing.simulator.net.views.served import ServedViews
@@ -218,7 +218,7 @@ def wait_for(page: Page, expression: str) -> None:
 def show(page: Page, served: ServedViews, screen: Screen) -> None:
     """Send a page a screen, and wait until the page shows it."""
     served.tell(screen)
-    wanted = json.loads(outgoing.screen(without_secrets(screen)))["screen"]
+    wanted = json.loads(screen_text(without_secrets(screen)))["screen"]
     wait_until(lambda: page.evaluate("page.screen") == wanted, "the screen", PATIENCE_MS / 1000.0)
 
 

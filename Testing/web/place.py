@@ -16,6 +16,7 @@ import numpy as np
 from playwright.sync_api import Page
 
 from rastrainer.igtl.client import Client
+from rastrainer.json_records import camel_case
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
@@ -65,7 +66,8 @@ class Place:
         config.mkdir()
         preferences = {"order": "any", **preferences}
         (config / "preferences.json").write_text(json.dumps(preferences), encoding="utf-8")
-        (config / "limits.json").write_text(json.dumps({"views": limits}), encoding="utf-8")
+        views = {camel_case(name): value for name, value in limits.items()}
+        (config / "limits.json").write_text(json.dumps({"views": views}), encoding="utf-8")
         key = secrets.token_urlsafe(32)
         options = ["--view-port", "0", "--seed", "7", *arguments]
         if not has_gamepad:
@@ -254,8 +256,8 @@ class CarriedTrainee(Trainee):
         target = {"positionMm": (MM_PER_M * place).tolist(), "speedMmS": 400}
         reply = self._client.send_command("MoveTipTo", target, timeout=60)
         assert reply.ok, reply.error
-        give_up = self.view.state["time"] + 4.0
-        while np.linalg.norm(place - self.tip) > 0.002 and self.view.state["time"] < give_up:
+        give_up = self.view.state["timeS"] + 4.0
+        while np.linalg.norm(place - self.tip) > 0.002 and self.view.state["timeS"] < give_up:
             self.view.next_state()
 
     def press_on(self, label: str) -> None:

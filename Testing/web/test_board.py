@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from rastrainer_simulator.ops.instructor_pin import InstructorPin
-from rastrainer_simulator.presentation.presenter import Seat
+from rastrainer_simulator.presentation.messages import Seat
 from rastrainer_simulator.presentation.screen import Screen, ScreenMessage
 from Testing.simulator.board.class_study import play_class
 from Testing.simulator.board.conftest import PIN, BoardClient, WatchedSimulator
@@ -185,7 +185,7 @@ def test_a_seat_is_watched_live_from_the_board(browser, board, simulator):
     assert live.locator("#take-part").is_hidden()
     live.evaluate(NOTE_WHAT_IS_SENT)
     live.keyboard.press("Space")
-    live.evaluate("page.connection.send('press', { control: 'touch' })")
+    live.evaluate("page.connection.send({ type: 'press', control: 'touch' })")
     assert live.evaluate("sent") == []
     assert simulator.served.presenter.calls == []
     page.context.close()

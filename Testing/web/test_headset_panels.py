@@ -284,7 +284,7 @@ WITHOUT_ROOM = """() => {
   CanvasRenderingContext2D.prototype.fillText = fillText;
   const found = written.length > 0 ? [] : ["nothing is written"];
   const items = page.screen.menu?.items ?? [];
-  const isLocked = items.some(({ is_enabled }) => !is_enabled);
+  const isLocked = items.some(({ isEnabled }) => !isEnabled);
   if (!isLocked && items.length > 1 && panels.menu.regions.length < 2) {
     found.push("only one choice is in sight");
   }

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import json
-
 import pytest
 
-from rastrainer_simulator.net.views import outgoing
-from rastrainer_simulator.presentation.presenter import SkinPlace, TraceGuidance
+from rastrainer_simulator.presentation.messages import SkinPlace, TraceNews, message_text
+from rastrainer_simulator.presentation.presenter import TraceGuidance
 from rastrainer_simulator.presentation.screen import DepthRuler, Screen, ScreenMessage
 from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
 from Testing.web.chromium import enter_headset, open_page, show, wait_for
@@ -26,7 +24,7 @@ DRAW = """
 (changes) => {
   const state = { ...page.state, ...changes };
   page.isDue = true;
-  page.ghost.put(state.time, state.ghost, 1);
+  page.ghost.put(state.timeS, state.ghost, 1);
   // Milliseconds for seconds: by then the camera has arrived wherever it was sent.
   page.drawFlat(page.flat, performance.now(), page.stage.model, state);
   return {
@@ -81,7 +79,7 @@ SEEN_THROUGH = """
     const drawsArm = layers.isEnabled(0);
     if (drawsArm) drawn.push([...model.arm].filter(isClear).map(([name]) => name));
   };
-  const translucent = { view: ["link_5", "tool"], inset: ["link_6"], worn: [] };
+  const translucent = { view: ["link_5", "tool"], inset: ["link_6"], headset: [] };
   page.isDue = true;
   page.drawFlat(page.flat, 1, model, { ...page.state, translucent });
   renderer.render = before;
@@ -139,7 +137,8 @@ TRACE = """() => {
 
 def take_trace(known, points, guidance=NOT_GUIDED):
     """Return the script by which the page takes a trace from the simulator."""
-    return f"page.take({json.dumps(json.loads(outgoing.trace(known, points, guidance)))})"
+    news = TraceNews(known, tuple(points), guidance.covered_mm, guidance.next_place)
+    return f"page.take({message_text(news)})"
 
 
 def test_a_trace_is_marked_painted_and_undone(page):
@@ -162,7 +161,7 @@ def test_a_trace_is_marked_painted_and_undone(page):
 def test_a_page_that_rejoins_forgets_what_it_knew(page):
     page.evaluate(take_trace(0, [list(NOSE)], GUIDED))
     wait_for(page, "page.trace.marks.count === 1")
-    page.evaluate("page.connection.rejoin({ kind: 'page', device: '', refreshHz: 0 })")
+    page.evaluate("page.connection.rejoin(page.connection.hello)")
     wait_for(page, "page.trace.marks.count === 0")
     assert not page.evaluate("page.trace.ring.visible")
 
@@ -197,7 +196,7 @@ PAINTED = """(procedure) => {
 STEERED = """async (procedure) => {
   const sent = [];
   const { send } = page.connection;
-  page.connection.send = (type, message) => {
+  page.connection.send = ({ type, ...message }) => {
     if (type === "sticks" || type === "press") sent.push(structuredClone(message));
   };
   page.takeState = () => undefined;
@@ -236,7 +235,7 @@ def test_the_page_shows_each_tool_with_its_panel_and_the_headset_on_a_board(serv
     wait_for(page, "page.stage.model !== null && page.state !== null")
     assert page.evaluate(SEEN, at("pointer")).items() >= NOTHING.items()
     served.tell(Screen(is_head_clear=True, language="de"))
-    wait_for(page, "page.screen.is_head_clear")
+    wait_for(page, "page.screen.isHeadClear")
     seen = page.evaluate(SEEN, at("guide", aim=AIM))
     assert seen["tools"] == ["guide", "axis"]
     assert seen["noGo"] == ["no_go_right-ventricle", "no_go_sagittal-sinus"]

@@ -61,10 +61,10 @@ def operated(tmp_path_factory, browser) -> dict:
         seen = {"aligned": surgeon.procedure["aim"]}
         surgeon.next_step("lock", "drilling")
         surgeon.until(lambda: surgeon.view.screen.ruler is not None, "the ruler")
-        surgeon.feed_to(surgeon.ruler.inner + PAST_INNER_MM)
+        surgeon.feed_to(surgeon.ruler.inner_mm + PAST_INNER_MM)
         surgeon.next_step("insert", "inserting")
-        surgeon.feed_to(surgeon.ruler.target)
-        seen["inserted"] = surgeon.procedure["feedMm"], surgeon.ruler.target
+        surgeon.feed_to(surgeon.ruler.target_mm)
+        seen["inserted"] = surgeon.procedure["feedMm"], surgeon.ruler.target_mm
         surgeon.next_step("release", "registered")
         seen["results"] = scored_trial(slicer)
         surgeon.until_menu("result")

@@ -56,7 +56,7 @@ NOTE_WHAT_IS_SENT = """() => {
   WebSocket.prototype.send = function (text) { sent.push(text); send.call(this, text); };
 }"""
 USE_PAD = """async () => {
-  page.connection.send("press", { control: "touch" });
+  page.connection.send({ type: "press", control: "touch" });
   press(0, 1);
   await frames_(3);
   press(0, 0);
@@ -136,17 +136,17 @@ def test_the_pairing_form_offers_to_watch_only(browser, served):
 
 def test_a_spectator_looks_through_the_eyes_of_the_headset_wearer(served, page):
     served.tell(WORKING)
-    worn = {"type": "worn", "eyes": EYES, "left": None, "right": HAND}
+    worn = {"type": "headsetPose", "eyes": EYES, "left": None, "right": HAND}
     with LoopThread() as thread, ViewClient(thread, served.url, served.new_key()) as headset:
         headset.join(kind="headset")
         headset.send(worn)
-        wait_for(page, "page.worn.hands[1].visible")
+        wait_for(page, "page.headsetView.hands[1].visible")
         # The camera flies there: position and axes do not arrive at the same time.
         wait_for(page, _looks(*y_up(*EYES[:3]), *y_up(*UP), *y_up(0.0, 0.0, 1.0)))
-        left, right = page.evaluate("page.worn.hands.map((hand) => hand.visible)")
+        left, right = page.evaluate("page.headsetView.hands.map((hand) => hand.visible)")
         assert (left, right) == (False, True)
-        wait_for(page, f"page.worn.hands[1].position.distanceTo({_vector(HAND)}) < 1e-4")
-    wait_for(page, "!page.worn.hands[1].visible")
+        wait_for(page, f"page.headsetView.hands[1].position.distanceTo({_vector(HAND)}) < 1e-4")
+    wait_for(page, "!page.headsetView.hands[1].visible")
     wait_for(page, _looks(*y_up(*LOOKED_FROM)))
 
 
@@ -214,15 +214,15 @@ def test_a_headset_is_mirrored_and_the_trial_pauses_when_it_leaves_despite_a_spe
         trainee = place.carried_trainee(Controllers(headset))
         trainee.begin("task-1", headset)
         page = open_page(browser, url, f"{code}&role=spectator")
-        wait_for(page, "page.state?.wearer != null")
-        wearer = page.evaluate("page.state.wearer")
+        wait_for(page, "page.state?.headset != null")
+        wearer = page.evaluate("page.state.headset")
         assert wearer["left"] is not None
         assert wearer["right"] is not None
         before = pixels(page)
         headset.evaluate("device.quaternion.set(0, Math.sin(0.2), 0, Math.cos(0.2)); frames_(3)")
-        wait_for(page, f"Math.abs(page.state.wearer.eyes[3] - {wearer['eyes'][3]}) > 0.01")
+        wait_for(page, f"Math.abs(page.state.headset.eyes[3] - {wearer['eyes'][3]}) > 0.01")
         trainee.until(lambda: np.abs(pixels(page) - before).mean() > 5.0, "another picture")
         headset.evaluate("device.updateVisibilityState('hidden')")
-        wait_for(page, "page.state.wearer === null")
+        wait_for(page, "page.state.headset === null")
         trainee.until(lambda: place.view.state["phase"] == "paused", "the pause")
         assert page.problems == headset.problems == []

@@ -77,8 +77,8 @@ class HandTrainee(OnPage, Trainee):
     def _lead(self, place, is_there):
         self.hands.pinch(True)
         self.hands.carry(place - self.tip)
-        give_up = self.view.state["time"] + LONGEST_WAY_S
-        while not is_there() and self.view.state["time"] < give_up:
+        give_up = self.view.state["timeS"] + LONGEST_WAY_S
+        while not is_there() and self.view.state["timeS"] < give_up:
             self.view.next_state()
         self.hands.pinch(False)
 

@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
 import secrets
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 from aiohttp import hdrs, web
 
-from rastrainer.commands import decode_json_object
 from rastrainer.errors import InputError
-from rastrainer.json_checks import accepted, one_of, text
+from rastrainer.json_records import record_from_json
 from rastrainer.study.database.database import StudyPlace
-from rastrainer_simulator.assets import NOT_BUILT, page_folder
+from rastrainer_simulator.assets import page_folder
+from rastrainer_simulator.board.board_messages import (
+    BOARD_SUBPROTOCOL,
+    NewSeat,
+    SeatOrder,
+    TilesNews,
+)
 from rastrainer_simulator.board.class_table import ClassWatch
 from rastrainer_simulator.board.seats import (
     RefusedError,
@@ -28,18 +31,21 @@ from rastrainer_simulator.board.seats import (
 )
 from rastrainer_simulator.board.watched_seat import SEAT_PATH, LiveView, WatchedSeat
 from rastrainer_simulator.net.limits import ViewLimits
-from rastrainer_simulator.net.views.access_control import ROLE, PairingCode, Sessions, ViewRole
-from rastrainer_simulator.net.views.limited_server import GuardedServer
-from rastrainer_simulator.presentation.presenter import InstructorOrder
+from rastrainer_simulator.net.views.access_control import (
+    ROLE,
+    PairingCode,
+    Sessions,
+    read_body,
+    read_object,
+)
+from rastrainer_simulator.net.views.limited_server import GuardedServer, page_answer
+from rastrainer_simulator.presentation.messages import OrderRequest, ViewRole, message_text
 
-SUBPROTOCOL = "rastrainer.board.1"
 TILES_S = 0.25
 """Between two messages to a teacher's page."""
 HEARTBEAT_S = 20.0
 MOST_TEACHERS = 16
-BODY_S = 5.0
 ONLY_TEACHERS = "This browser only watches the board: pair it with the board again."
-_order_name = one_of(*(order.value for order in InstructorOrder))
 
 
 class BoardServer:
@@ -70,7 +76,9 @@ class BoardServer:
         self._list = SeatList(config)
         self._changed = asyncio.Event()
         self._pages: set[asyncio.Event] = set()
-        self._seats = {entry.id: self._watched(entry) for entry in self._list}
+        self._seats = {
+            entry.id: WatchedSeat(entry, self._client, self._notify) for entry in self._list
+        }
         self._pins: dict[str, str] = {}
         self._class = ClassWatch(study)
         self._page = page_folder()
@@ -105,33 +113,25 @@ class BoardServer:
             *live.routes(),
         ]
 
-    def _watched(self, entry: SeatEntry) -> WatchedSeat:
-        return WatchedSeat(entry, self._client, self._notify)
-
     def _notify(self) -> None:
         for page in self._pages:
             page.set()
 
-    def _seat(self, request: web.Request) -> WatchedSeat:
+    def _entry(self, request: web.Request) -> SeatEntry:
         seat = self._seats.get(request.match_info["seat"])
         if seat is None:
             raise web.HTTPNotFound(text="There is no such seat on this board.")
-        return seat
-
-    def _entry(self, request: web.Request) -> SeatEntry:
-        return self._seat(request).entry
+        return seat.entry
 
     async def _send_page(self, _request: web.Request) -> web.StreamResponse:
-        if self._page is None:
-            return web.Response(text=NOT_BUILT, content_type="text/html")
-        return web.FileResponse(self._page / "board.html")
+        return page_answer(self._page, "board.html")
 
     async def _send_tiles(self, request: web.Request) -> web.StreamResponse:
         socket = web.WebSocketResponse(
-            protocols=(SUBPROTOCOL,), max_msg_size=1024, heartbeat=HEARTBEAT_S, writer_limit=0
+            protocols=(BOARD_SUBPROTOCOL,), max_msg_size=1024, heartbeat=HEARTBEAT_S, writer_limit=0
         )
-        if socket.can_prepare(request).protocol != SUBPROTOCOL:
-            raise web.HTTPBadRequest(text=f"Ask for a WebSocket with {SUBPROTOCOL}.")
+        if socket.can_prepare(request).protocol != BOARD_SUBPROTOCOL:
+            raise web.HTTPBadRequest(text=f"Ask for a WebSocket with {BOARD_SUBPROTOCOL}.")
         await socket.prepare(request)
         is_changed = asyncio.Event()
         is_changed.set()
@@ -152,24 +152,23 @@ class BoardServer:
             while True:
                 await is_changed.wait()
                 is_changed.clear()
-                tiles = [seat.tile() for seat in self._seats.values()]
-                await socket.send_str(json.dumps({"type": "tiles", "seats": tiles}))
+                tiles = TilesNews(tuple(seat.tile() for seat in self._seats.values()))
+                await socket.send_str(message_text(tiles))
                 await asyncio.sleep(TILES_S)
 
     async def _add(self, request: web.Request) -> web.Response:
         """Pair with a simulator. Without its fingerprint, return it for comparison."""
         _check_teacher(request)
-        values = await _body(request)
         try:
-            name = accepted(text(40), values.get("name"), "The name").strip()
-            address = checked_address(accepted(text(300), values.get("address"), "The address"))
-            shown = str(values.get("fingerprint", ""))
-            if address.startswith("https:") and not shown:
-                shown = await self._client.fingerprint(address)
-                return web.json_response({"fingerprint": shown})
-            fingerprint = checked_fingerprint(shown) if address.startswith("https:") else ""
-            code = accepted(text(12), values.get("code"), "The pairing code")
-            key = await self._client.pair(address, fingerprint, code)
+            asked = record_from_json(NewSeat, await read_object(request), "The seat")
+            name, address = asked.name.strip(), checked_address(asked.address)
+            fingerprint = ""
+            if address.startswith("https:"):
+                if not asked.fingerprint:
+                    shown = await self._client.fingerprint(address)
+                    return web.json_response({"fingerprint": shown})
+                fingerprint = checked_fingerprint(asked.fingerprint)
+            key = await self._client.pair(address, fingerprint, asked.code)
             known = (each.id for each in self._list if each.address == address)
             entry = SeatEntry(
                 next(known, secrets.token_hex(6)), name or address, address, key, fingerprint
@@ -178,7 +177,7 @@ class BoardServer:
         except InputError as error:
             raise _conflict(error) from None
         await self._forget(entry.id)
-        self._seats[entry.id] = self._watched(entry)
+        self._seats[entry.id] = WatchedSeat(entry, self._client, self._notify)
         self._notify()
         return web.json_response({"id": entry.id})
 
@@ -203,14 +202,14 @@ class BoardServer:
         """Have something done at a seat; its PIN is remembered until the board ends."""
         _check_teacher(request)
         entry = self._entry(request)
-        values = await _body(request)
+        asked = await read_body(request, SeatOrder)
+        pin = asked.pin or self._pins.get(entry.id, "")
+        if not pin:
+            return web.json_response({"needsPin": True})
         try:
-            order = InstructorOrder(accepted(_order_name, values.get("order"), "The order"))
-            sentence = str(values.get("text", ""))
-            pin = str(values.get("pin", "")) or self._pins.get(entry.id, "")
-            if not pin:
-                return web.json_response({"needsPin": True})
-            await self._client.order(entry, order, sentence, pin)
+            await self._client.request(
+                entry, "/instructor", OrderRequest(pin, asked.order, asked.text)
+            )
         except RefusedError as error:
             self._pins.pop(entry.id, None)
             raise _conflict(error) from None
@@ -232,10 +231,3 @@ def _check_teacher(request: web.Request) -> None:
 
 def _conflict(error: InputError) -> web.HTTPConflict:
     return web.HTTPConflict(text=str(error))
-
-
-async def _body(request: web.Request) -> dict[str, Any]:
-    try:
-        return decode_json_object((await asyncio.wait_for(request.read(), BODY_S)).decode())
-    except (InputError, ValueError, asyncio.TimeoutError, ConnectionError):
-        raise web.HTTPBadRequest(text="Send one JSON object.") from None

@@ -7,11 +7,11 @@ import logging
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from aiohttp import hdrs, web
 
 from rastrainer.errors import InputError
+from rastrainer.json_records import record_to_json
 from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import (
@@ -22,6 +22,13 @@ from rastrainer.study.database.database import LockWait, StudyBusyError, StudyPl
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import utc_now
 from rastrainer.study_messages import AssignmentStanding
+from rastrainer_simulator.board.board_messages import (
+    AssignmentCell,
+    AssignmentColumn,
+    ClassNews,
+    CurriculumTable,
+    TraineeRow,
+)
 from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
 from rastrainer_simulator.ops.study_thread import StudyThread
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
@@ -128,7 +135,7 @@ class ClassWatch:
         """Read nothing yet; without a study nothing is ever read."""
         self._thread = None if place is None else StudyThread(lambda: ClassReader(place))
         self._found: ClassStanding | None = None
-        self._tables: dict[str, list[dict[str, Any]]] = {}
+        self._tables: dict[str, tuple[CurriculumTable, ...]] = {}
         self._problem = self._as_of = ""
         self._task: asyncio.Task[None] | None = None
 
@@ -154,20 +161,23 @@ class ClassWatch:
         """Answer a page with the table in its language."""
         asked = request.query.get("language", "")
         language = asked if asked in LANGUAGES else next(iter(LANGUAGES))
-        return web.json_response(self.message(language), headers={hdrs.CACHE_CONTROL: "no-store"})
+        return web.json_response(
+            record_to_json(self.message(language), with_defaults=True),
+            headers={hdrs.CACHE_CONTROL: "no-store"},
+        )
 
-    def message(self, language: str) -> dict[str, Any]:
-        """Return what the page is sent, ready for JSON; docs/views.md says what each member is."""
+    def message(self, language: str) -> ClassNews:
+        """Return what the page is sent."""
         found = self._found
         if found is not None and language not in self._tables:
             self._tables[language] = class_table(found, language)
-        return {
-            "hasStudy": self._thread is not None,
-            "problem": self._problem,
-            "asOf": self._as_of,
-            "curricula": self._tables.get(language, []),
-            "without": [] if found is None else list(found.without),
-        }
+        return ClassNews(
+            has_study=self._thread is not None,
+            problem=self._problem,
+            as_of=self._as_of,
+            curricula=self._tables.get(language, ()),
+            without=() if found is None else found.without,
+        )
 
     async def _keep_reading(self, thread: StudyThread[ClassReader]) -> None:
         while True:
@@ -188,8 +198,8 @@ class ClassWatch:
         self._problem, self._as_of = "", utc_now()
 
 
-def class_table(found: ClassStanding, language: str) -> list[dict[str, Any]]:
-    """Return a table for each curriculum, ready for JSON; docs/views.md says what each member is.
+def class_table(found: ClassStanding, language: str) -> tuple[CurriculumTable, ...]:
+    """Return a table for each curriculum.
 
     Args:
         found: Where everybody stands.
@@ -203,42 +213,37 @@ def class_table(found: ClassStanding, language: str) -> list[dict[str, Any]]:
 
     words = AssignmentTexts(texts, task_title, _spoken)
     groups = by_curriculum(found.standings)
-    return [_table(curriculum, group, words) for curriculum, group in groups.items()]
+    return tuple(_table(curriculum, group, words) for curriculum, group in groups.items())
 
 
 def _table(
     curriculum: Curriculum, group: Mapping[str, CurriculumStanding], words: AssignmentTexts
-) -> dict[str, Any]:
+) -> CurriculumTable:
     first = next(iter(group.values()))
-    return {
-        "title": curriculum.title,
-        "assignments": [_column(each, words) for each in first.standings],
-        "trainees": [_row(name, standing, words) for name, standing in group.items()],
-    }
+    return CurriculumTable(
+        curriculum.title,
+        tuple(_column(each, words) for each in first.standings),
+        tuple(_row(name, standing, words) for name, standing in group.items()),
+    )
 
 
-def _column(standing: AssignmentStanding, words: AssignmentTexts) -> dict[str, Any]:
-    return {"name": standing.name, "label": words.label(standing), "goal": words.goal(standing)}
+def _column(standing: AssignmentStanding, words: AssignmentTexts) -> AssignmentColumn:
+    return AssignmentColumn(standing.name, words.label(standing), words.goal(standing))
 
 
-def _row(name: str, standing: CurriculumStanding, words: AssignmentTexts) -> dict[str, Any]:
+def _row(name: str, standing: CurriculumStanding, words: AssignmentTexts) -> TraineeRow:
     best = standing.next_best
-    return {
-        "trainee": name,
-        "reached": standing.reached,
-        "next": "" if best is None else words.label(best),
-        "cells": [_cell(each, words) for each in standing.standings],
-    }
-
-
-def _cell(standing: AssignmentStanding, words: AssignmentTexts) -> dict[str, Any]:
-    return {
-        "state": standing.state.value,
-        "progress": words.progress(standing),
-        "done": standing.done,
-        "needed": standing.needed,
-        "reachedUtc": standing.reached_utc,
-    }
+    return TraineeRow(
+        trainee=name,
+        reached=standing.reached,
+        next="" if best is None else words.label(best),
+        cells=tuple(
+            AssignmentCell(
+                each.state, words.progress(each), each.done, each.needed, each.reached_utc
+            )
+            for each in standing.standings
+        ),
+    )
 
 
 def _spoken(name: str) -> str:

@@ -6,13 +6,13 @@ The teacher's own computer stores addresses and keys. Certificates must be those
 from __future__ import annotations
 
 import asyncio
-import dataclasses
 import hashlib
 import re
 import ssl
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 from urllib.parse import urlsplit
 
 import aiohttp
@@ -21,11 +21,16 @@ from aiohttp import hdrs
 from rastrainer.errors import InputError
 from rastrainer.files.reading import printable_name, read_json
 from rastrainer.files.writing import write_private_json
-from rastrainer.json_checks import accepted, decode_message_object, text
+from rastrainer.json_checks import decode_message_object, text, whole_number
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer_simulator.net.listener import is_loopback
-from rastrainer_simulator.net.views.access_control import LONGEST_KEY, SHORTEST_KEY, ViewRole
-from rastrainer_simulator.net.views.incoming import SUBPROTOCOL
-from rastrainer_simulator.presentation.presenter import InstructorOrder
+from rastrainer_simulator.net.views.access_control import LONGEST_KEY, SHORTEST_KEY
+from rastrainer_simulator.presentation.messages import (
+    SUBPROTOCOL,
+    OrderRequest,
+    PairingRequest,
+    ViewRole,
+)
 
 SEATS_FILE = "board.json"
 FORMAT_VERSION = 1
@@ -35,12 +40,18 @@ _FINGERPRINT = re.compile(r"([0-9A-F]{2}:){31}[0-9A-F]{2}")
 _ID = re.compile(r"[0-9a-f]{12}")
 
 
-@dataclasses.dataclass(frozen=True)
+def _checked_id(value: Any) -> str:
+    if not isinstance(value, str) or _ID.fullmatch(value) is None:
+        raise ValueError("12 hexadecimal digits")
+    return value
+
+
+@dataclass(frozen=True)
 class SeatEntry:
     """A simulator that is watched.
 
     Attributes:
-        id: 12 hexadecimal digits, by which the board's page names it.
+        id: by which the board's page names it.
         name: what the teacher calls it.
         address: "https://HOST:PORT", or "http://" for a simulator on this computer.
         key: that the simulator gave to this board; it only watches.
@@ -48,11 +59,26 @@ class SeatEntry:
             TLS.
     """
 
-    id: str
-    name: str
-    address: str
-    key: str
-    fingerprint: str = ""
+    id: Annotated[str, _checked_id]
+    name: Annotated[str, text(40)]
+    address: Annotated[str, text(300)]
+    key: Annotated[str, text(LONGEST_KEY)]
+    fingerprint: Annotated[str, text(200, 0)] = ""
+
+
+@dataclass(frozen=True)
+class SeatsFile:
+    """The seats in `board.json`; their addresses and fingerprints are valid."""
+
+    seats: tuple[SeatEntry, ...]
+    format_version: Annotated[int, whole_number(FORMAT_VERSION, FORMAT_VERSION)] = FORMAT_VERSION
+
+    def __post_init__(self) -> None:
+        if len(self.seats) > MOST_SEATS:
+            raise InputError(f"A board has at most {MOST_SEATS} seats.")
+        for entry in self.seats:
+            if checked_address(entry.address).startswith("https:"):
+                checked_fingerprint(entry.fingerprint)
 
 
 class SeatList:
@@ -71,8 +97,6 @@ class SeatList:
 
     def put(self, entry: SeatEntry) -> None:
         """Add a seat, or replace the one with the same `id`, and save the list."""
-        if entry.id not in self._entries and len(self._entries) >= MOST_SEATS:
-            raise InputError(f"A board has at most {MOST_SEATS} seats.")
         self._write({**self._entries, entry.id: entry})
 
     def remove(self, seat: str) -> None:
@@ -80,8 +104,8 @@ class SeatList:
         self._write({id_: entry for id_, entry in self._entries.items() if id_ != seat})
 
     def _write(self, entries: dict[str, SeatEntry]) -> None:
-        values = [dataclasses.asdict(entry) for entry in entries.values()]
-        write_private_json(self._path, {"formatVersion": FORMAT_VERSION, "seats": values})
+        file = SeatsFile(tuple(entries.values()))
+        write_private_json(self._path, record_to_json(file, with_defaults=True))
         self._entries = entries
 
 
@@ -121,29 +145,9 @@ def checked_fingerprint(value: str) -> str:
     return shown
 
 
-def _read(path: Path) -> list[SeatEntry]:
+def _read(path: Path) -> tuple[SeatEntry, ...]:
     values = read_json(path, _MAX_BYTES)
-    seats = values.get("seats", []) if isinstance(values, dict) else None
-    if not isinstance(seats, list) or len(seats) > MOST_SEATS:
-        raise InputError(f"{path} contains no board's seats; move it away to start afresh.")
-    return [_entry(path, seat) for seat in seats]
-
-
-def _entry(path: Path, seat: object) -> SeatEntry:
-    names = [field.name for field in dataclasses.fields(SeatEntry)]
-    if not isinstance(seat, dict) or set(seat) != set(names):
-        raise InputError(f"{path}: a seat must have {', '.join(names)}.")
-    checks = {"id": 12, "name": 40, "address": 300, "key": 200}
-    found = {
-        name: accepted(text(longest), seat[name], f"{path}: {name}")
-        for name, longest in checks.items()
-    }
-    if _ID.fullmatch(found["id"]) is None:
-        raise InputError(f"{path}: id must be 12 hexadecimal digits.")
-    address = checked_address(found["address"])
-    is_safe = address.startswith("https:")
-    fingerprint = checked_fingerprint(str(seat["fingerprint"])) if is_safe else ""
-    return SeatEntry(found["id"], found["name"], address, found["key"], fingerprint)
+    return record_from_json(SeatsFile, values, str(path), only_known=True).seats
 
 
 TIMEOUT_S = 8.0
@@ -172,15 +176,14 @@ class UnpairedError(InputError):
 
 
 class RefusedError(InputError):
-    """The simulator has refused; `wait_s` is how long it refuses everything, 0 for no time."""
-
-    def __init__(self, sentence: str, wait_s: int = 0) -> None:
-        super().__init__(sentence)
-        self.wait_s = wait_s
+    """The simulator has refused, for the reason in its answer."""
 
 
 class SeatClient:
-    """Requests to simulators; certificates are checked by fingerprint, not by issuer."""
+    """Requests to simulators; certificates are checked by fingerprint, not by issuer.
+
+    They raise `SeatUnreachableError`, `OtherCertificateError`, `UnpairedError` or `RefusedError`.
+    """
 
     def __init__(self) -> None:
         """Open nothing yet; in the event loop's thread."""
@@ -198,11 +201,7 @@ class SeatClient:
         await self._session.close()
 
     async def fingerprint(self, address: str) -> str:
-        """Return the fingerprint of the certificate at an https address, to be compared.
-
-        Raises:
-            SeatUnreachableError: no server answers by TLS.
-        """
+        """Return the fingerprint of the certificate at an https address, to be compared."""
         parts = urlsplit(address)
         place = (parts.hostname or "", parts.port or 0)
         try:
@@ -213,51 +212,18 @@ class SeatClient:
         return digest.hex(":").upper()
 
     async def pair(self, address: str, fingerprint: str, code: str) -> str:
-        """Return a key for a pairing code.
-
-        Raises:
-            RefusedError: the code is wrong.
-            SeatUnreachableError, OtherCertificateError, UnpairedError: see there.
-            InputError: something else answers.
-        """
+        """Return a key for a pairing code."""
         entry = SeatEntry("", "", address, "", fingerprint)
-        body = {"code": code, "role": ViewRole.BOARD.value}
-        answer = decode_message_object(
-            (await self._request(entry, hdrs.METH_POST, "/pair", body)).decode(errors="replace"),
-            "The answer of the simulator",
-        )
-        key = answer.get("key")
+        body = PairingRequest(code, ViewRole.BOARD)
+        content, _ = await self.request(entry, "/pair", body)
+        what = "The answer of the simulator"
+        key = decode_message_object(content.decode(errors="replace"), what).get("key")
         if not isinstance(key, str) or not SHORTEST_KEY <= len(key) <= LONGEST_KEY:
             raise InputError(NOT_OURS.format(address=address))
         return key
 
-    async def order(self, entry: SeatEntry, order: InstructorOrder, text: str, pin: str) -> None:
-        """Have something done at a seat.
-
-        Raises:
-            RefusedError: the PIN is wrong, or it cannot be done now.
-            SeatUnreachableError, OtherCertificateError, UnpairedError: see there.
-        """
-        body = {"pin": pin, "order": order.value, "text": text}
-        await self._request(entry, hdrs.METH_POST, "/instructor", body)
-
-    async def file(self, entry: SeatEntry, path: str) -> tuple[bytes, dict[str, str]]:
-        """Return a file of a simulator, and those of its headers that a page needs.
-
-        Raises:
-            RefusedError: there is none.
-            SeatUnreachableError, OtherCertificateError, UnpairedError: see there.
-        """
-        headers: dict[str, str] = {}
-        content = await self._request(entry, hdrs.METH_GET, path, None, headers)
-        return content, headers
-
     async def stream(self, entry: SeatEntry) -> aiohttp.ClientWebSocketResponse:
-        """Open the stream of a simulator; the caller sends the hello.
-
-        Raises:
-            SeatUnreachableError, OtherCertificateError, UnpairedError: see there.
-        """
+        """Open the stream of a simulator; the caller sends the hello."""
         try:
             return await self._session.ws_connect(
                 f"{entry.address}/stream",
@@ -272,19 +238,15 @@ class SeatClient:
         except (aiohttp.ClientError, OSError, asyncio.TimeoutError) as error:
             raise _no_connection(entry, error) from None
 
-    async def _request(
-        self,
-        entry: SeatEntry,
-        method: str,
-        path: str,
-        body: dict[str, Any] | None,
-        headers: dict[str, str] | None = None,
-    ) -> bytes:
+    async def request(
+        self, entry: SeatEntry, path: str, body: PairingRequest | OrderRequest | None = None
+    ) -> tuple[bytes, Mapping[str, str]]:
+        """Return content and headers of the answer to a POST, or without a body to a GET."""
         try:
             async with self._session.request(
-                method,
+                hdrs.METH_GET if body is None else hdrs.METH_POST,
                 f"{entry.address}{path}",
-                json=body,
+                json=None if body is None else record_to_json(body, with_defaults=True),
                 headers=_headers(entry),
                 ssl=_certificate(entry),
                 allow_redirects=False,
@@ -296,14 +258,10 @@ class SeatClient:
         except (aiohttp.ClientError, OSError, asyncio.TimeoutError) as error:
             raise _no_connection(entry, error) from None
         if response.status == 200:
-            if headers is not None:
-                headers.update(response.headers)
-            return content
+            return content, response.headers
         if response.status in (401, 503):
             raise _problem(entry, response.status)
-        reason = content[:MAX_REASON].decode(errors="replace")
-        wait = response.headers.get(hdrs.RETRY_AFTER, "0")
-        raise RefusedError(reason, int(wait) if wait.isdecimal() and len(wait) < 6 else 0)
+        raise RefusedError(content[:MAX_REASON].decode(errors="replace"))
 
 
 async def _content(response: aiohttp.ClientResponse) -> bytes:

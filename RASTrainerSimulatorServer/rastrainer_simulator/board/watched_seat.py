@@ -8,26 +8,16 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
-from collections.abc import Callable, Mapping
-from enum import Enum
-from typing import Any
+from collections.abc import Callable
 
 import aiohttp
 from aiohttp import WSMsgType, hdrs, web
 
 from rastrainer.errors import InputError
-from rastrainer.json_checks import (
-    accepted,
-    decode_message_object,
-    number,
-    one_of,
-    text,
-    whole_number,
-    yes_or_no,
-)
-from rastrainer.protocol import Phase
-from rastrainer_simulator.assets import NOT_BUILT, page_folder
+from rastrainer.json_checks import decode_message_object
+from rastrainer.json_records import record_from_json
+from rastrainer_simulator.assets import page_folder
+from rastrainer_simulator.board.board_messages import SeatLink, TileNews
 from rastrainer_simulator.board.seats import (
     OtherCertificateError,
     RefusedError,
@@ -35,80 +25,18 @@ from rastrainer_simulator.board.seats import (
     SeatEntry,
     UnpairedError,
 )
-from rastrainer_simulator.net.views.access_control import ViewRole
-from rastrainer_simulator.net.views.incoming import (
-    BOARD,
-    HELLO,
-    SPECTATOR,
+from rastrainer_simulator.net.views.limited_server import page_answer
+from rastrainer_simulator.presentation.messages import (
     SUBPROTOCOL,
-    check_message,
+    Hello,
+    SeatNews,
+    ViewRole,
+    message_text,
+    read_view_input,
 )
-from rastrainer_simulator.net.views.outgoing import SEAT
-from rastrainer_simulator.state import TouchStage
-from rastrainer_simulator.texts.texts import NARROW_SPACE, NO_BREAK_SPACE
 
 RETRY_S = 2.0
-MOST_WARNINGS = 8
-_BOARD_HELLO = json.dumps({"type": HELLO, "kind": BOARD, "device": "", "refreshHz": 0})
-_SPACES = str.maketrans({NARROW_SPACE: " ", NO_BREAK_SPACE: " "})
-"""French and Chinese texts have spaces that count as not printable."""
-
-
-def _words(longest: int) -> Callable[[Any], str]:
-    """Accept text of a simulator in any language."""
-    check = text(longest, min_length=0)
-
-    def checked(value: Any) -> str:
-        check(value.translate(_SPACES) if isinstance(value, str) else value)
-        return str(value)
-
-    return checked
-
-
-_sentence, _short = _words(600), _words(200)
-
-
-def _sentences(value: Any) -> list[str]:
-    """Accept a few sentences."""
-    if not isinstance(value, list):
-        raise ValueError("a list of sentences")
-    return [_sentence(each) for each in value[:MOST_WARNINGS]]
-
-
-def _score(value: Any) -> float | None:
-    """Accept 0 to 100, or null."""
-    return None if value is None else number(0, 100)(value)
-
-
-MEMBERS: Mapping[str, Callable[[Any], Any]] = {
-    "trainee": _short,
-    "task": _short,
-    "count": whole_number(0, 1000),
-    "screen": _short,
-    "instruction": _sentence,
-    "warnings": _sentences,
-    "score": _score,
-    "holder": _short,
-    "slicer": yes_or_no,
-    "language": text(12),
-    "assignments": _sentence,
-    "phase": one_of(*(phase.value for phase in Phase)),
-    "touched": whole_number(0, 1000),
-    "rejected": whole_number(0, 1_000_000),
-    "elapsed": whole_number(0, 10_000_000),
-    "touch": one_of(*(stage.value for stage in TouchStage)),
-}
-"""What a simulator reports about its seat, and how each member is checked."""
-
-
-class SeatLink(str, Enum):
-    """State of the connection to a seat."""
-
-    CONNECTING = "connecting"
-    WATCHING = "watching"
-    AWAY = "away"
-    UNPAIRED = "unpaired"
-    OTHER_CERTIFICATE = "other certificate"
+_BOARD_HELLO = message_text(Hello("board"))
 
 
 class WatchedSeat:
@@ -124,19 +52,13 @@ class WatchedSeat:
         self._client = client
         self._changed = changed
         self._link = SeatLink.CONNECTING
-        self._seat: dict[str, Any] | None = None
+        self._seat: SeatNews | None = None
         self._task = asyncio.create_task(self._watch())
 
-    def tile(self) -> dict[str, Any]:
-        """Return what a board shows of it, ready for JSON; `seat` is None if unreachable."""
+    def tile(self) -> TileNews:
+        """Return what a board shows of it."""
         entry = self.entry
-        return {
-            "id": entry.id,
-            "name": entry.name,
-            "address": entry.address,
-            "link": self._link.value,
-            "seat": self._seat,
-        }
+        return TileNews(entry.id, entry.name, entry.address, self._link, self._seat)
 
     async def close(self) -> None:
         self._task.cancel()
@@ -164,25 +86,16 @@ class WatchedSeat:
                 if message.type is not aiohttp.WSMsgType.TEXT:
                     return
                 values = decode_message_object(message.data, "The message of a simulator")
-                if values.get("type") == SEAT:
-                    self._become(SeatLink.WATCHING, checked_seat(values))
+                if values.get("type") == SeatNews.type:
+                    seat = record_from_json(SeatNews, values, "The seat")
+                    self._become(SeatLink.WATCHING, seat)
         finally:
             await stream.close()
 
-    def _become(self, link: SeatLink, seat: dict[str, Any] | None = None) -> None:
+    def _become(self, link: SeatLink, seat: SeatNews | None = None) -> None:
         if (link, seat) != (self._link, self._seat):
             self._link, self._seat = link, seat
             self._changed()
-
-
-def checked_seat(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what a simulator reports about its seat; further members are ignored."""
-    missing = MEMBERS.keys() - values.keys()
-    if missing:
-        raise InputError(f"What a simulator says of its seat lacks {', '.join(sorted(missing))}.")
-    return {
-        name: accepted(check, values[name], f"The seat's {name}") for name, check in MEMBERS.items()
-    }
 
 
 SEAT_PATH = "/seat/{seat:[0-9a-f]{12}}"
@@ -193,7 +106,7 @@ FILES = {
 }
 """What a page may request of a simulator, and its type, whatever the simulator says."""
 _KEPT_HEADERS = (hdrs.CONTENT_ENCODING, hdrs.CACHE_CONTROL, hdrs.VARY, "X-File-Size")
-_SPECTATOR_HELLO = json.dumps({"type": HELLO, "kind": SPECTATOR, "device": "", "refreshHz": 0})
+_SPECTATOR_HELLO = message_text(Hello("spectator"))
 _HELLO_S = 5.0
 
 
@@ -218,9 +131,7 @@ class LiveView:
 
     async def _send_page(self, request: web.Request) -> web.StreamResponse:
         self._entry(request)
-        if self._page is None:
-            return web.Response(text=NOT_BUILT, content_type="text/html")
-        return web.FileResponse(self._page / "index.html")
+        return page_answer(self._page, "index.html")
 
     async def _send_code(self, request: web.Request) -> web.StreamResponse:
         if self._page is None:
@@ -237,7 +148,7 @@ class LiveView:
             entry = self._entry(request)
             path = request.path.removeprefix(f"/seat/{entry.id}")
             try:
-                content, found = await self._client.file(entry, path)
+                content, found = await self._client.request(entry, path)
             except RefusedError:
                 raise web.HTTPNotFound from None
             except InputError as error:
@@ -274,8 +185,8 @@ async def _expect_spectator(page: web.WebSocketResponse) -> None:
     with contextlib.suppress(asyncio.TimeoutError):
         first = await page.receive(_HELLO_S)
         if first.type is WSMsgType.TEXT:
-            hello = check_message(first.data)
-            if hello.type == HELLO and hello.values[0] == SPECTATOR:
+            hello = read_view_input(first.data)
+            if isinstance(hello, Hello) and hello.kind == "spectator":
                 return
     raise InputError(
         "This stream is only for watching: the first message must be a spectator's hello."

@@ -30,13 +30,10 @@ from rastrainer_simulator.presentation.feedback_event import (
     FeedbackEvent,
     feedback_of,
 )
+from rastrainer_simulator.presentation.messages import Frames, Hello, InstructorOrder, Seat
 from rastrainer_simulator.presentation.presenter import (
     Control,
-    Frames,
-    Hello,
-    InstructorOrder,
     Presenter,
-    Seat,
     TraceGuidance,
 )
 from rastrainer_simulator.presentation.screen import PRESS, Tone

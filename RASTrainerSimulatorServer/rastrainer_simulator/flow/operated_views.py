@@ -9,7 +9,7 @@ from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.controls import Controls
 from rastrainer_simulator.input.inputs import SIMULATOR_STATION, ControlContext, Source, SourceKind
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.presentation.presenter import Hello
+from rastrainer_simulator.presentation.messages import Hello
 from rastrainer_simulator.record.trial_context import ViewReport
 from rastrainer_simulator.replay.playback import PlaybackSwitch
 from rastrainer_simulator.state import SimulationState

@@ -93,7 +93,7 @@ class ProcedureScreen(ArmScreen):
         if training.phase not in FED:
             return super().warnings()
         ruler = self._ruler()
-        past = 0.0 if ruler is None else MM_PER_M * session.state.feed - ruler.target
+        past = 0.0 if ruler is None else MM_PER_M * session.state.feed - ruler.target_mm
         if past > PAST_TARGET_MM:
             return (ScreenMessage(say("warning.past target", past=past), Tone.ERROR),)
         if self._layer not in _FELT:
@@ -169,8 +169,8 @@ class ProcedureScreen(ArmScreen):
         if ruler is not None:
             depth = MM_PER_M * state.feed
             is_drill = self._procedure.stage is Phase.DRILLING
-            goal = ruler.inner if is_drill and ruler.inner is not None else ruler.target
-            to = "inner" if is_drill and ruler.inner is not None else "target"
+            goal = ruler.inner_mm if is_drill and ruler.inner_mm is not None else ruler.target_mm
+            to = "inner" if is_drill and ruler.inner_mm is not None else "target"
             if depth > goal:
                 return (say(f"status.past {to}", past=depth - goal),)
             return (say(f"status.to {to}", left=goal - depth),)

@@ -7,7 +7,7 @@ from rastrainer_simulator.flow.flow import Flow
 from rastrainer_simulator.flow.pages.result import ResultPage
 from rastrainer_simulator.flow.pages.trial_review import ReplayPage
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.presentation.presenter import InstructorOrder, Seat
+from rastrainer_simulator.presentation.messages import InstructorOrder, Seat
 from rastrainer_simulator.presentation.screen import Screen, Tone
 
 _WRONG = (Tone.WARNING, Tone.ERROR)

@@ -8,9 +8,10 @@ import math
 import os
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Annotated, Any
 
 SWITCH_INTERVAL_S = 0.0001
 """How long another Python thread may keep the interpreter once the control loop is due.
@@ -200,6 +201,18 @@ class RateLimit:
         return True
 
 
+def above_zero(most: float, is_whole: bool = False) -> Callable[[Any], float]:
+    """Accept a number, or a whole number, above 0: a limit of nothing is a mistake."""
+    words = f"a {'whole ' if is_whole else ''}number above 0, up to {most}"
+
+    def check(value: Any) -> float:
+        if type(value) not in ((int,) if is_whole else (int, float)) or not 0 < value <= most:
+            raise ValueError(words)
+        return value
+
+    return check
+
+
 @dataclass(frozen=True)
 class TrialLimits:
     """Limits of all trials; further ones are refused.
@@ -211,8 +224,8 @@ class TrialLimits:
         starts_at_once: trials that may be started at once after a pause.
     """
 
-    starts_per_s: float = 0.2
-    starts_at_once: int = 4
+    starts_per_s: Annotated[float, above_zero(2**20)] = 0.2
+    starts_at_once: Annotated[int, above_zero(2**16, is_whole=True)] = 4
 
 
 _TOLERANCE_S = 1e-9

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from rastrainer.protocol import PROCEDURE_PHASES, Phase, Proximity
-from rastrainer_simulator.presentation.presenter import Feedback
+from rastrainer_simulator.presentation.messages import Feedback
 from rastrainer_simulator.state import TOUCH_ERRORS, Event, EventKind, TouchStage
 from rastrainer_simulator.training.feed import FeedLayer
 
@@ -72,8 +72,8 @@ FEEDBACK_EFFECTS: Mapping[FeedbackEvent, FeedbackEffect] = {
 
 def feedback_of(what: FeedbackEvent, number: int, volume: float = 1.0) -> Feedback:
     effect = FEEDBACK_EFFECTS[what]
-    data = {"rumbleMs": round(1000.0 * effect.seconds)}
-    return Feedback(number, what.value, effect.sound, volume, effect.rumble, data)
+    rumble_ms = round(1000.0 * effect.seconds)
+    return Feedback(number, what.value, effect.sound, volume, effect.rumble, rumble_ms)
 
 
 _OF_A_LAYER = {

@@ -3,61 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from enum import Enum
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
 from rastrainer_simulator.loop.results import Subscribers
+from rastrainer_simulator.presentation.messages import (
+    Feedback,
+    Frames,
+    Hello,
+    InstructorOrder,
+    Seat,
+    SkinPlace,
+)
 from rastrainer_simulator.presentation.screen import Screen
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.viewpoint.view_control import Pictures
-
-
-@dataclass(frozen=True)
-class Hello:
-    """A view's description of itself when it joins.
-
-    Attributes:
-        kind: "desktop", "page", "headset", "spectator" or "board".
-        device: model of the headset or name of the browser; "" where unknown.
-        refresh_hz: of its display; 0 where unknown.
-    """
-
-    kind: str
-    device: str = ""
-    refresh_hz: float = 0.0
-
-
-@dataclass(frozen=True)
-class Frames:
-    """How smoothly a view has drawn during the last second."""
-
-    shown: int
-    dropped: int
-    refresh_hz: float
-
-
-@dataclass(frozen=True)
-class Feedback:
-    """A sound and a vibration, to be played once.
-
-    Attributes:
-        number: counts from 1 without a gap.
-        kind: what happened, such as "touch"; an `EventKind` or one of the flow's own.
-        sound: name of the sound to play, "" for none.
-        volume: of the sound, 0 to 1; 0 while sounds are muted.
-        rumble: strength of the vibration, 0 to 1.
-        data: what else there is to say, ready for JSON; lengths in mm.
-    """
-
-    number: int
-    kind: str
-    sound: str = ""
-    volume: float = 1.0
-    rumble: float = 0.0
-    data: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -78,14 +39,6 @@ ViewUpdate = Screen | Feedback | Control
 
 
 @dataclass(frozen=True)
-class SkinPlace:
-    """A point on the skin in the head's frame: RAS mm, and the outward unit normal there."""
-
-    position: tuple[float, float, float]
-    normal: tuple[float, float, float]
-
-
-@dataclass(frozen=True)
 class TraceGuidance:
     """How a trainee who traces the skin is guided.
 
@@ -98,53 +51,13 @@ class TraceGuidance:
     next_place: SkinPlace | None = None
 
 
-class InstructorOrder(str, Enum):
-    """Orders that a teacher can give to a seat."""
-
-    PAUSE = "pause"
-    SAY = "say"
-    """Show the trainee a sentence."""
-    REPLAY = "replay"
-    """Show the scored trial again, at the seat."""
-
-
-@dataclass(frozen=True)
-class Seat:
-    """What a teacher's board shows of a seat beside the trial's state.
-
-    Attributes:
-        trainee: whose trial it is, or whose ID is entered; "" for none.
-        task: title of the open trial's task, "" without one.
-        count: points of this task; 0 without a trial.
-        screen: title of the open menu, "" while the trainee works.
-        instruction: what the trainee is asked to do.
-        warnings: what is wrong, as the trainee reads it.
-        score: the trainee's latest, 0 to 100; None before the first.
-        holder: what drives the arm, "" for nothing.
-        slicer: whether a Slicer is connected.
-        language: BCP 47 tag of the texts.
-        assignments: where the trainee stands in a curriculum, a sentence; "" without one.
-    """
-
-    trainee: str = ""
-    task: str = ""
-    count: int = 0
-    screen: str = ""
-    instruction: str = ""
-    warnings: tuple[str, ...] = ()
-    score: float | None = None
-    holder: str = ""
-    slicer: bool = False
-    language: str = "en"
-    assignments: str = ""
-
-
 class Presenter:
     """What the view server shows, and where it passes on what views send; ignores it by default.
 
     Everything is called in the event loop's thread, and what is subscribed is called there too;
     every call returns at once. Values have been checked: numbers are finite and within their
-    range, texts short and printable, `view` is the number of a view that has joined.
+    range, texts short and printable, `view` is the number of a view that has joined. Each message
+    of a view goes to the method of its type.
 
     Attributes:
         screen: what the trainee reads now.
@@ -200,20 +113,17 @@ class Presenter:
         """Forget a view; what it held has been released before."""
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
-        """Process a key: W3C `KeyboardEvent.code`, and what it types or "".
+        """Process a `KeyInput`.
 
         While a key is held it may come down again and again, as keyboards repeat it. A view
         that leaves or falls silent releases each key that it held, with `is_down` False.
         """
 
     def on_layout(self, view: int, keys: Mapping[str, str]) -> None:
-        """Process what is written on a view's keys, by their W3C codes: "q" on KeyA in France."""
+        """Process a `LayoutInput`."""
 
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
-        """Process a gamepad that a browser reads: the W3C standard gamepad, axes −1…1, buttons 0…1.
-
-        A view that leaves or falls silent sends it once again with nothing pressed.
-        """
+        """Process a `PadInput`; one of a view that leaves or falls silent has nothing pressed."""
 
     def on_sticks(
         self,
@@ -223,33 +133,28 @@ class Presenter:
         is_fine: bool,
         yaw_deg: float,
     ) -> None:
-        """Process the sticks of XR controllers, −1…1, as in `OperatorInput`.
-
-        `yaw_deg` is where the eyes look, counterclockwise from World's x: forward is there.
-
-        A view that leaves or falls silent releases them: zeros.
-        """
+        """Process a `SticksInput`; a view that leaves or falls silent releases them: zeros."""
 
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
-        """Process a turn of the view: around to the right, higher, and its distance multiplied."""
+        """Process an `OrbitInput`."""
 
     def on_press(self, view: int, control: str) -> None:
-        """Process one press of a control by its name in the settings of the controls; any name."""
+        """Process a `PressInput`; any name."""
 
     def on_item(self, view: int, name: str) -> None:
-        """Process a click on an item of the menu; any name, the menu may have changed."""
+        """Process an `ItemInput`; any name, the menu may have changed."""
 
     def on_text(self, view: int, name: str, value: str) -> None:
-        """Process the new text of a text item; any name, the menu may have changed."""
+        """Process a `TextInput`; any name, the menu may have changed."""
 
     def on_frames(self, view: int, frames: Frames) -> None:
         """Process how smoothly a view draws, once a second."""
 
     def on_picture(self, view: int, task: str, share: float) -> None:
-        """Process how much of a task's scene a view has loaded, 0 to 1; 1 once it is drawn."""
+        """Process a `PictureProgress`."""
 
     def on_visibility(self, view: int, is_visible: bool) -> None:
-        """Process whether the trainee sees the view: the headset was doffed, the page hidden."""
+        """Process a `Visibility`."""
 
     def on_silence(self, view: int) -> None:
         """Process that a view has been silent for so long that its picture must be frozen."""

@@ -5,10 +5,23 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from enum import Enum
-from typing import Any
+from typing import Annotated, Any, Literal
 
+from rastrainer.json_checks import number
 from rastrainer_simulator.texts.texts import Texts
+from rastrainer_simulator.vectors import RecordVector
 
+
+def any_text(value: Any) -> str:
+    """Accept text in any language, which may have spaces that count as not printable."""
+    if not isinstance(value, str):
+        raise ValueError("a text")
+    return value
+
+
+Words = Annotated[str, any_text]
+ControlsPicture = Literal["", "gamepad", "keyboard", "controllers"]
+Depth = Annotated[float, number(-5000.0, 5000.0, "mm")]
 PRESS = "press "
 """Prefix of the name of a control: the item of a hint whose click presses that control."""
 
@@ -40,31 +53,28 @@ class MenuItem:
     """One line of a menu.
 
     Attributes:
-        name: unique in its menu; what a view sends back when the item is clicked.
-        label: what the trainee reads.
-        kind: what one does with it.
+        name: unique in its menu; a view sends it back when the item is clicked.
         value: the chosen option, the typed text or the axis's position, ready to be shown.
-        is_enabled: whether it can be chosen; a view draws others paler.
         help: a sentence shown while the item has the focus, such as why it cannot be chosen.
-        picture: where a picture is that is shown while the item has the focus, a path of the
-            simulator's HTTP server such as "/scenarios/colin27.png"; "" where there is none.
+        picture: shown while the item has the focus, a path of the simulator's HTTP server such as
+            "/scenarios/colin27.png"; "" for none.
     """
 
-    name: str
-    label: str
+    name: Words
+    label: Words
     kind: ItemKind = ItemKind.BUTTON
-    value: str = ""
+    value: Words = ""
     is_enabled: bool = True
-    help: str = ""
-    picture: str = ""
+    help: Words = ""
+    picture: Words = ""
 
 
 @dataclasses.dataclass(frozen=True)
 class Fact:
     """One line of a table of results, its value with the unit."""
 
-    label: str
-    value: str
+    label: Words
+    value: Words
     tone: Tone = Tone.PLAIN
 
 
@@ -73,14 +83,14 @@ class ScoreTrend:
     """A trainee's scores as a small plot of bars.
 
     Attributes:
-        text: every score in words, for who cannot see the plot.
-        scores: 0 to 100, oldest first, at least one.
+        text: every score in words, for people who cannot see the plot.
+        scores: oldest first, at least one.
         mark: score that passes, drawn as a line; 0 for none.
     """
 
-    text: str
-    scores: tuple[float, ...]
-    mark: float = 0.0
+    text: Words
+    scores: tuple[Annotated[float, number(0, 100)], ...]
+    mark: Annotated[float, number(0, 100)] = 0.0
 
 
 @dataclasses.dataclass(frozen=True)
@@ -89,23 +99,19 @@ class Menu:
 
     Attributes:
         name: of the screen, such as "start" or "experiment"; for tests and logs, never shown.
-        title: its headline.
-        paragraphs: running text under it.
-        facts: a table under that.
-        items: the lines that can be chosen, in order.
-        focus: name of the item that has the focus; "" when there is none.
-        picture: which drawing of the controls a view puts beside the text: "", "gamepad",
-            "keyboard" or "controllers"; what the table names is colored in it.
-        trend: plot that a view puts there instead; None for none.
+        focus: name of the item that has the focus; "" without one.
+        picture: drawing of the controls next to the text, in which the inputs named by the facts
+            are colored.
+        trend: plot in its place.
     """
 
-    name: str
-    title: str
-    paragraphs: tuple[str, ...] = ()
+    name: Words
+    title: Words
+    paragraphs: tuple[Words, ...] = ()
     facts: tuple[Fact, ...] = ()
     items: tuple[MenuItem, ...] = ()
-    focus: str = ""
-    picture: str = ""
+    focus: Words = ""
+    picture: ControlsPicture = ""
     trend: ScoreTrend | None = None
 
 
@@ -113,7 +119,7 @@ class Menu:
 class ScreenMessage:
     """A sentence to the trainee."""
 
-    text: str
+    text: Words
     tone: Tone = Tone.PLAIN
 
 
@@ -128,28 +134,26 @@ class ErrorArrow:
         name: written above the ball, such as that of a checkpoint; "" for nothing.
     """
 
-    begin: tuple[float, float, float]
-    end: tuple[float, float, float]
+    begin: RecordVector
+    end: RecordVector
     tone: Tone
-    name: str = ""
+    name: Words = ""
 
 
 @dataclasses.dataclass(frozen=True)
 class DepthRuler:
-    """A scale along the axis of the locked guide: distances from its tip, mm, as planned.
+    """A scale along the axis of the locked guide: planned distances from its tip.
 
     Attributes:
-        entry: of the planned entry.
-        outer, inner: of the tables of the skull; None where the line does not meet them.
-        target: of the planned target.
-        names: of these four in this order, written beside the scale.
+        outer_mm, inner_mm: of the tables of the skull; None where the line does not meet them.
+        names: of the four in their order, written beside the scale.
     """
 
-    entry: float
-    outer: float | None
-    inner: float | None
-    target: float
-    names: tuple[str, str, str, str]
+    entry_mm: Depth
+    outer_mm: Annotated[float | None, number(-5000.0, 5000.0, "mm")]
+    inner_mm: Annotated[float | None, number(-5000.0, 5000.0, "mm")]
+    target_mm: Depth
+    names: tuple[Words, ...]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -157,15 +161,13 @@ class Hint:
     """Which control does what at the moment, such as "A" and "Touch".
 
     Attributes:
-        control: the input's name.
-        action: what it does.
-        item: what a view sends back as the name of an item when the hint is clicked, for who has
-            only a mouse; "" where a click does nothing.
+        item: name of the item that a view sends back when the hint is clicked, for people who
+            have only a mouse; "" if a click does nothing.
     """
 
-    control: str
-    action: str
-    item: str = ""
+    control: Words
+    action: Words
+    item: Words = ""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -173,16 +175,15 @@ class Screen:
     """Everything beside the scene.
 
     Attributes:
-        menu: the open panel; None while the trainee works.
-        instruction: what to do now, at the top in the middle.
-        warnings: what is wrong for as long as it lasts: contact, no gamepad, connection lost.
+        menu: None while the trainee works.
+        warnings: each is shown as long as it lasts: contact, no gamepad, connection lost.
         status: short facts for the edge of the picture, such as "Task 2", "7 of 15", "03:21".
-        hints: the controls that matter just now, for the lower edge.
+        hints: the controls that matter just now.
         language: BCP 47 tag of all texts.
         is_spoken: whether a view that can speak reads the screen aloud.
         has_sticks: whether the view that has control draws two sticks, to be dragged by a mouse.
-        is_stepped: whether a headset's sticks step as in a menu, though none is open: while a trial
-            is shown again.
+        sticks_navigate: whether a headset's sticks step as in a menu, though none is open: while
+            a trial is shown again.
         has_arrow: whether a view shows an arrow toward a next point that is out of sight.
         errors: arrows that are drawn in the scene.
         is_head_clear: whether the skin is drawn so that what is within the head is seen.
@@ -194,16 +195,16 @@ class Screen:
     menu: Menu | None = None
     instruction: ScreenMessage = ScreenMessage("")
     warnings: tuple[ScreenMessage, ...] = ()
-    status: tuple[str, ...] = ()
+    status: tuple[Words, ...] = ()
     hints: tuple[Hint, ...] = ()
-    language: str = "en"
+    language: Words = "en"
     is_spoken: bool = False
     has_sticks: bool = False
-    is_stepped: bool = False
+    sticks_navigate: bool = False
     has_arrow: bool = False
     errors: tuple[ErrorArrow, ...] = ()
     is_head_clear: bool = False
-    coverage: str = ""
+    coverage: Words = ""
     ruler: DepthRuler | None = None
     is_private: bool = False
 
@@ -221,10 +222,6 @@ def focused_picture(menu: Menu | None) -> str:
     if menu is None:
         return ""
     return next((item.picture for item in menu.items if item.name == menu.focus), "")
-
-
-def screen_to_json(screen: Screen) -> dict[str, Any]:
-    return dataclasses.asdict(screen)
 
 
 NOTICE_S = 5.0

@@ -12,7 +12,11 @@ from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.gamepads import w3c_gamepad_inputs
 from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_of
-from rastrainer_simulator.presentation.presenter import InstructorOrder, Presenter, ViewUpdate
+from rastrainer_simulator.presentation.messages import InstructorOrder
+from rastrainer_simulator.presentation.presenter import (
+    Presenter,
+    ViewUpdate,
+)
 from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.rating.rating_pages import DomainPage, LoadingPage, RatedPage, RatingWork
 from rastrainer_simulator.replay.playback import Playback, ShownPlayback

@@ -10,7 +10,10 @@ from functools import reduce
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.feedback_event import feedback_event, feedback_of
-from rastrainer_simulator.presentation.presenter import InstructorOrder, Presenter
+from rastrainer_simulator.presentation.messages import InstructorOrder
+from rastrainer_simulator.presentation.presenter import (
+    Presenter,
+)
 from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage
 from rastrainer_simulator.replay.playback import PERIOD_S, Playback
 from rastrainer_simulator.state import SimulationState, StepResult
@@ -94,7 +97,7 @@ class Player:
             status=tuple(status),
             hints=hints,
             language=language,
-            is_stepped=True,
+            sticks_navigate=True,
         )
 
     def _show_worst(self) -> None:

@@ -54,7 +54,7 @@ class ArmCover:
 
     def covering(
         self, now: SimulationState, eyes: Mapping[str, Vector | None], places: Sequence[Vector]
-    ) -> dict[str, list[str]]:
+    ) -> dict[str, tuple[str, ...]]:
         """Return the nodes that cover any of some places from each eye, by the eyes' names.
 
         World, m; an eye that is None, as of nobody, sees nothing covered.
@@ -66,7 +66,7 @@ class ArmCover:
                 self._covering[name] = frozenset()
             else:
                 self._covering[name] = self._before(eye, places, ends, known)
-        return {name: sorted(self._covering[name]) for name in eyes}
+        return {name: tuple(sorted(self._covering[name])) for name in eyes}
 
     def _before(
         self, eye: Vector, places: Sequence[Vector], ends: np.ndarray, known: frozenset[str]

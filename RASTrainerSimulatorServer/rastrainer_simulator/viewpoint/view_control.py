@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
+from rastrainer.json_checks import number
 from rastrainer.scenario.scenario import Camera
 from rastrainer_simulator.teleoperation.steering import camera_axes
 from rastrainer_simulator.trial_state import GuideAxis, PlannedLine
 from rastrainer_simulator.vectors import (
     ZERO,
+    RecordVector,
     Vector,
     add,
     cross,
@@ -36,16 +38,15 @@ class CameraPose:
     """Where a camera stands: World, m.
 
     Attributes:
-        position: the eye.
         focal_point: what is in the middle of the picture.
         view_up: unit vector.
-        angle_deg: the picture's height as an angle.
+        view_angle_deg: the picture's height as an angle.
     """
 
-    position: Vector
-    focal_point: Vector
-    view_up: Vector
-    angle_deg: float
+    position: RecordVector
+    focal_point: RecordVector
+    view_up: RecordVector
+    view_angle_deg: Annotated[float, number(0, 180, "degrees")]
 
 
 @dataclass(frozen=True)

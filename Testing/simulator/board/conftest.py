@@ -7,7 +7,8 @@ import json
 import aiohttp
 import pytest
 
-from rastrainer_simulator.board.board_server import SUBPROTOCOL, BoardServer
+from rastrainer_simulator.board.board_messages import BOARD_SUBPROTOCOL
+from rastrainer_simulator.board.board_server import BoardServer
 from rastrainer_simulator.board.seats import SeatClient
 from rastrainer_simulator.net.views.certificate import own_certificate
 from rastrainer_simulator.ops.instructor_pin import InstructorPin
@@ -87,7 +88,7 @@ class BoardClient:
             async with (
                 aiohttp.ClientSession() as session,
                 session.ws_connect(
-                    f"{self.url}/tiles", protocols=[SUBPROTOCOL], headers=headers
+                    f"{self.url}/tiles", protocols=[BOARD_SUBPROTOCOL], headers=headers
                 ) as socket,
             ):
                 while True:

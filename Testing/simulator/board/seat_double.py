@@ -7,7 +7,7 @@ from collections.abc import Awaitable, Callable
 
 from aiohttp import web
 
-from rastrainer_simulator.net.views.incoming import SUBPROTOCOL
+from rastrainer_simulator.presentation.messages import SUBPROTOCOL
 from Testing.free_port import free_port
 
 HOST = "127.0.0.1"

@@ -8,10 +8,10 @@ import stat
 import aiohttp
 import pytest
 
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer_simulator.board.seats import SEATS_FILE
-from rastrainer_simulator.board.watched_seat import checked_seat
 from rastrainer_simulator.net.views.access_control import BOARDS_FILE
-from rastrainer_simulator.presentation.presenter import Seat
+from rastrainer_simulator.presentation.messages import Seat, SeatNews
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from Testing.simulator.board.conftest import PIN, WatchedSimulator
 from Testing.simulator.net.views.served import HELLO, request
@@ -137,10 +137,10 @@ def test_a_removed_seat_is_forgotten_with_its_key(board, simulator):
         ({"address": "localhost:1", "fingerprint": ""}, "does not answer at http://localhost:1"),
         ({"address": "https://127.0.0.1:1"}, "does not answer at https://127.0.0.1:1"),
         ({"fingerprint": "12:34"}, "32 pairs of hexadecimal digits"),
-        ({"name": ""}, "The name must be printable text of 1 to 40 characters"),
-        ({"name": "a\nb"}, "The name must be printable text"),
+        ({"name": ""}, "name must be printable text of 1 to 40 characters"),
+        ({"name": "a\nb"}, "name must be printable text"),
         ({"code": "1"}, "This is not the pairing code that the simulator shows."),
-        ({"code": None}, "The pairing code must be printable text"),
+        ({"code": None}, "code must be printable text"),
     ],
 )
 def test_a_problem_with_a_new_seat_is_reported_and_nothing_is_added(
@@ -243,6 +243,11 @@ def test_sounds_come_from_the_seat_and_other_paths_are_not_found(board, simulato
         assert request(board.url, f"/seat/{seat}/{path}", headers=headers)[0] in (404, 405)
 
 
+def checked_seat(values: dict) -> dict:
+    """Return what a board shows of what a simulator reports."""
+    return record_to_json(record_from_json(SeatNews, values, "The seat"), with_defaults=True)
+
+
 def good_seat() -> dict:
     return {
         "trainee": "P07",
@@ -259,7 +264,7 @@ def good_seat() -> dict:
         "phase": "running",
         "touched": 3,
         "rejected": 1,
-        "elapsed": 70,
+        "elapsedS": 70,
         "touch": "near",
     }
 
@@ -279,7 +284,7 @@ def good_seat() -> dict:
 )
 def test_a_seat_that_sends_invalid_values_is_not_shown(name, value):
     assert checked_seat(good_seat()) == good_seat()
-    with pytest.raises(ValueError, match=f"The seat's {name} must be"):
+    with pytest.raises(ValueError, match=f"The seat: {name}.* must be"):
         checked_seat({**good_seat(), name: value})
 
 
@@ -300,7 +305,7 @@ def test_a_seat_is_shown_in_every_language(language):
 def test_a_seat_with_too_many_warnings_shows_the_first_and_an_incomplete_one_is_refused():
     shown = checked_seat({**good_seat(), "warnings": [str(n) for n in range(1000)], "new": 1})
     assert (len(shown["warnings"]), "new" in shown) == (8, False)
-    with pytest.raises(ValueError, match="lacks touch"):
+    with pytest.raises(ValueError, match='needs the key "touch"'):
         checked_seat({k: v for k, v in good_seat().items() if k != "touch"})
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rastrainer_simulator.presentation.presenter import Hello
+from rastrainer_simulator.presentation.messages import Hello
 from Testing.simulator.flow.trainee import Trainee
 
 VIEW = 1

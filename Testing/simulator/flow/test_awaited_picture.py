@@ -6,7 +6,7 @@ import pytest
 
 from rastrainer.protocol import Phase
 from rastrainer_simulator.flow import operated_views
-from rastrainer_simulator.presentation.presenter import Frames
+from rastrainer_simulator.presentation.messages import Frames
 from Testing.simulator.flow.trainee import Keys
 
 VIEW = 1

@@ -12,7 +12,7 @@ from rastrainer_simulator.flow.running_presenter import RunningPresenter
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, DEFAULT_BINDINGS, read_bindings
 from rastrainer_simulator.input.controls import IDLE_S
 from rastrainer_simulator.input.inputs import ControlName
-from rastrainer_simulator.presentation.presenter import Hello
+from rastrainer_simulator.presentation.messages import Hello
 from rastrainer_simulator.texts.texts import Texts, input_label
 from Testing.simulator.flow.trainee import STEP_S, Keys
 

@@ -11,7 +11,7 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.json_records import record_from_json
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.procedure_outcome import procedure_outcome
@@ -22,9 +22,9 @@ from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.igtl.publisher import sim_state
-from rastrainer_simulator.net.views import outgoing
 from rastrainer_simulator.net.views.boards import seat_text
-from rastrainer_simulator.presentation.presenter import Seat
+from rastrainer_simulator.net.views.outgoing import _procedure, state_news
+from rastrainer_simulator.presentation.messages import CoveringBodies, Seat
 from rastrainer_simulator.presentation.screen import Tone
 from rastrainer_simulator.rendering.procedure_picture import (
     PLACED,
@@ -58,7 +58,8 @@ class Operation:
         trainee.step(15)
         shown = trainee.presenter.shown.latest
         pictures = trainee.presenter.pictures(shown)
-        message = outgoing._procedure(shown, pictures)
+        procedure = _procedure(shown, pictures)
+        message = None if procedure is None else record_to_json(procedure)
         self.seen[name] = trainee.presenter.screen, message, shown
 
     def next_step(self, item: str, tool: Tool) -> None:
@@ -129,7 +130,7 @@ def perform(operation: Operation) -> None:
         operation.feed(DRILLED_M)
         operation.keep(f"drilled {number}")
         operation.next_step("insert", Tool.ELECTRODE)
-        target_m = trainee.presenter.screen.ruler.target / MM_PER_M
+        target_m = trainee.presenter.screen.ruler.target_mm / MM_PER_M
         operation.feed(target_m - 0.001)
         operation.keep(f"inserted {number}")
         if number == 1:
@@ -271,11 +272,13 @@ def test_the_trials_clock_stops_at_the_last_touch_and_the_procedures_runs_apart(
     assert state.completion_time == completed < state.elapsed - procedure
     duration = operation.trainee.presenter._session.duration
     assert f"Procedure: {duration(procedure)}" in screen.status
-    told = json.loads(outgoing.state(state, 0, operation.trainee.presenter.pictures(state), {}))
-    assert told["elapsed"] == pytest.approx(completed, abs=1e-5)
+    told = record_to_json(
+        state_news(state, 0, operation.trainee.presenter.pictures(state), CoveringBodies())
+    )
+    assert told["elapsedS"] == pytest.approx(completed, abs=1e-5)
     sent = json.loads(sim_state({}, state, 1).content.text)
     assert sent["elapsedS"] == pytest.approx(completed, abs=1e-3)
-    assert json.loads(seat_text(state, Seat()))["elapsed"] == int(completed)
+    assert json.loads(seat_text(state, Seat()))["elapsedS"] == int(completed)
     facts = {fact.label: fact.value for fact in operation.seen["result"].facts}
     ended = operation.trainee.state
     assert facts["Time"] == duration(completed)
@@ -346,14 +349,14 @@ def test_the_ruler_measures_from_the_guides_tip_according_to_the_plan(operation)
         assert message["aim"] is None
         ruler = screen.ruler
         length_mm = math.dist(ENTRIES[number], TARGETS[number])
-        assert ruler.entry == pytest.approx(30.0, abs=0.1)
-        assert ruler.target == pytest.approx(30.0 + length_mm, abs=0.1)
-        assert ruler.entry < ruler.outer < ruler.inner < ruler.target
-        assert ruler.inner - ruler.outer == pytest.approx(6.0, abs=1.5)
+        assert ruler.entry_mm == pytest.approx(30.0, abs=0.1)
+        assert ruler.target_mm == pytest.approx(30.0 + length_mm, abs=0.1)
+        assert ruler.entry_mm < ruler.outer_mm < ruler.inner_mm < ruler.target_mm
+        assert ruler.inner_mm - ruler.outer_mm == pytest.approx(6.0, abs=1.5)
         assert ruler.names == ("Entry", "Outer table", "Inner table", "Target")
         inserted = told_of(operation, f"inserted {number}")
         assert inserted["tool"] == "electrode"
-        assert inserted["feedMm"] == pytest.approx(ruler.target - 1.0, abs=0.5)
+        assert inserted["feedMm"] == pytest.approx(ruler.target_mm - 1.0, abs=0.5)
 
 
 def test_the_trainee_is_warned_past_the_target_and_not_before(operation):

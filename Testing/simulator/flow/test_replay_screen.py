@@ -17,8 +17,7 @@ from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input import controls
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.presentation.presenter import Hello, InstructorOrder
-from rastrainer_simulator.presentation.screen import screen_to_json
+from rastrainer_simulator.presentation.messages import Hello, InstructorOrder
 from rastrainer_simulator.replay import recorded_trial
 from Testing.simulator.flow.conftest import Outside
 from Testing.simulator.flow.test_whole_flow import REGISTRATION, SCORE
@@ -268,7 +267,7 @@ def test_a_headset_steps_through_a_replay_by_stick_and_leaves_with_the_back_butt
     presenter.view_joined(PAGE, Hello("headset"))
     presenter.on_item(PAGE, "replay")
     result.until_menu(None)
-    assert screen_to_json(presenter.screen)["is_stepped"]
+    assert presenter.screen.sticks_navigate
     for control, seconds in (("right", 5), ("left", 0)):
         presenter.on_press(PAGE, control)
         result.step(20)

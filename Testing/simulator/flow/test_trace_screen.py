@@ -97,7 +97,7 @@ def test_the_best_view_is_that_of_the_next_place_to_draw(trainee):
     trainee.until(lambda: guidance(trainee).next_place is not None, "the next place")
     place = guidance(trainee).next_place
     head = trainee.state.head_to_world
-    at = head[:3, :3] @ np.array(place.position) / 1000.0 + head[:3, 3]
+    at = head[:3, :3] @ np.array(place.position_mm) / 1000.0 + head[:3, 3]
     outward = head[:3, :3] @ np.array(place.normal)
     trainee.tap("best_view")
 

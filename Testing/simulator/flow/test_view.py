@@ -7,7 +7,7 @@ from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.protocol import StepKind
 from rastrainer.study_messages import StudyStep
 from rastrainer_simulator.flow.session.trial_view import turned
-from rastrainer_simulator.presentation.presenter import Hello
+from rastrainer_simulator.presentation.messages import Hello
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.replay.resimulation import replay
 from rastrainer_simulator.state import OperatorInput
@@ -149,7 +149,7 @@ def test_the_best_view_shows_the_point_past_the_arm_as_it_stands(by_hand, setup)
     assert covering()["view"]
     by_hand.tap("best_view")
     by_hand.step(200)
-    assert covering() == {"view": []}
+    assert covering() == {"view": ()}
     assert by_hand.presenter.pictures(by_hand.state).main.focal_point == pytest.approx(point)
 
 

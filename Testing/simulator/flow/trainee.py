@@ -12,7 +12,8 @@ import numpy as np
 from rastrainer.commands import check_arguments
 from rastrainer.protocol import Phase, Proximity
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.presentation.presenter import Control, Feedback, Hello
+from rastrainer_simulator.presentation.messages import Feedback, Hello
+from rastrainer_simulator.presentation.presenter import Control
 from rastrainer_simulator.presentation.screen import Screen
 from rastrainer_simulator.state import TouchStage
 from rastrainer_simulator.teleoperation.steering import camera_axes

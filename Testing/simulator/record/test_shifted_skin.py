@@ -1,7 +1,5 @@
 """A trial on shifted skin: its points are measured with the skin, and that survives everything."""
 
-import json
-
 import numpy as np
 import pytest
 
@@ -63,7 +61,7 @@ def test_points_on_shifted_skin_stay_hidden_and_survive_a_kill_and_a_replay(simu
     assert np.linalg.norm(places[0] - tips[0]) > 0.5
     found = 1000.0 * np.array([point.position for point in before.trace.points])
     np.testing.assert_allclose(found, places, atol=1e-9)
-    shown = json.loads(TraceUpdate().news(latest, TraceGuidance(), 0.0))["points"]
+    shown = TraceUpdate().news(latest, TraceGuidance(), 0.0).points
     pose = latest.head_to_world
     in_head = (tips - 1000.0 * pose[:3, 3]) @ pose[:3, :3]
     np.testing.assert_allclose(shown, in_head, atol=0.011)

@@ -14,7 +14,7 @@ from rastrainer_simulator.flow.session.preferences import OPTIONS
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.gamepads import GAMEPAD_INPUTS
 from rastrainer_simulator.input.inputs import ControlName, InputDevice, SourceKind
-from rastrainer_simulator.net.views import outgoing
+from rastrainer_simulator.net.views.outgoing import screen_text
 from rastrainer_simulator.presentation.screen import Screen, ScreenMessage
 from rastrainer_simulator.texts.texts import (
     ENGLISH,
@@ -183,7 +183,7 @@ def test_no_line_of_a_view_ends_between_a_number_and_its_unit(language):
     for key, text in LANGUAGES[language].items():
         filled = {name: values.get(spec[-1:], 10) for name, spec in fields(text)}
         said = texts.say(key, **filled)
-        sent = json.loads(outgoing.screen(Screen(instruction=ScreenMessage(said))))
+        sent = json.loads(screen_text(Screen(instruction=ScreenMessage(said))))
         shown = sent["screen"]["instruction"]["text"]
         assert shown.replace(NO_BREAK_SPACE, " ") == said.replace(NO_BREAK_SPACE, " ")
         assert re.findall(r"\d (?:mm|cm|s|min|MB|%|/ \d)(?!\w)|\d / (?=\d)", shown) == [], key

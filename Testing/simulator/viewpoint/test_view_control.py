@@ -34,7 +34,7 @@ def test_an_unturned_view_is_the_scenarios_camera_bit_for_bit(camera):
     pose = camera_pose(camera)
     assert pose.position == tuple((camera.position_mm / MM_PER_M).tolist())
     assert pose.focal_point == tuple((camera.focal_point_mm / MM_PER_M).tolist())
-    assert pose.angle_deg == camera.view_angle_deg
+    assert pose.view_angle_deg == camera.view_angle_deg
 
 
 def test_an_orbit_reaches_the_eye_position_it_was_made_for(camera):

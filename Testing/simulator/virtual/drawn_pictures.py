@@ -161,7 +161,7 @@ class DrawnPictures:
         right = np.cross(ahead, camera.view_up)
         right /= np.linalg.norm(right)
         axes = np.array([right, np.cross(right, ahead), ahead])
-        half = math.tan(math.radians(camera.angle_deg) / 2.0)
+        half = math.tan(math.radians(camera.view_angle_deg) / 2.0)
         away = float(np.linalg.norm(middle - eye))
         tip, direction = tool[:3, 3], tool[:3, 2]
         marker = _vector(tip - BEHIND_TIP_M * direction)

@@ -20,7 +20,7 @@ from rastrainer.journal.recording import read_track
 from rastrainer.protocol import Phase, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.cli.main import main
-from rastrainer_simulator.presentation.presenter import Feedback
+from rastrainer_simulator.presentation.messages import Feedback
 from rastrainer_simulator.presentation.screen import Screen
 from rastrainer_simulator.record.trial_context import setup_of
 from rastrainer_simulator.replay import recorded_trial
@@ -267,7 +267,7 @@ def test_the_program_serves_the_replay_to_views_until_escape(journal, tmp_path, 
         view.join()
         first = view.next("state")
         messages = view.all_until(
-            lambda m: m["type"] == "state" and m["elapsed"] > first["elapsed"] + 1.0
+            lambda m: m["type"] == "state" and m["elapsedS"] > first["elapsedS"] + 1.0
         )
         assert messages[-1]["poses"] != first["poses"]
         view.send({"type": "key", "code": "Escape", "isDown": True, "text": ""})

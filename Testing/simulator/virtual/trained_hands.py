@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from rastrainer_simulator.presentation.presenter import Hello
+from rastrainer_simulator.presentation.messages import Hello
 from Testing.sdl_virtual_gamepad import VirtualGamepad
 from Testing.simulator.flow.mouse import VIEW, Mouse
 from Testing.simulator.flow.trainee import Keys, Pad, Trainee

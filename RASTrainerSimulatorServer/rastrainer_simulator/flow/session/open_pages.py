@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 from rastrainer_simulator.presentation.screen import (
+    ControlsPicture,
     Fact,
     ItemKind,
     Menu,
@@ -47,7 +48,7 @@ class PageContent:
     paragraphs: Sequence[str] = ()
     facts: Sequence[Fact] = ()
     rows: Sequence[PageRow] = ()
-    picture: str = ""
+    picture: ControlsPicture = ""
     trend: ScoreTrend | None = None
 
 

@@ -12,6 +12,7 @@ from rastrainer.protocol import Mode
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.controls import Controls
 from rastrainer_simulator.input.inputs import ControlName, InputDevice, SourceKind
+from rastrainer_simulator.presentation.screen import ControlsPicture
 from rastrainer_simulator.state import OperatorInput
 from rastrainer_simulator.texts.texts import NO_NAMES, Texts, input_label, pair_label
 
@@ -68,9 +69,11 @@ class OperatorDevice:
         return self.has_screen_sticks and self.is_one_of((SourceKind.MOUSE,))
 
     @property
-    def picture(self) -> str:
+    def picture(self) -> ControlsPicture:
         """Which drawing shows what the operator uses."""
-        return "controllers" if self.is_one_of((SourceKind.XR,)) else self.kind.value
+        if self.is_one_of((SourceKind.XR,)):
+            return "controllers"
+        return "gamepad" if self.kind is InputDevice.GAMEPAD else "keyboard"
 
     def is_one_of(self, kinds: tuple[SourceKind, ...]) -> bool:
         """Return whether what the operator uses is one of these."""

@@ -16,7 +16,8 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.touch_registration import trace_guide
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.loop.timing import raise_thread_priority
-from rastrainer_simulator.presentation.presenter import SkinPlace, TraceGuidance
+from rastrainer_simulator.presentation.messages import SkinPlace
+from rastrainer_simulator.presentation.presenter import TraceGuidance
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.trial_state import TraceState
@@ -85,7 +86,7 @@ class TracePlaces:
         """Return the next place in World, m; None if there is none."""
         if self._trial is None or self._place is None:
             return None
-        place = self._trial[2].in_world(np.array(self._place.position))
+        place = self._trial[2].in_world(np.array(self._place.position_mm))
         return in_meters(place)
 
     def eye(self, camera: Camera) -> Vector | None:

@@ -15,42 +15,26 @@ import secrets
 import socket
 from collections import deque
 from collections.abc import Callable, Mapping
-from enum import Enum
 from pathlib import Path
+from typing import Any, TypeVar
 
 from aiohttp import hdrs, web
-from aiohttp.typedefs import Handler
 
-from rastrainer.commands import decode_json_object
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import write_private_json
-from rastrainer.json_checks import one_of, text
-from rastrainer_simulator.loop.timing import AsyncRateLimiter
+from rastrainer.json_checks import decode_message_object
+from rastrainer.json_records import record_from_json
 from rastrainer_simulator.ops.instructor_pin import WRONG_GUESSES, GuessLimit
+from rastrainer_simulator.presentation.messages import ViewRole
 
+T = TypeVar("T")
 KEY_BYTES = 32
 SHORTEST_KEY = 32
 LONGEST_KEY = 200
 BOARDS_FILE = "boards.json"
 _MAX_BYTES = 100_000
 _HASH_DIGITS = 64
-
-
-class ViewRole(str, Enum):
-    """The role for which a client was paired."""
-
-    VIEW = "view"
-    """To see and to drive."""
-    SPECTATOR = "spectator"
-    """To see everything and to drive nothing."""
-    BOARD = "board"
-    """As a spectator, from a teacher's board; its key outlives the simulator's process."""
-
-    @property
-    def is_watch_only(self) -> bool:
-        """Whether its views may drive nothing."""
-        return self is not ViewRole.VIEW
 
 
 class Sessions:
@@ -148,14 +132,8 @@ def _new_code() -> str:
 
 COOKIE = "rastrainer-view"
 PAIR_FIRST = "Pair first: POST /pair with the code that the simulator shows."
-NOT_A_CODE = (
-    f'Send {{"code": "…"}} with the {DIGITS} digits that the simulator shows, and for who only '
-    f'watches also {{"role": "{ViewRole.SPECTATOR.value}"}} or "{ViewRole.BOARD.value}".'
-)
 BODY_S = 5.0
 _BEARER = "Bearer "
-_code_text = text(64)
-_role_name = one_of(*(role.value for role in ViewRole))
 ROLE = web.RequestKey("role", ViewRole)
 """Where a request that has passed has the role of its key."""
 WRONG_HOST = "The simulator is not known under this name: use its address."
@@ -174,65 +152,6 @@ HEADERS = {
 }
 
 
-class Gate:
-    """Lets paired views pass, and everyone else to the page and to the pairing only."""
-
-    def __init__(
-        self,
-        sessions: Sessions,
-        code: PairingCode,
-        note: Callable[[web.Request], None],
-        note_key: Callable[[web.Request, ViewRole], None],
-        rate_limiter: AsyncRateLimiter,
-    ) -> None:
-        """Make a gate.
-
-        Args:
-            sessions: whose keys open it.
-            code: that a new session is given for.
-            note: is called with every request that arrives, and
-            note_key: of every one that shows a session's key, with the role of this key.
-            rate_limiter: every request waits for its turn at it.
-        """
-        self._rate_limiter = rate_limiter
-        self._sessions = sessions
-        self._code = code
-        self._note = note
-        self._note_key = note_key
-
-    @web.middleware
-    async def check(self, request: web.Request, handler: Handler) -> web.StreamResponse:
-        """Refuse what comes from elsewhere or without a session's key."""
-        self._note(request)
-        await self._rate_limiter.passed()
-        check_origin(request)
-        role = self._sessions.role(_key(request))
-        if role is not None:
-            request[ROLE] = role
-            self._note_key(request, role)
-        elif not _is_public(request):
-            raise web.HTTPUnauthorized(text=PAIR_FIRST)
-        return await handler(request)
-
-    async def pair(self, request: web.Request) -> web.Response:
-        """Give a key, and a cookie with it, for the pairing code; a spectator's only watches."""
-        code, role = await _code_and_role(request)
-        self._check_pause()
-        if not self._code.accepts(code):
-            self._check_pause()
-            raise web.HTTPForbidden(text=WRONG)
-        key = self._sessions.open(role)
-        response = web.json_response({"key": key}, headers={hdrs.CACHE_CONTROL: "no-store"})
-        response.set_cookie(
-            COOKIE, key, path="/", httponly=True, samesite="Strict", secure=request.secure
-        )
-        return response
-
-    def _check_pause(self) -> None:
-        """Refuse while pairing is paused; the one who caused the pause is sent the new code."""
-        refuse_for(self._code.seconds_to_wait(), TOO_MANY)
-
-
 def refuse_for(wait_s: float, why: str) -> None:
     """Refuse with a sentence where there are seconds to wait.
 
@@ -244,28 +163,37 @@ def refuse_for(wait_s: float, why: str) -> None:
         raise web.HTTPTooManyRequests(text=why, headers=headers)
 
 
-def _is_public(request: web.Request) -> bool:
+def is_public(request: web.Request) -> bool:
+    """Return whether a request needs no key: for the page, its files, or pairing."""
     resource = request.match_info.route.resource
     return isinstance(resource, web.StaticResource) or (
         resource is not None and resource.canonical in ("/", "/pair")
     )
 
 
-def _key(request: web.Request) -> str:
+def session_key(request: web.Request) -> str:
+    """Return the key that a request shows, "" for none."""
     authorization = request.headers.get(hdrs.AUTHORIZATION, "")
     if authorization.startswith(_BEARER):
         return authorization.removeprefix(_BEARER)
     return request.cookies.get(COOKIE, "")
 
 
-async def _code_and_role(request: web.Request) -> tuple[str, ViewRole]:
+async def read_body(request: web.Request, kind: type[T]) -> T:
+    """Return the record that a request's body holds."""
     try:
-        body = await asyncio.wait_for(request.read(), BODY_S)
-        values = decode_json_object(body.decode())
-        role = ViewRole(_role_name(values.get("role", ViewRole.VIEW.value)))
-        return _code_text(values.get("code")), role
-    except (InputError, ValueError, asyncio.TimeoutError, ConnectionError):
-        raise web.HTTPBadRequest(text=NOT_A_CODE) from None
+        return record_from_json(kind, await read_object(request), "The body")
+    except InputError as error:
+        raise web.HTTPBadRequest(text=str(error)) from None
+
+
+async def read_object(request: web.Request) -> dict[str, Any]:
+    """Return the JSON object of a request's body, which must arrive within `BODY_S`."""
+    try:
+        body = (await asyncio.wait_for(request.read(), BODY_S)).decode()
+        return decode_message_object(body, "The body")
+    except (ValueError, asyncio.TimeoutError, ConnectionError):
+        raise web.HTTPBadRequest(text="Send one JSON object.") from None
 
 
 def check_origin(request: web.Request) -> None:

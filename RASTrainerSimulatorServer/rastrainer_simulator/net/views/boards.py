@@ -7,33 +7,34 @@ replay.
 from __future__ import annotations
 
 import asyncio
-import dataclasses
 import math
 
 from aiohttp import hdrs, web
 
-from rastrainer.commands import decode_json_object
 from rastrainer.errors import InputError
-from rastrainer.json_checks import accepted, one_of, text
+from rastrainer.number_text import with_units
 from rastrainer.protocol import OPEN_PHASES
 from rastrainer_simulator.loop.timing import Pacer
-from rastrainer_simulator.net.views import outgoing
-from rastrainer_simulator.net.views.access_control import ROLE, ViewRole, refuse_for
+from rastrainer_simulator.net.views.access_control import ROLE, read_body, refuse_for
 from rastrainer_simulator.net.views.view_socket import ViewSocket
-from rastrainer_simulator.ops.instructor_pin import LONGEST_PIN, PinGuesses
-from rastrainer_simulator.presentation.presenter import InstructorOrder, Presenter, Seat
+from rastrainer_simulator.ops.instructor_pin import PinGuesses
+from rastrainer_simulator.presentation.messages import (
+    PROTOCOL,
+    OrderRequest,
+    Seat,
+    SeatNews,
+    ViewRole,
+    WelcomeNews,
+    message_text,
+)
+from rastrainer_simulator.presentation.presenter import Presenter
 from rastrainer_simulator.state import SimulationState
 
 NEWS_HZ = 5.0
-"""Maximum number of boards; a board has many seats."""
-LONGEST_SENTENCE = 200
-BODY_S = 5.0
 ONLY_BOARDS = "Only a teacher's board may instruct: pair as one."
 NO_PIN = "This seat takes no orders: set a PIN there with rastrainer instructor-pin."
 WRONG_PIN = "This is not the PIN of this seat."
 TOO_MANY = "There were too many wrong PINs: wait."
-_pin_text = text(LONGEST_PIN)
-_order_name = one_of(*(order.value for order in InstructorOrder))
 
 
 class Boards:
@@ -53,8 +54,9 @@ class Boards:
         self.tell(now, seat)
         self._joined[board.number] = board
         try:
-            board.outbox.put_latest(outgoing.WELCOME, outgoing.welcome(board.number))
-            board.outbox.put_latest(outgoing.SEAT, self._seat)
+            welcome = WelcomeNews(PROTOCOL, board.number, ())
+            board.outbox.put_latest(WelcomeNews.type, message_text(welcome))
+            board.outbox.put_latest(SeatNews.type, self._seat)
             await board.serve()
         finally:
             del self._joined[board.number]
@@ -69,7 +71,7 @@ class Boards:
         if text != self._seat:
             self._seat = text
             for board in self._joined.values():
-                board.outbox.put_latest(outgoing.SEAT, text)
+                board.outbox.put_latest(SeatNews.type, text)
 
     async def close(self, message: str) -> None:
         """Send them away because the simulator ends."""
@@ -80,14 +82,15 @@ def seat_text(now: SimulationState, seat: Seat) -> str:
     """Return what a board receives of a seat, with the trial's clock in whole seconds."""
     training = now.training
     is_open = training.phase in OPEN_PHASES
-    return outgoing.seat(
-        **dataclasses.asdict(seat),
-        phase=training.phase.value,
+    news = SeatNews(
+        **vars(seat),
+        phase=training.phase,
         touched=len(training.touches) if is_open else 0,
         rejected=training.rejected if is_open else 0,
-        elapsed=math.floor(now.completion_time) if is_open else 0,
-        touch=now.touch.value,
+        elapsed_s=math.floor(now.completion_time) if is_open else 0,
+        touch=now.touch,
     )
+    return with_units(message_text(news))
 
 
 class InstructorOrders:
@@ -102,11 +105,11 @@ class InstructorOrders:
         """Take `{"pin", "order", "text"}`; answer 200, or why not in one sentence."""
         if request[ROLE] is not ViewRole.BOARD:
             raise web.HTTPForbidden(text=ONLY_BOARDS)
-        pin, order, sentence = await _order(request)
+        asked = await read_body(request, OrderRequest)
         # One after the other: many guesses at the same time would take all threads.
         async with self._one_guess:
-            await self._check(pin)
-        problem = self._presenter.instruct(order, sentence)
+            await self._check(asked.pin)
+        problem = self._presenter.instruct(asked.order, asked.sentence)
         if problem:
             raise web.HTTPConflict(text=problem)
         return web.json_response({}, headers={hdrs.CACHE_CONTROL: "no-store"})
@@ -122,21 +125,3 @@ class InstructorOrders:
         refuse_for(answer.wait_s, TOO_MANY)
         if not answer.is_right:
             raise web.HTTPForbidden(text=WRONG_PIN)
-
-
-async def _order(request: web.Request) -> tuple[str, InstructorOrder, str]:
-    try:
-        body = await asyncio.wait_for(request.read(), BODY_S)
-        values = decode_json_object(body.decode())
-        pin = accepted(_pin_text, values.get("pin"), "pin")
-        order = InstructorOrder(accepted(_order_name, values.get("order"), "order"))
-        needs_text = order is InstructorOrder.SAY
-        check = text(LONGEST_SENTENCE)
-        sentence = accepted(check, values.get("text"), "text").strip() if needs_text else ""
-        if needs_text and not sentence:
-            raise InputError("text must say something.")
-    except InputError as error:
-        raise web.HTTPBadRequest(text=str(error)) from None
-    except (ValueError, asyncio.TimeoutError, ConnectionError):
-        raise web.HTTPBadRequest(text="Send JSON with pin, order and text.") from None
-    return pin, order, sentence

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import dataclasses
 import itertools
 import logging
 import time
@@ -13,12 +14,29 @@ from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.loop.results import StateSource
 from rastrainer_simulator.loop.timing import Pacer
 from rastrainer_simulator.net.limits import ViewLimits
-from rastrainer_simulator.net.views import outgoing
 from rastrainer_simulator.net.views.boards import Boards
-from rastrainer_simulator.net.views.incoming import DESKTOP, HEADSET
-from rastrainer_simulator.net.views.outgoing import Mirror, TraceUpdate
+from rastrainer_simulator.net.views.outgoing import (
+    BODIES,
+    Mirror,
+    TraceUpdate,
+    scene_news,
+    screen_text,
+    state_news,
+)
 from rastrainer_simulator.net.views.view_socket import ViewSocket
-from rastrainer_simulator.presentation.presenter import Control, Feedback, Presenter, ViewUpdate
+from rastrainer_simulator.presentation.messages import (
+    PROTOCOL,
+    ControlNews,
+    CoveringBodies,
+    Feedback,
+    PairingNews,
+    SceneNews,
+    ScreenNews,
+    StateNews,
+    WelcomeNews,
+    message_text,
+)
+from rastrainer_simulator.presentation.presenter import Control, Presenter, ViewUpdate
 from rastrainer_simulator.presentation.screen import Screen, without_secrets
 from rastrainer_simulator.scene.scene_files import SceneFiles
 from rastrainer_simulator.state import SimulationState
@@ -27,6 +45,7 @@ from rastrainer_simulator.viewpoint.view_control import Pictures
 
 _log = logging.getLogger(__name__)
 
+STATE_HZ = 60.0
 _WATCH_PERIOD_S = 0.05
 _BEFORE_BUILDING_AHEAD_S = 3.0
 ENDING = "The simulator has been stopped."
@@ -49,7 +68,7 @@ class JoinedViews:
         self._views: dict[int, ViewSocket] = {}
         self._boards = Boards()
         self._numbers = itertools.count(1)
-        self._pacer = Pacer(limits.state_hz)
+        self._pacer = Pacer(STATE_HZ)
         self._setup: SimulationSetup | None = None
         self._task = ""
         self._scene = ""
@@ -74,7 +93,7 @@ class JoinedViews:
         try:
             if not view.is_spectator:
                 self._presenter.view_joined(view.number, view.hello)
-            if view.hello.kind == HEADSET:
+            if view.hello.kind == "headset":
                 self.mirror.joined(view.number)
             self._send_all(view)
             self._watch()
@@ -88,7 +107,7 @@ class JoinedViews:
 
     def announce_pairing(self, code: str, addresses: Sequence[str]) -> None:
         """Send the views of this computer how others are paired, now and whenever one joins."""
-        self._pairing = outgoing.pairing(code, addresses)
+        self._pairing = message_text(PairingNews(code, tuple(addresses)))
         for view in self._views.values():
             self._put_pairing(view)
 
@@ -112,85 +131,87 @@ class JoinedViews:
         if not self._views:
             return
         self._look_for_scene(now)
-        text = self._state_text(now)
-        for view in self._views.values():
-            self._put_state(view, text)
+        self._send_state(now, self._views.values())
         news = self._trace.news(now, self._presenter.trace_guidance(now), time.monotonic())
         if news is not None:
+            text = message_text(news)
             for view in self._views.values():
-                view.outbox.put_event(news)
+                view.outbox.put_event(text)
 
     def _send_all(self, view: ViewSocket) -> None:
         """Send a view that has just joined the present state."""
         now = self._source.latest
         self._look_for_scene(now)
         put = view.outbox.put_latest
-        put(outgoing.WELCOME, outgoing.welcome(view.number))
+        put(WelcomeNews.type, message_text(WelcomeNews(PROTOCOL, view.number, BODIES)))
         if self._scene:
-            put(outgoing.SCENE, self._scene)
-        put(outgoing.CONTROL, outgoing.control(self._presenter.control, view.number))
+            put(SceneNews.type, self._scene)
+        _put_control(view, self._presenter.control)
         self._send_screen(self._presenter.screen, (view,))
-        self._put_state(view, self._state_text(now))
+        self._send_state(now, (view,))
         trace = self._trace.everything()
         if trace is not None:
-            view.outbox.put_event(trace)
+            view.outbox.put_event(message_text(trace))
         self._put_pairing(view)
 
-    def _put_state(self, view: ViewSocket, text: str) -> None:
-        if view.is_spectator:
-            text = outgoing.mirrored(text, self.mirror.text)
-        view.outbox.put_latest(outgoing.STATE, text)
+    def _send_state(self, now: SimulationState, views: Iterable[ViewSocket]) -> None:
+        statistics, presenter = self._source.statistics, self._presenter
+        pictures = presenter.pictures(now)
+        news = state_news(
+            now,
+            statistics.late + statistics.skipped,
+            pictures,
+            self._covering(now, pictures),
+            presenter.ghost(now),
+        )
+        # Only spectators are sent where a headset is.
+        whole, text = "", message_text(news)
+        for view in views:
+            if view.is_spectator and not whole:
+                whole = message_text(dataclasses.replace(news, headset=self.mirror.pose))
+            view.outbox.put_latest(StateNews.type, whole if view.is_spectator else text)
 
     def _put_pairing(self, view: ViewSocket) -> None:
         # By the code a spectator could come back as one who drives.
         if view.is_local and self._pairing and not view.is_spectator:
-            view.outbox.put_latest(outgoing.PAIRING, self._pairing)
+            view.outbox.put_latest(PairingNews.type, self._pairing)
 
-    def _state_text(self, now: SimulationState) -> str:
-        statistics = self._source.statistics
-        delayed = statistics.late + statistics.skipped
-        presenter = self._presenter
-        pictures = presenter.pictures(now)
-        translucent = self._translucent(now, pictures)
-        return outgoing.state(now, delayed, pictures, translucent, presenter.ghost(now))
-
-    def _translucent(self, now: SimulationState, pictures: Pictures) -> dict[str, list[str]]:
-        """Return the bodies that cover tip or next point in each picture."""
+    def _covering(self, now: SimulationState, pictures: Pictures) -> CoveringBodies:
         setup = self._source.setup
         if self._cover is None or self._cover.setup is not setup:
             self._cover = ArmCover(setup)
         eyes = {
             "view": pictures.main.position,
             "inset": None if pictures.inset is None else pictures.inset.position,
-            "worn": self.mirror.eyes,
+            "headset": self.mirror.eyes,
         }
         guided = self._presenter.trace_guidance(now).next_place
-        places = places_to_see(now, setup.scenario, None if guided is None else guided.position)
-        return self._cover.covering(now, eyes, places)
+        places = places_to_see(now, setup.scenario, None if guided is None else guided.position_mm)
+        return CoveringBodies(**self._cover.covering(now, eyes, places))
 
     def _send_update(self, update: ViewUpdate) -> None:
         views, screen = self._views.values(), self._presenter.screen
         if isinstance(update, Screen):
             self._send_screen(update, views)
         elif isinstance(update, Feedback):
-            text = outgoing.event(update)
+            text = message_text(update)
             for view in views:
                 # How often the focus clicks says which item was chosen.
                 if not screen.is_private or self._is_operators(view):
                     view.outbox.put_event(text)
         elif isinstance(update, Control):
             for view in views:
-                view.outbox.put_latest(outgoing.CONTROL, outgoing.control(update, view.number))
+                _put_control(view, update)
             if screen.is_private:
                 self._send_screen(screen, views)
 
     def _send_screen(self, screen: Screen, views: Iterable[ViewSocket]) -> None:
         """Send a screen; private parts only to the operator's views."""
-        whole = outgoing.screen(screen)
-        bare = outgoing.screen(without_secrets(screen)) if screen.is_private else whole
+        whole = screen_text(screen)
+        bare = screen_text(without_secrets(screen)) if screen.is_private else whole
         for view in views:
             is_whole = not screen.is_private or self._is_operators(view)
-            view.outbox.put_latest(outgoing.SCREEN, whole if is_whole else bare)
+            view.outbox.put_latest(ScreenNews.type, whole if is_whole else bare)
 
     def _is_operators(self, view: ViewSocket) -> bool:
         if view.is_spectator:
@@ -198,8 +219,8 @@ class JoinedViews:
         number = self._presenter.control.view
         holding = None if number is None else self._views.get(number)
         # A gamepad at the simulator, and each of its windows, belongs to all of these windows.
-        is_own = number is None or (holding is not None and holding.hello.kind == DESKTOP)
-        return view is holding or (is_own and view.hello.kind == DESKTOP)
+        is_own = number is None or (holding is not None and holding.hello.kind == "desktop")
+        return view is holding or (is_own and view.hello.kind == "desktop")
 
     def _look_for_scene(self, now: SimulationState) -> None:
         setup, training = self._source.setup, now.training
@@ -215,9 +236,10 @@ class JoinedViews:
     async def _load_scene(self, setup: SimulationSetup, task: str) -> None:
         try:
             file = await self._scenes.scene(setup, task)
-            self._scene = outgoing.scene(file.sha256, setup.scenario, task, setup.settings.axes)
+            news = scene_news(file.sha256, setup.scenario, task, setup.settings.axes)
+            self._scene = message_text(news)
             for view in self._views.values():
-                view.outbox.put_latest(outgoing.SCENE, self._scene)
+                view.outbox.put_latest(SceneNews.type, self._scene)
             # The views that have just got this scene need the processor first.
             await asyncio.sleep(_BEFORE_BUILDING_AHEAD_S)
             await self._scenes.build_all(setup)
@@ -235,3 +257,8 @@ class JoinedViews:
                 view.release_if_silent(self._limits.silent_s)
                 if view.has_fallen_silent(self._limits.lost_s):
                     self._presenter.on_silence(view.number)
+
+
+def _put_control(view: ViewSocket, control: Control) -> None:
+    news = ControlNews(control.holder, control.view == view.number)
+    view.outbox.put_latest(ControlNews.type, message_text(news))

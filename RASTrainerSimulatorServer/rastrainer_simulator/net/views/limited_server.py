@@ -10,22 +10,35 @@ import ssl
 from collections.abc import Sequence
 from pathlib import Path
 
-from aiohttp import web
+from aiohttp import hdrs, web
 from aiohttp.http_exceptions import HttpProcessingError
-from aiohttp.typedefs import Middleware
+from aiohttp.typedefs import Handler, Middleware
 
 from rastrainer.errors import InputError
+from rastrainer_simulator.assets import NOT_BUILT
 from rastrainer_simulator.loop.timing import AsyncRateLimiter
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.listener import Listener
 from rastrainer_simulator.net.views.access_control import (
-    Gate,
+    COOKIE,
+    PAIR_FIRST,
+    ROLE,
+    TOO_MANY,
+    WRONG,
     PairingCode,
     Sessions,
-    ViewRole,
     add_security_headers,
+    check_origin,
+    is_public,
+    read_body,
+    refuse_for,
+    session_key,
 )
+from rastrainer_simulator.presentation.messages import PairingRequest, ViewRole
 
+REQUESTS_PER_S = 200.0
+NEW_CONNECTIONS_PER_S = 50.0
+"""Of all peers together; further ones wait for their turn."""
 KEEP_ALIVE_S = 75.0
 SHUTDOWN_S = 1.0
 LARGEST_BODY = 1024
@@ -120,11 +133,10 @@ class _Refused(asyncio.Protocol):
 
 
 class LimitedServer:
-    """An HTTP server on any number of ports."""
+    """An HTTP server on any number of ports, within limits of what connections may cost."""
 
     def __init__(
         self,
-        connections: Connections,
         limits: ViewLimits,
         check: Middleware,
         routes: Sequence[web.AbstractRouteDef],
@@ -133,15 +145,15 @@ class LimitedServer:
         """Make a server; nothing listens yet.
 
         Args:
-            connections: that there are; `check` notes each request there.
             limits: what connections may cost.
-            check: sees every request first.
+            check: sees every request in its turn, before its handler.
             routes: what is answered.
             largest_body: of a request, in bytes.
         """
-        self._limits = limits
-        self._connections = connections
-        app = web.Application(middlewares=[check], client_max_size=largest_body)
+        self._handshake_s = limits.first_message_s
+        self.connections = Connections(limits.connections, limits.first_message_s)
+        self._requests = AsyncRateLimiter(REQUESTS_PER_S)
+        app = web.Application(middlewares=[self._admit, check], client_max_size=largest_body)
         app.on_response_prepare.append(add_security_headers)
         app.add_routes(routes)
         self._runner = web.AppRunner(
@@ -153,22 +165,23 @@ class LimitedServer:
         )
         self._listeners: list[Listener] = []
 
+    @web.middleware
+    async def _admit(self, request: web.Request, handler: Handler) -> web.StreamResponse:
+        self.connections.note(request)
+        await self._requests.passed()
+        return await handler(request)
+
     async def listen(self, host: str, port: int, tls: ssl.SSLContext | None = None) -> int:
         """Listen, by TLS where there is a certificate; return on which port, 0 is any free one."""
-        listener = Listener(
-            self._connections,
-            self._limits.new_connections_per_s,
-            tls,
-            self._limits.first_message_s,
-        )
+        listener = Listener(self.connections, NEW_CONNECTIONS_PER_S, tls, self._handshake_s)
         try:
             found = await listener.listen(host, port)
         except (OSError, OverflowError) as error:
             raise InputError(f"Cannot listen on {host}:{port}: {error}.") from None
         self._listeners.append(listener)
-        if self._connections.server is None:
+        if self.connections.server is None:
             await self._runner.setup()
-            self._connections.server = self._runner.server
+            self.connections.server = self._runner.server
         return found
 
     def stop_listening(self) -> None:
@@ -201,14 +214,42 @@ class GuardedServer(LimitedServer):
             routes: what else is answered.
             page: folder of the built page, whose files are public; None where there is none.
         """
-        connections = Connections(limits.connections, limits.first_message_s)
-        gate = Gate(
-            sessions,
-            code,
-            connections.note,
-            connections.note_key,
-            AsyncRateLimiter(limits.requests_per_s),
-        )
+        self._sessions = sessions
+        self._code = code
         static = [] if page is None else [web.static("/", page)]
-        paths = [web.post("/pair", gate.pair), *routes, *static]
-        super().__init__(connections, limits, gate.check, paths, LARGEST_BODY)
+        paths = [web.post("/pair", self._pair), *routes, *static]
+        super().__init__(limits, self._check, paths, LARGEST_BODY)
+
+    @web.middleware
+    async def _check(self, request: web.Request, handler: Handler) -> web.StreamResponse:
+        """Refuse what comes from elsewhere or without a session's key."""
+        check_origin(request)
+        role = self._sessions.role(session_key(request))
+        if role is not None:
+            request[ROLE] = role
+            self.connections.note_key(request, role)
+        elif not is_public(request):
+            raise web.HTTPUnauthorized(text=PAIR_FIRST)
+        return await handler(request)
+
+    async def _pair(self, request: web.Request) -> web.Response:
+        """Give a key, and a cookie with it, for the pairing code; a spectator's only watches."""
+        asked = await read_body(request, PairingRequest)
+        refuse_for(self._code.seconds_to_wait(), TOO_MANY)
+        if not self._code.accepts(asked.code):
+            # The one who caused a pause is sent the new code.
+            refuse_for(self._code.seconds_to_wait(), TOO_MANY)
+            raise web.HTTPForbidden(text=WRONG)
+        key = self._sessions.open(asked.role)
+        response = web.json_response({"key": key}, headers={hdrs.CACHE_CONTROL: "no-store"})
+        response.set_cookie(
+            COOKIE, key, path="/", httponly=True, samesite="Strict", secure=request.secure
+        )
+        return response
+
+
+def page_answer(page: Path | None, name: str) -> web.StreamResponse:
+    """Return a file of the built page, or a note that it has not been built."""
+    if page is None:
+        return web.Response(text=NOT_BUILT, content_type="text/html")
+    return web.FileResponse(page / name)

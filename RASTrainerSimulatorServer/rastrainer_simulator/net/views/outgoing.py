@@ -1,13 +1,10 @@
-"""The messages to views, as texts, and when they change; docs/views.md says what each means."""
+"""What views are sent of a state, a scene and a trace; docs/views.md says what each means."""
 
 from __future__ import annotations
 
-import dataclasses
-import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import takewhile
-from typing import Any
 
 import numpy as np
 
@@ -16,71 +13,64 @@ from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.loop.timing import Pacer
-from rastrainer_simulator.net.views.incoming import PROTOCOL, Worn
-from rastrainer_simulator.presentation.presenter import Control, Feedback, TraceGuidance
-from rastrainer_simulator.presentation.screen import Screen, screen_to_json
+from rastrainer_simulator.presentation.messages import (
+    CoveringBodies,
+    GuideAim,
+    HeadsetPose,
+    Pose,
+    ProcedureNews,
+    SceneNews,
+    ScreenNews,
+    StateNews,
+    TraceNews,
+    message_text,
+)
+from rastrainer_simulator.presentation.presenter import TraceGuidance
+from rastrainer_simulator.presentation.screen import Screen
 from rastrainer_simulator.scene.nodes import TOOL, link_node_name, no_go_name
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.teleoperation.steering import AxesChoice
 from rastrainer_simulator.training.head_pose import RegisteredPlan
 from rastrainer_simulator.trial_state import Tool, TracedPoint
-from rastrainer_simulator.vectors import Vector, vector
+from rastrainer_simulator.vectors import Vector, in_meters, vector
 from rastrainer_simulator.viewpoint.view_control import CameraPose, Pictures, aim, camera_pose
-
-WELCOME = "welcome"
-SCENE = "scene"
-STATE = "state"
-SCREEN = "screen"
-EVENT = "event"
-CONTROL = "control"
-PAIRING = "pairing"
-TRACE = "trace"
-SEAT = "seat"
 
 BODIES = (*map(link_node_name, range(8)), TOOL, "head", "stand", "plan")
 GHOST_LINKS = (7,)
 """The links of the arm that are shown of a ghost, by the number of joints before each."""
 GHOST_BODIES = (*(f"link_{joint}" for joint in GHOST_LINKS), "tool")
-# A micrometer, and less than that at the reach of the arm.
 DECIMALS = 6
+"""Of meters: a micrometer. Of a quaternion: less than that at the reach of the arm."""
 NEWS_HZ = 5.0
-NOBODY = "null"
 
 
-def welcome(view: int) -> str:
-    """Return the first message to a view."""
-    return _text(WELCOME, protocol=PROTOCOL, view=view, bodies=BODIES)
-
-
-def scene(sha256: str, scenario: Scenario, task: str, axes: AxesChoice) -> str:
+def scene_news(sha256: str, scenario: Scenario, task: str, axes: AxesChoice) -> SceneNews:
     """Return where the scene is, and what goes with it; `axes` are those of the sticks."""
-    cameras = {name: _camera(camera_pose(camera)) for name, camera in scenario.cameras.items()}
     fiducials = {}
     if task:
         chosen = scenario.task(task)
-        points = (chosen.fiducials / MM_PER_M).tolist()
+        points = map(in_meters, chosen.fiducials)
         fiducials = dict(zip(chosen.labels, points, strict=True))
-    return _text(
-        SCENE,
+    return SceneNews(
         url=f"/scene/{sha256}.glb",
         task=task,
-        sticks=axes.value,
-        cameras=cameras,
+        sticks=axes,
+        cameras={name: _rounded(camera_pose(camera)) for name, camera in scenario.cameras.items()},
         fiducials=fiducials,
-        noGo={
-            procedure.name: [no_go_name(each.file) for each in procedure.no_go]
+        no_go={
+            procedure.name: tuple(no_go_name(each.file) for each in procedure.no_go)
             for procedure in scenario.procedures
         },
     )
 
 
-def state(
+def state_news(
     now: SimulationState,
     delayed: int,
     pictures: Pictures,
-    translucent: Mapping[str, Sequence[str]],
+    translucent: CoveringBodies,
     ghost: Sequence[np.ndarray] | None = None,
-) -> str:
+) -> StateNews:
     """Return what moves.
 
     Args:
@@ -98,82 +88,31 @@ def state(
         now.stand_to_world,
         _plan_to_world(now),
     )
-    return _text(
-        STATE,
+    return StateNews(
         tick=now.tick,
-        time=round(now.sim_time, DECIMALS),
-        poses=[_pose(matrix) for matrix in matrices],
+        time_s=round(now.sim_time, DECIMALS),
+        poses=tuple(_pose(matrix) for matrix in matrices),
         ghost=None if ghost is None else dict(zip(GHOST_BODIES, map(_pose, ghost), strict=True)),
-        clearanceMm=round(now.clearance * MM_PER_M, 3),
-        proximity=now.proximity.value,
-        touch=now.touch.value,
+        clearance_mm=round(now.clearance * MM_PER_M, 3),
+        proximity=now.proximity,
+        touch=now.touch,
         camera=now.camera,
-        view=_camera(pictures.main),
-        inset=None if pictures.inset is None else _camera(pictures.inset),
+        view=_rounded(pictures.main),
+        inset=None if pictures.inset is None else _rounded(pictures.inset),
         translucent=translucent,
-        phase=training.phase.value,
+        phase=training.phase,
         next=training.next_point if training.is_marked else None,
-        touched=[touch.label for touch in training.touches] if training.is_marked else [],
-        elapsed=round(now.completion_time, DECIMALS),
-        plannedTarget=None if planned is None else planned.position,
+        touched=tuple(touch.label for touch in training.touches) if training.is_marked else (),
+        elapsed_s=round(now.completion_time, DECIMALS),
+        planned_target=None if planned is None else planned.position,
         delayed=delayed,
         procedure=_procedure(now, pictures),
     )
 
 
-def wearer(worn: Worn) -> str:
-    """Return where a headset and its controllers are, as the member `wearer` of a state."""
-    poses = {
-        name: None if pose is None else [round(value, DECIMALS) for value in pose]
-        for name, pose in dataclasses.asdict(worn).items()
-    }
-    return json.dumps(poses, allow_nan=False, separators=(",", ":"))
-
-
-def mirrored(state_text: str, wearer_text: str) -> str:
-    """Return the state as a spectator gets it, with the wearer of a headset; "null" for none."""
-    return f'{state_text[:-1]},"wearer":{wearer_text}}}'
-
-
-def screen(now: Screen) -> str:
-    """Return what the trainee reads."""
-    return with_units(_text(SCREEN, screen=screen_to_json(now)))
-
-
-def event(feedback: Feedback) -> str:
-    """Return a sound and a vibration."""
-    return _text(
-        EVENT,
-        number=feedback.number,
-        kind=feedback.kind,
-        sound=feedback.sound,
-        volume=feedback.volume,
-        rumble=feedback.rumble,
-        data=feedback.data,
-    )
-
-
-def trace(known: int, new: Sequence[Sequence[float]], guidance: TraceGuidance) -> str:
-    """Return what is new of a trace: `new` points (head, mm) after the first `known` ones."""
-    place = guidance.next_place
-    shown = None if place is None else {"positionMm": place.position, "normal": place.normal}
-    covered_mm = guidance.covered_mm
-    return _text(TRACE, known=known, points=new, coveredMm=covered_mm, next=shown)
-
-
-def seat(**members: Any) -> str:
-    """Return what a teacher's board shows of a seat."""
-    return with_units(_text(SEAT, **members))
-
-
-def control(now: Control, view: int) -> str:
-    """Return who drives the arm, as it is sent to one view."""
-    return _text(CONTROL, holder=now.holder, isYou=now.view == view)
-
-
-def pairing(code: str, addresses: Sequence[str]) -> str:
-    """Return how another view is paired; for this computer's own views only."""
-    return _text(PAIRING, code=code, addresses=addresses)
+def screen_text(screen: Screen) -> str:
+    """Return the message of what the trainee reads."""
+    return with_units(message_text(ScreenNews(screen)))
 
 
 def _plan_to_world(now: SimulationState) -> np.ndarray:
@@ -188,7 +127,7 @@ def _plan_to_world(now: SimulationState) -> np.ndarray:
     return pose
 
 
-def _procedure(now: SimulationState, pictures: Pictures) -> dict[str, Any] | None:
+def _procedure(now: SimulationState, pictures: Pictures) -> ProcedureNews | None:
     """Return what moves in a procedure's phases: by the registration in use, never the truth."""
     procedure, alignment, line = now.training.procedure, now.alignment, now.plan_in_world
     if procedure is None:
@@ -196,42 +135,32 @@ def _procedure(now: SimulationState, pictures: Pictures) -> dict[str, Any] | Non
     seen = None
     if alignment is not None and line is not None and now.tool is Tool.GUIDE:
         beside = aim(now.guide_axis, line, pictures)
-        seen = {
-            "entryMm": _millimeters(beside.entry),
-            "targetMm": _millimeters(beside.target),
-            "entryDistanceMm": round(MM_PER_M * alignment.entry_distance, 2),
-            "angleDeg": round(math.degrees(alignment.angle), 2),
-        }
-    return {
-        "name": procedure.name,
-        "tool": now.tool.value,
-        "feedMm": round(MM_PER_M * now.feed, 3),
-        "aim": seen,
-    }
+        seen = GuideAim(
+            _millimeters(*beside.entry),
+            _millimeters(*beside.target),
+            round(MM_PER_M * alignment.entry_distance, 2),
+            round(math.degrees(alignment.angle), 2),
+        )
+    return ProcedureNews(procedure.name, now.tool, round(MM_PER_M * now.feed, 3), seen)
 
 
-def _millimeters(values: Sequence[float]) -> list[float]:
-    return [round(MM_PER_M * value, 2) for value in values]
+def _millimeters(right: float, up: float) -> tuple[float, float]:
+    return round(MM_PER_M * right, 2), round(MM_PER_M * up, 2)
 
 
-def _camera(pose: CameraPose) -> dict[str, Any]:
-    return {
-        "position": [round(value, DECIMALS) for value in pose.position],
-        "focalPoint": [round(value, DECIMALS) for value in pose.focal_point],
-        "viewUp": [round(value, DECIMALS) for value in pose.view_up],
-        "viewAngleDeg": round(pose.angle_deg, DECIMALS),
-    }
+def _rounded(pose: CameraPose) -> CameraPose:
+    position, focal_point, view_up = (
+        vector(round(value, DECIMALS) for value in each)
+        for each in (pose.position, pose.focal_point, pose.view_up)
+    )
+    return CameraPose(position, focal_point, view_up, round(pose.view_angle_deg, DECIMALS))
 
 
-def _pose(matrix: np.ndarray) -> list[float]:
+def _pose(matrix: np.ndarray) -> Pose:
     rows = matrix.tolist()
-    place = (rows[0][3], rows[1][3], rows[2][3])
-    return [round(value, DECIMALS) for value in (*place, *quaternion(rows))]
-
-
-def _text(kind: str, /, **members: Any) -> str:
-    message: Mapping[str, Any] = {"type": kind, **members}
-    return json.dumps(message, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    values = (rows[0][3], rows[1][3], rows[2][3], *quaternion(rows))
+    x, y, z, qx, qy, qz, qw = (round(value, DECIMALS) for value in values)
+    return x, y, z, qx, qy, qz, qw
 
 
 def quaternion(rows: Sequence[Sequence[float]]) -> tuple[float, float, float, float]:
@@ -258,12 +187,14 @@ class TraceUpdate:
 
     def __init__(self) -> None:
         self._points: tuple[TracedPoint, ...] = ()
-        self._places: list[list[float]] = []
+        self._places: tuple[Vector, ...] = ()
         self._guidance = TraceGuidance()
         self._pacer = Pacer(NEWS_HZ)
 
-    def news(self, now: SimulationState, guidance: TraceGuidance, time_s: float) -> str | None:
-        """Return what is new, as a message; None where nothing is, or it is too early to send it.
+    def news(
+        self, now: SimulationState, guidance: TraceGuidance, time_s: float
+    ) -> TraceNews | None:
+        """Return what is new; None where nothing is, or it is too early to send it.
 
         Args:
             now: a state.
@@ -280,56 +211,57 @@ class TraceUpdate:
         known = sum(1 for _ in takewhile(_is_same, zip(self._points, points, strict=False)))
         new = _in_head([point.seen for point in points[known:]], now.head_to_world)
         self._points, self._guidance = points, wanted
-        self._places = [*self._places[:known], *new]
-        return trace(known, new, wanted)
+        self._places = (*self._places[:known], *new)
+        return TraceNews(known, new, wanted.covered_mm, wanted.next_place)
 
-    def everything(self) -> str | None:
+    def everything(self) -> TraceNews | None:
         """Return all that has been sent, for a view that has just joined; None for nothing."""
         if not self._places and self._guidance == TraceGuidance():
             return None
-        return trace(0, self._places, self._guidance)
+        guidance = self._guidance
+        return TraceNews(0, self._places, guidance.covered_mm, guidance.next_place)
 
 
 def _is_same(pair: tuple[TracedPoint, TracedPoint]) -> bool:
     return pair[0] is pair[1] or pair[0] == pair[1]
 
 
-def _in_head(places: Sequence[Sequence[float]], head_to_world: np.ndarray) -> list[list[float]]:
+def _in_head(places: Sequence[Sequence[float]], head_to_world: np.ndarray) -> tuple[Vector, ...]:
     """Return places (World, m) in the head's frame, mm."""
     if not places:
-        return []
+        return ()
     away = np.array(places) - head_to_world[:3, 3]
-    found: list[list[float]] = np.round(MM_PER_M * away @ head_to_world[:3, :3], 2).tolist()
-    return found
+    return tuple(map(vector, np.round(MM_PER_M * away @ head_to_world[:3, :3], 2).tolist()))
 
 
 class Mirror:
-    """Keeps what the newest headset has sent; one that reconnects is another view."""
+    """Keeps what the newest headset has sent; one that reconnects is another view.
+
+    Attributes:
+        pose: what it sent last; None while nobody wears one.
+    """
 
     def __init__(self) -> None:
         self._headsets: set[int] = set()
-        self.text = NOBODY
-        """JSON of what the newest headset sent last; "null" without one that is worn."""
-        self.eyes: Vector | None = None
-        """Where its wearer's eyes are, World, m; None without one."""
+        self.pose: HeadsetPose | None = None
+
+    @property
+    def eyes(self) -> Vector | None:
+        """Where the wearer's eyes are, World, m; None without one."""
+        return vector(self.pose.eyes[:3]) if self.pose and self.pose.eyes else None
 
     def joined(self, view: int) -> None:
         """Follow a headset from now on."""
         self._headsets.add(view)
-        self._show(None)
+        self.pose = None
 
     def left(self, view: int) -> None:
         """Forget a view; the previous one, if any, is followed again."""
         if view in self._headsets and view == max(self._headsets):
-            self._show(None)
+            self.pose = None
         self._headsets.discard(view)
 
-    def take(self, view: int, worn: Worn) -> None:
+    def take(self, view: int, pose: HeadsetPose) -> None:
         """Process what a headset sends; only the newest is followed."""
         if view == max(self._headsets, default=None):
-            self._show(worn)
-
-    def _show(self, worn: Worn | None) -> None:
-        eyes = None if worn is None else worn.eyes
-        self.eyes = None if eyes is None else vector(eyes[:3])
-        self.text = NOBODY if worn is None or eyes is None else wearer(worn)
+            self.pose = pose if pose.eyes is not None else None

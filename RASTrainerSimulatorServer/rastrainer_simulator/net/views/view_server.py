@@ -16,7 +16,7 @@ from aiohttp import WSCloseCode, WSMsgType, web
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_VIEW_PORT
-from rastrainer_simulator.assets import NOT_BUILT, asset_path, page_folder
+from rastrainer_simulator.assets import asset_path, page_folder
 from rastrainer_simulator.loop.results import StateFeed, StateSource
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.listener import is_loopback
@@ -27,23 +27,33 @@ from rastrainer_simulator.net.views.access_control import (
     SHORTEST_KEY,
     PairingCode,
     Sessions,
-    ViewRole,
 )
 from rastrainer_simulator.net.views.boards import InstructorOrders
-from rastrainer_simulator.net.views.incoming import HELLO, ONLY_WATCH, SUBPROTOCOL, check_message
 from rastrainer_simulator.net.views.joined_views import JoinedViews
-from rastrainer_simulator.net.views.limited_server import GuardedServer
+from rastrainer_simulator.net.views.limited_server import GuardedServer, page_answer
 from rastrainer_simulator.net.views.view_socket import ViewSocket
 from rastrainer_simulator.ops.instructor_pin import PinGuesses
 from rastrainer_simulator.ops.processes import VIEW_KEY_VARIABLE
-from rastrainer_simulator.presentation.presenter import Hello, Presenter
+from rastrainer_simulator.presentation.messages import (
+    SUBPROTOCOL,
+    WATCHING_KINDS,
+    Hello,
+    ViewRole,
+    read_view_input,
+)
+from rastrainer_simulator.presentation.presenter import Presenter
 from rastrainer_simulator.scene.scene_files import SceneFiles, cache_folder, gzipped_scene
 
 FOREVER = "private, max-age=31536000, immutable"
 FULL_SIZE = "X-File-Size"
+MAX_SESSIONS = 64
+"""Keys of each role that are remembered; then the oldest is forgotten."""
+MAX_MESSAGE_BYTES = 16 * 1024
+SEND_BUFFER_BYTES = 32 * 1024
+"""Passed to the operating system ahead of a view that reads slowly."""
 FULL = "The maximum number of views is connected."
 HELLO_FIRST = "The first message of a view must be a hello."
-ONLY_WATCHES = f"This key only watches: the kind of the view must be {' or '.join(ONLY_WATCH)}."
+ONLY_WATCHES = f"This key only watches: the kind of the view must be {' or '.join(WATCHING_KINDS)}."
 
 
 class ViewServer:
@@ -87,11 +97,7 @@ class ViewServer:
         self.addresses: list[str] = []
         self._on_new_code = on_new_code
         self.sessions = Sessions(
-            {
-                ViewRole.VIEW: self._limits.sessions,
-                ViewRole.SPECTATOR: self._limits.spectator_sessions,
-                ViewRole.BOARD: self._limits.spectator_sessions,
-            },
+            dict.fromkeys(ViewRole, MAX_SESSIONS),
             None if config is None else config / BOARDS_FILE,
         )
         self._instructor = InstructorOrders(pin, presenter)
@@ -145,9 +151,7 @@ class ViewServer:
         ]
 
     async def _send_page(self, _request: web.Request) -> web.StreamResponse:
-        if self._page is None:
-            return web.Response(text=NOT_BUILT, content_type="text/html")
-        return web.FileResponse(self._page / "index.html")
+        return page_answer(self._page, "index.html")
 
     async def _send_scene(self, request: web.Request) -> web.Response:
         file = self._scenes.find(request.match_info["sha256"])
@@ -180,7 +184,7 @@ class ViewServer:
     async def _stream(self, request: web.Request) -> web.StreamResponse:
         stream = web.WebSocketResponse(
             protocols=(SUBPROTOCOL,),
-            max_msg_size=self._limits.message_bytes,
+            max_msg_size=MAX_MESSAGE_BYTES,
             heartbeat=self._limits.gone_s / 2.0,
             compress=False,
             # Pings are answered by the view, where they count as any message does.
@@ -221,11 +225,10 @@ class ViewServer:
             raise InputError(HELLO_FIRST) from None
         if first.type is not WSMsgType.TEXT:
             raise InputError(HELLO_FIRST)
-        received = check_message(first.data)
-        if received.type != HELLO:
+        hello = read_view_input(first.data)
+        if not isinstance(hello, Hello):
             raise InputError(HELLO_FIRST)
-        hello = Hello(*received.values)
-        if role.is_watch_only and hello.kind not in ONLY_WATCH:
+        if role.is_watch_only and hello.kind not in WATCHING_KINDS:
             raise InputError(ONLY_WATCHES)
         return hello
 
@@ -242,7 +245,7 @@ class ViewServer:
             under_tls.set_write_buffer_limits(high=0)
         with contextlib.suppress(OSError):
             peer = transport.get_extra_info("socket")
-            peer.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, self._limits.buffer_bytes)
+            peer.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER_BYTES)
 
 
 async def _send_role(request: web.Request) -> web.Response:

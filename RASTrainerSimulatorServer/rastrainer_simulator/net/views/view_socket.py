@@ -4,42 +4,54 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import dataclasses
 import logging
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 from aiohttp import WSCloseCode, WSMsgType, web
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.loop.timing import RateLimit
 from rastrainer_simulator.net.limits import ViewLimits
-from rastrainer_simulator.net.views import incoming
-from rastrainer_simulator.net.views.incoming import Received, Worn, check_message
-from rastrainer_simulator.net.views.outgoing import (
-    CONTROL,
-    PAIRING,
-    SCENE,
-    SCREEN,
-    SEAT,
-    STATE,
-    WELCOME,
-    Mirror,
+from rastrainer_simulator.net.views.outgoing import Mirror
+from rastrainer_simulator.presentation.messages import (
+    WATCHING_KINDS,
+    Alive,
+    ControlNews,
+    Frames,
+    HeadsetInput,
+    Hello,
+    KeyInput,
+    PadInput,
+    PairingNews,
+    SceneNews,
+    ScreenNews,
+    SeatNews,
+    StateNews,
+    SticksInput,
+    ViewInput,
+    WelcomeNews,
+    read_view_input,
 )
-from rastrainer_simulator.presentation.presenter import Frames, Hello, Presenter
+from rastrainer_simulator.presentation.presenter import Presenter
 
 _log = logging.getLogger(__name__)
 
 TOO_MANY_MESSAGES = "The view has sent more messages than a trainee's inputs can produce."
 TOO_MANY_EVENTS = "The view has not read its events; it may come back."
 NOT_TEXT = "Messages must be text."
-ONLY_WATCHES = f"A spectator drives nothing: it may send {incoming.ALIVE} and nothing else."
+ONLY_WATCHES = f"A spectator drives nothing: it may send {Alive.type} and nothing else."
 MAX_KEYS = 32
 SHIFT_KEYS = frozenset(("ShiftLeft", "ShiftRight"))
 """Held with others: the slow motion, by default."""
+MAX_WAITING_EVENTS = 256
+"""For a view; one more drops it."""
 CLOSE_S = 3.0
 """How long a view has to read its pending messages, and to confirm the end."""
-_BEFORE_EVENTS = (WELCOME, SCENE, CONTROL, SCREEN, PAIRING, SEAT)
+_BEFORE_EVENTS = tuple(
+    each.type for each in (WelcomeNews, SceneNews, ControlNews, ScreenNews, PairingNews, SeatNews)
+)
 
 
 class ViewSocket:
@@ -66,7 +78,7 @@ class ViewSocket:
         self.number = number
         self.hello = hello
         self.is_local = is_local
-        self.outbox = Outbox(limits.waiting_events)
+        self.outbox = Outbox()
         self.held = HeldInput(number, presenter)
         self._socket = socket
         self._presenter = presenter
@@ -75,17 +87,16 @@ class ViewSocket:
         self._clock = asyncio.get_running_loop().time
         self._last_message = self._clock()
         self._has_reported_frames = False
-        self._take = self._takers()
 
     @property
     def is_spectator(self) -> bool:
         """Whether it only watches: the flow, which counts who sees a trial, never hears of it."""
-        return self.hello.kind in incoming.ONLY_WATCH
+        return self.hello.kind in WATCHING_KINDS
 
     @property
     def is_board(self) -> bool:
         """Whether it is sent news of the seat only, and of no pose."""
-        return self.hello.kind == incoming.BOARD
+        return self.hello.kind == "board"
 
     async def serve(self) -> None:
         """Send and receive until either side ends it."""
@@ -130,53 +141,29 @@ class ViewSocket:
                 await self._socket.pong(message.data)
             elif message.type is WSMsgType.TEXT:
                 self._last_message = now
-                self._handle(check_message(message.data))
+                self._handle(read_view_input(message.data))
             elif message.type is not WSMsgType.PONG:
                 raise InputError(NOT_TEXT)
 
-    def _handle(self, received: Received) -> None:
-        if received.type in self._take:
-            self._take[received.type](*received.values)
-        elif self.is_spectator:
-            raise InputError(ONLY_WATCHES)
-        else:
-            raise InputError(f"A {self.hello.kind} sends no {received.type} after its hello.")
-
-    def _takers(self) -> Mapping[str, Callable[..., None]]:
-        """Return what is done with each message after the first."""
-        presenter, view = self._presenter, self.number
-
-        def to_presenter(take: Callable[..., None]) -> Callable[..., None]:
-            return lambda *values: take(view, *values)
-
-        def nothing(*_values: Any) -> None:
-            """For a sign of life it is enough to have arrived."""
-
+    def _handle(self, message: ViewInput) -> None:
+        """Process a message after the first; a sign of life only has to arrive."""
+        values = [getattr(message, each.name) for each in dataclasses.fields(message)]
+        if isinstance(message, Alive):
+            return
         if self.is_spectator:
-            return {incoming.ALIVE: nothing}
-        worn = {incoming.WORN: self._take_worn} if self.hello.kind == incoming.HEADSET else {}
-        return {
-            **worn,
-            incoming.KEY: self.held.key,
-            incoming.PAD: self.held.pad,
-            incoming.STICKS: self.held.sticks,
-            incoming.LAYOUT: to_presenter(presenter.on_layout),
-            incoming.ORBIT: to_presenter(presenter.on_orbit),
-            incoming.PRESS: to_presenter(presenter.on_press),
-            incoming.ITEM: to_presenter(presenter.on_item),
-            incoming.TEXT: to_presenter(presenter.on_text),
-            incoming.FRAMES: lambda *values: self._take_frames(Frames(*values)),
-            incoming.PICTURE: to_presenter(presenter.on_picture),
-            incoming.VISIBILITY: to_presenter(presenter.on_visibility),
-            incoming.ALIVE: nothing,
-        }
-
-    def _take_frames(self, frames: Frames) -> None:
-        self._has_reported_frames = True
-        self._presenter.on_frames(self.number, frames)
-
-    def _take_worn(self, *values: Any) -> None:
-        self._mirror.take(self.number, Worn(*values))
+            raise InputError(ONLY_WATCHES)
+        if isinstance(message, (KeyInput, PadInput, SticksInput)):
+            getattr(self.held, message.type)(*values)
+        elif isinstance(message, HeadsetInput) and self.hello.kind == "headset":
+            self._mirror.take(self.number, message)
+        elif isinstance(message, (HeadsetInput, Hello)):
+            raise InputError(f"A {self.hello.kind} sends no {message.type} after its hello.")
+        elif isinstance(message, Frames):
+            self._has_reported_frames = True
+            self._presenter.on_frames(self.number, message)
+        else:
+            # Such as `on_press` and `on_item`.
+            getattr(self._presenter, f"on_{message.type}")(self.number, *values)
 
     async def _close(self, code: int, reason: str) -> None:
         # The protocol has room for 123 bytes.
@@ -251,8 +238,7 @@ class HeldInput:
 class Outbox:
     """The messages for a view; it belongs to the event loop's thread."""
 
-    def __init__(self, most_events: int) -> None:
-        self._most_events = most_events
+    def __init__(self) -> None:
         self._latest: dict[str, str] = {}
         self._events: deque[str] = deque()
         self._is_filled = asyncio.Event()
@@ -266,7 +252,7 @@ class Outbox:
 
     def put_event(self, text: str) -> None:
         """Have a text sent after the previous ones, none of them left out."""
-        if len(self._events) >= self._most_events:
+        if len(self._events) >= MAX_WAITING_EVENTS:
             self.is_overfull = True
         else:
             self._events.append(text)
@@ -286,4 +272,4 @@ class Outbox:
                 return self._latest.pop(kind)
         if self._events:
             return self._events.popleft()
-        return self._latest.pop(STATE)
+        return self._latest.pop(StateNews.type)

@@ -1,6 +1,6 @@
 /** Screens read aloud by the browser's own voices, one sentence after the other. */
 
-import type { Screen } from "../stream/messages";
+import type { Screen } from "../generated";
 
 export class Speech {
   /** What the screen says now, the most urgent first. */
@@ -12,7 +12,7 @@ export class Speech {
 
   /** Read what is new on a screen; what has gone before its turn is not read. */
   show(screen: Screen): void {
-    this.shown = screen.is_spoken ? sentences(screen) : [];
+    this.shown = screen.isSpoken ? sentences(screen) : [];
     this.said = new Set(this.shown.filter((text) => this.said.has(text)));
     this.language = screen.language;
     if (this.isReading && this.shown.length === 0) speechSynthesis.cancel();

@@ -1,10 +1,10 @@
 /** The section of the class: asks the board for its table again and again, and says what is wrong with it. */
 
 import { byId, element } from "../elements";
-import { ClassTable, type ClassUpdate } from "./class_table";
+import type { ClassNews, TileNews } from "../generated";
+import { ClassTable } from "./class_table";
 import { standingMark } from "./standing_mark";
 import { age, moment, say } from "./texts";
-import type { TileNews } from "./tiles";
 
 const ROUND_MS = 2000;
 const STATES = ["reached", "open", "locked"] as const;
@@ -32,7 +32,7 @@ export class ClassSection {
     for (;;) {
       try {
         const response = await fetch(`class?language=${language}`);
-        if (response.ok) this.show((await response.json()) as ClassUpdate);
+        if (response.ok) this.show((await response.json()) as ClassNews);
       } catch {
         // The board says that the connection is lost.
       }
@@ -52,7 +52,7 @@ export class ClassSection {
     for (const table of this.tables) table.showSeats(seats);
   }
 
-  private show(news: ClassUpdate): void {
+  private show(news: ClassNews): void {
     const { hasStudy, problem, asOf, curricula, without } = news;
     const isSame = curricula.length === this.tables.length && curricula.every((each, place) => this.tables[place]!.show(each));
     if (!isSame) {
@@ -78,7 +78,7 @@ function ageOf(read: Date, isOld: boolean): string {
 }
 
 /** Say why there is no table; "" where there is one. */
-function stateOf({ hasStudy, asOf, curricula, without }: ClassUpdate): string {
+function stateOf({ hasStudy, asOf, curricula, without }: ClassNews): string {
   if (!hasStudy) return say("classHow");
   if (asOf === "" || curricula.length > 0) return "";
   return say(without.length === 0 ? "classEmpty" : "classNoCurriculum");

@@ -1,38 +1,9 @@
 /** The class: a table for each curriculum, trainees by assignments, which is sorted by the buttons in its head. */
 
 import { element } from "../elements";
-import { standingMark, type StandingState } from "./standing_mark";
+import type { AssignmentCell, CurriculumTable, TraineeRow } from "../generated";
+import { standingMark } from "./standing_mark";
 import { date, say } from "./texts";
-
-/** What the board sends of a class; docs/views.md says what each member is. */
-export interface ClassUpdate {
-  hasStudy: boolean;
-  problem: string;
-  asOf: string;
-  curricula: readonly CurriculumUpdate[];
-  without: readonly string[];
-}
-
-export interface CurriculumUpdate {
-  title: string;
-  assignments: readonly { name: string; label: string; goal: string }[];
-  trainees: readonly TraineeUpdate[];
-}
-
-export interface TraineeUpdate {
-  trainee: string;
-  reached: number;
-  next: string;
-  cells: readonly CellUpdate[];
-}
-
-export interface CellUpdate {
-  state: StandingState;
-  progress: string;
-  done: number;
-  needed: number;
-  reachedUtc: string;
-}
 
 export type SortKey = "trainee" | "reached";
 const KEYS: readonly SortKey[] = ["trainee", "reached"];
@@ -47,7 +18,7 @@ export class ClassTable {
   private seats: ReadonlyMap<string, string> = new Map();
 
   constructor(
-    private news: CurriculumUpdate,
+    private news: CurriculumTable,
     number: number,
   ) {
     const caption = document.createElement("caption");
@@ -74,7 +45,7 @@ export class ClassTable {
   }
 
   /** Show news of the same assignments; return false for another curriculum, which needs another table. */
-  show(news: CurriculumUpdate): boolean {
+  show(news: CurriculumTable): boolean {
     const { title, assignments } = this.news;
     if (JSON.stringify([title, assignments]) !== JSON.stringify([news.title, news.assignments])) return false;
     if (JSON.stringify(this.news) !== JSON.stringify(news)) {
@@ -125,11 +96,11 @@ export class ClassTable {
 }
 
 /** How far a trainee is: assignments that are reached, and shares of the open ones. */
-function progressOf({ cells }: TraineeUpdate): number {
+function progressOf({ cells }: TraineeRow): number {
   return cells.reduce((sum, { state, done, needed }) => sum + (state === "locked" ? 0 : done / needed), 0);
 }
 
-function rowOf({ trainee, reached, next, cells }: TraineeUpdate): HTMLTableRowElement {
+function rowOf({ trainee, reached, next, cells }: TraineeRow): HTMLTableRowElement {
   const row = document.createElement("tr");
   const name = element("th", trainee);
   name.scope = "row";
@@ -138,7 +109,7 @@ function rowOf({ trainee, reached, next, cells }: TraineeUpdate): HTMLTableRowEl
   return row;
 }
 
-function cellOf({ state, progress, done, needed, reachedUtc }: CellUpdate): HTMLTableCellElement {
+function cellOf({ state, progress, done, needed, reachedUtc }: AssignmentCell): HTMLTableCellElement {
   const cell = document.createElement("td");
   cell.dataset.state = state;
   cell.append(standingMark(state, done / needed), element("span", progress));

@@ -1,14 +1,14 @@
 /** The teacher's board: live tiles of several simulators. */
 
 import { byId } from "../elements";
+import { BOARD_SUBPROTOCOL, type InstructorOrder, type TileNews, type TilesNews } from "../generated";
 import { exchangeCode, type CodeRefusal } from "../stream/pairing";
 import { streamUrl } from "../stream/served";
 import { ClassSection } from "./class_section";
 import { ask } from "./dialogs";
 import { say } from "./texts";
-import { isTraining, Tile, type Order, type TileNews } from "./tiles";
+import { isTraining, Tile } from "./tiles";
 
-const SUBPROTOCOL = "rastrainer.board.1";
 const RETRY_MS = 1000;
 const NOTICE_MS = 8000;
 
@@ -34,13 +34,13 @@ class Board {
   }
 
   private join(): void {
-    const socket = new WebSocket(streamUrl("tiles"), SUBPROTOCOL);
+    const socket = new WebSocket(streamUrl("tiles"), BOARD_SUBPROTOCOL);
     let wasOpen = false;
     socket.onopen = () => {
       wasOpen = true;
       this.notify("");
     };
-    socket.onmessage = (event) => this.show((JSON.parse(event.data) as { seats: TileNews[] }).seats);
+    socket.onmessage = (event) => this.show((JSON.parse(event.data) as TilesNews).seats);
     socket.onclose = () => void this.comeBack(wasOpen);
   }
 
@@ -108,7 +108,7 @@ class Board {
     });
   }
 
-  private async order({ id, name }: TileNews, order: Order): Promise<void> {
+  private async order({ id, name }: TileNews, order: InstructorOrder): Promise<void> {
     const path = `seat/${id}/order`;
     let text = "";
     if (order === "say") {

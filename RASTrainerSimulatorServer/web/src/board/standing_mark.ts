@@ -1,11 +1,11 @@
 /** Drawn signs of where a trainee stands with an assignment; the word beside each says the same. */
 
-export type StandingState = "locked" | "open" | "reached";
+import type { AssignmentState } from "../generated";
 
 const SVG = "http://www.w3.org/2000/svg";
 
 /** Return a ring that fills up, a disk with a tick, or a padlock; `share` is of an open one, 0 to 1. */
-export function standingMark(state: StandingState, share = 0): SVGSVGElement {
+export function standingMark(state: AssignmentState, share = 0): SVGSVGElement {
   const mark = part("svg", { viewBox: "0 0 16 16", "aria-hidden": "true" });
   mark.append(...PARTS[state](share));
   return mark as SVGSVGElement;
@@ -13,7 +13,7 @@ export function standingMark(state: StandingState, share = 0): SVGSVGElement {
 
 const line = { fill: "none", stroke: "currentColor", "stroke-width": "2" };
 
-const PARTS: Readonly<Record<StandingState, (share: number) => SVGElement[]>> = {
+const PARTS: Readonly<Record<AssignmentState, (share: number) => SVGElement[]>> = {
   reached: () => [
     part("circle", { cx: "8", cy: "8", r: "7.5", fill: "currentColor" }),
     part("path", { ...line, d: "M4.5 8.5 7 11l4.5-5.5", class: "tick" }),

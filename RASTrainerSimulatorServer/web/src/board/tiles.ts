@@ -1,55 +1,13 @@
 /** One tile a seat: who, task, point, clock, contact, last score, and what the teacher can do. */
 
 import { element } from "../elements";
-import { isTouchError, type TouchStage } from "../stream/messages";
+import type { InstructorOrder, Phase, SeatReport, TileNews } from "../generated";
+import { isTouchError } from "../stream/stages";
 import { withUnits } from "../texts/typesetting";
 import { figure, holderName, say, type BoardText } from "./texts";
 
-export type Order = "pause" | "say" | "replay";
-export type Phase =
-  | "idle"
-  | "running"
-  | "paused"
-  | "complete"
-  | "verifying"
-  | "aligning"
-  | "drilling"
-  | "inserting"
-  | "registered"
-  | "scored";
-export type Link = "connecting" | "watching" | "away" | "unpaired" | "other certificate";
-
-export interface SeatNews {
-  trainee: string;
-  task: string;
-  count: number;
-  screen: string;
-  instruction: string;
-  warnings: readonly string[];
-  score: number | null;
-  holder: string;
-  slicer: boolean;
-  /** Where the trainee stands in a curriculum; "" without one. */
-  assignments: string;
-  phase: Phase;
-  touched: number;
-  rejected: number;
-  /** Of the trial, s. */
-  elapsed: number;
-  touch: TouchStage;
-}
-
-export interface TileNews {
-  id: string;
-  name: string;
-  address: string;
-  link: Link;
-  /** Null while the simulator is not watched. */
-  seat: SeatNews | null;
-}
-
 export interface TileActions {
-  order(tile: TileNews, order: Order): void;
+  order(tile: TileNews, order: InstructorOrder): void;
   remove(tile: TileNews): void;
   repair(tile: TileNews): void;
 }
@@ -71,7 +29,7 @@ export class Tile {
   private readonly progress = document.createElement("progress");
   private readonly facts = document.createElement("dl");
   private readonly watch = element("a", say("watch"));
-  private readonly buttons: Record<Order | "repair", HTMLButtonElement>;
+  private readonly buttons: Record<InstructorOrder | "repair", HTMLButtonElement>;
   private news: TileNews;
 
   constructor(news: TileNews, actions: TileActions) {
@@ -81,7 +39,7 @@ export class Tile {
     this.watch.className = "second";
     this.watch.target = "_blank";
     this.progress.setAttribute("aria-label", say("points"));
-    const order = (name: Order) => button(name, () => actions.order(this.news, name));
+    const order = (name: InstructorOrder) => button(name, () => actions.order(this.news, name));
     this.buttons = {
       pause: order("pause"),
       say: order("say"),
@@ -103,7 +61,7 @@ export class Tile {
     this.element.dataset.tone = toneOf(news);
     this.element.dataset.link = news.link;
     const isOpen = seat !== null && seat.task !== "";
-    this.clock.textContent = isOpen ? clock(seat.elapsed) : "";
+    this.clock.textContent = isOpen ? clock(seat.elapsedS) : "";
     this.who.textContent = seat === null ? news.address : seat.trainee || say("nobody");
     this.state.textContent = stateOf(news);
     this.progress.hidden = !isOpen;
@@ -128,7 +86,7 @@ function stateOf({ link, seat }: TileNews): string {
 }
 
 /** What the trainee reads: warnings, and the instruction or which menu is open. */
-function saidAt({ warnings, screen, instruction }: SeatNews): string {
+function saidAt({ warnings, screen, instruction }: SeatReport): string {
   const last = screen === "" ? instruction : say("menu", { title: screen });
   return [...warnings, last].filter((text) => text !== "").join(" · ");
 }
@@ -141,7 +99,7 @@ function toneOf(news: TileNews): string {
   return isTraining(news) ? "good" : "";
 }
 
-function factsOf(seat: SeatNews): [string, string][] {
+function factsOf(seat: SeatReport): [string, string][] {
   const facts: [string, string][] = [];
   if (seat.task !== "") {
     facts.push([say("points"), `${seat.touched} / ${seat.count}`], [say("refused"), String(seat.rejected)]);

@@ -1,7 +1,7 @@
 /** The gamepads that the browser reads, in the W3C's standard layout. */
 
 import type { Connection } from "../stream/connection";
-import type { ControlNews, EventNews } from "../stream/messages";
+import type { ControlNews, Feedback } from "../generated";
 
 const AXES = 4;
 const BUTTONS = 17;
@@ -41,7 +41,7 @@ export class Gamepads {
     const isReadThere = this.control?.holder === "gamepad" && !this.control.isYou;
     if (isReadThere && !this.isHolding && !(pad.buttons[START]?.pressed ?? false)) return;
     if (!this.take(pad)) return;
-    this.connection.send("pad", { axes: this.axes, buttons: this.buttons });
+    this.connection.send({ type: "pad", axes: this.axes, buttons: this.buttons });
   }
 
   /** Release everything: nobody sees what the pad does. */
@@ -50,11 +50,11 @@ export class Gamepads {
   }
 
   /** Vibrate, if this pad is what drives the arm. */
-  feel(event: EventNews): void {
+  feel(event: Feedback): void {
     const drives = this.control?.isYou && this.control.holder === "browser's gamepad";
     if (!drives || event.rumble <= 0) return;
     const strength = { weakMagnitude: event.rumble, strongMagnitude: event.rumble };
-    const duration = event.data.rumbleMs ?? 100;
+    const duration = event.rumbleMs;
     void this.choose()?.vibrationActuator?.playEffect("dual-rumble", { duration, ...strength });
   }
 
@@ -100,7 +100,7 @@ export class Gamepads {
     this.axes.fill(0);
     this.buttons.fill(0);
     this.isHolding = false;
-    this.connection.send("pad", { axes: this.axes, buttons: this.buttons });
+    this.connection.send({ type: "pad", axes: this.axes, buttons: this.buttons });
   }
 }
 

@@ -1,5 +1,6 @@
 /** The keys, sent to the simulator as they are; it knows what each does. */
 
+import { MAX_KEY_TEXT } from "../generated";
 import { keyNames, learnKeyName, readKeyNames } from "../key_names";
 import type { Connection } from "../stream/connection";
 
@@ -8,7 +9,6 @@ const BROWSERS = new Set(["F3", "F5", "F6", "F11", "F12", "MetaLeft", "MetaRight
 /** What a field does with keys that type nothing. */
 const EDITS = new Set(["Backspace", "Delete", "ArrowLeft", "ArrowRight", "Home", "End"]);
 const PRESSES = new Set(["Enter", "NumpadEnter", "Space"]);
-const LONGEST_TEXT = 16;
 
 export class Keyboard {
   private readonly held = new Set<string>();
@@ -32,7 +32,7 @@ export class Keyboard {
   /** Tell what is written on the keys, as far as it is known. */
   async tellNames(): Promise<void> {
     await readKeyNames();
-    this.connection.send("layout", { keys: keyNames() });
+    this.connection.send({ type: "layout", keys: keyNames() });
   }
 
   private press(event: KeyboardEvent): void {
@@ -40,15 +40,15 @@ export class Keyboard {
     const isForBrowser = event.ctrlKey || event.metaKey || event.altKey;
     if (isForBrowser || event.code === "" || BROWSERS.has(event.code) || isOfElement(event)) return;
     event.preventDefault();
-    if (learnKeyName(event)) this.connection.send("layout", { keys: keyNames() });
+    if (learnKeyName(event)) this.connection.send({ type: "layout", keys: keyNames() });
     this.held.add(event.code);
-    const text = event.key.length <= 2 ? event.key.slice(0, LONGEST_TEXT) : "";
-    this.connection.send("key", { code: event.code, isDown: true, text });
+    const text = event.key.length <= 2 ? event.key.slice(0, MAX_KEY_TEXT) : "";
+    this.connection.send({ type: "key", code: event.code, isDown: true, text });
   }
 
   private release(code: string): void {
     if (!this.held.delete(code)) return;
-    this.connection.send("key", { code, isDown: false, text: "" });
+    this.connection.send({ type: "key", code, isDown: false, text: "" });
   }
 
   private releaseAll(): void {

@@ -2,7 +2,7 @@
 
 import type { Connection } from "../stream/connection";
 import { byId, element } from "../elements";
-import type { ControlNews, Screen, StateNews } from "../stream/messages";
+import type { ControlNews, Screen, StateNews } from "../generated";
 import { say } from "../texts";
 import { TouchStick } from "./touch_stick";
 
@@ -46,7 +46,7 @@ export class TouchControls {
   show(screen: Screen): void {
     // What can be left, such as a replay, is watched: its buttons are among the hints.
     this.isWorking = screen.menu === null && !screen.hints.some((hint) => hint.item === "back");
-    this.isForMouse = screen.has_sticks;
+    this.isForMouse = screen.hasSticks;
     if (!this.isWorking) this.release();
     for (const [control, button] of this.buttons) button.textContent = say(`touch.${control}`);
     this.fine.textContent = say("touch.fine");
@@ -112,19 +112,19 @@ export class TouchControls {
     button.type = "button";
     button.dataset.control = control;
     // At once, not when the finger leaves: the tip is where it is now.
-    button.onpointerdown = () => this.connection.send("press", { control });
+    button.onpointerdown = () => this.connection.send({ type: "press", control });
     button.onclick = (event) => {
       const isByKey = event.detail === 0;
-      if (isByKey) this.connection.send("press", { control });
+      if (isByKey) this.connection.send({ type: "press", control });
     };
     return button;
   }
 
   private tell(): void {
     const [up, tilt] = isOn(this.tilt) ? [0, this.right.y] : [this.right.y, 0];
-    const translation = [this.left.x, this.left.y, up];
+    const translation = [this.left.x, this.left.y, up] as const;
     const fine = isOn(this.fine) && this.isHolding;
-    this.connection.send("sticks", { translation, rotation: [this.right.x, tilt], fine, yawDeg: 0 });
+    this.connection.send({ type: "sticks", translation, rotation: [this.right.x, tilt], fine, yawDeg: 0 });
   }
 }
 

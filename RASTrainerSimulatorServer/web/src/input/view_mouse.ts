@@ -49,7 +49,8 @@ export class ViewMouse {
     if (around === 0 && higher === 0 && zoom === 1) return;
     this.around = this.higher = 0;
     this.zoom = 1;
-    this.connection.send("orbit", {
+    this.connection.send({
+      type: "orbit",
       aroundDeg: Math.min(180, Math.max(-180, around)),
       higherDeg: Math.min(180, Math.max(-180, higher)),
       zoom: Math.min(ZOOM_LIMIT, Math.max(1 / ZOOM_LIMIT, zoom)),

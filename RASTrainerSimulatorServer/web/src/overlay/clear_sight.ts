@@ -4,7 +4,7 @@ import { type PerspectiveCamera, Vector3 } from "three";
 
 import { byId } from "../elements";
 import type { SceneModel } from "../scene/scene_model";
-import type { StateNews } from "../stream/messages";
+import type { StateNews } from "../generated";
 import { yUp } from "../scene/viewpoint";
 
 const PANELS = ["status", "instruction", "warnings", "inset", "guiding", "hints", "control"];

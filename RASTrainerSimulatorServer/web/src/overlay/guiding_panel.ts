@@ -1,7 +1,7 @@
 /** The bull's-eye or the depth ruler at the edge of a flat picture. */
 
 import { byId } from "../elements";
-import type { Aim, DepthRuler } from "../stream/messages";
+import type { GuideAim, DepthRuler } from "../generated";
 import { GUIDING_HEIGHT, GUIDING_WIDTH, guidingContent, paintGuiding } from "../panels/guiding_painter";
 import { Pen } from "../panels/pen";
 
@@ -17,7 +17,7 @@ export class GuidingPanel {
   }
 
   /** Show how the line lies to the guide, or a depth (mm); neither hides the panel. */
-  show(aim: Aim | null, ruler: DepthRuler | null, depth: number): void {
+  show(aim: GuideAim | null, ruler: DepthRuler | null, depth: number): void {
     const content = guidingContent(aim, ruler, depth);
     if (content === this.shown) return;
     this.shown = content;

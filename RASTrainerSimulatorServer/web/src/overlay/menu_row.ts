@@ -2,11 +2,10 @@
 
 import type { Connection } from "../stream/connection";
 import { element } from "../elements";
-import type { Item } from "../stream/messages";
+import { MAX_ITEM_TEXT, type MenuItem } from "../generated";
 
 /** What was typed and has not come back from the simulator for so long was not taken. */
 const ANSWER_MS = 1000;
-const LONGEST = 200;
 
 export class MenuRow {
   readonly line = element("li", "");
@@ -14,13 +13,13 @@ export class MenuRow {
   private readonly value: HTMLElement;
   /** What can have the focus; a meter cannot. */
   private readonly control: HTMLButtonElement | HTMLInputElement | null;
-  private item: Item;
+  private item: MenuItem;
   private typed = -Infinity;
   /** Whether the focus comes from the simulator, which then need not hear of it. */
   private isFollowing = false;
 
   constructor(
-    item: Item,
+    item: MenuItem,
     private readonly connection: Connection,
   ) {
     this.item = item;
@@ -43,16 +42,16 @@ export class MenuRow {
     this.control?.setAttribute("aria-describedby", "menu-help");
   }
 
-  show(item: Item, hasFocus: boolean): void {
+  show(item: MenuItem, hasFocus: boolean): void {
     this.item = item;
     this.label.textContent = item.label;
     this.line.toggleAttribute("data-focus", hasFocus);
     if (this.control !== null) {
-      this.control.setAttribute("aria-disabled", String(!item.is_enabled));
+      this.control.setAttribute("aria-disabled", String(!item.isEnabled));
       this.control.tabIndex = hasFocus ? 0 : -1;
     }
     if (this.value instanceof HTMLInputElement) {
-      this.value.readOnly = !item.is_enabled;
+      this.value.readOnly = !item.isEnabled;
       this.showText(this.value);
     } else if (this.value instanceof HTMLMeterElement) showAxis(this.value, item);
     else this.value.textContent = item.value;
@@ -75,14 +74,14 @@ export class MenuRow {
     // A space apart, or names would be read as one word with their values.
     button.append(this.label, " ", this.value);
     button.onclick = () => {
-      if (this.item.is_enabled) this.connection.send("item", { name: this.item.name });
+      if (this.item.isEnabled) this.connection.send({ type: "item", name: this.item.name });
     };
     return button;
   }
 
   private field(): HTMLInputElement {
     const field = element("input", "");
-    field.maxLength = LONGEST;
+    field.maxLength = MAX_ITEM_TEXT;
     field.autocomplete = "off";
     field.spellcheck = false;
     field.oninput = () => this.tell(field);
@@ -96,7 +95,7 @@ export class MenuRow {
 
   private tell(field: HTMLInputElement): void {
     this.typed = performance.now();
-    this.connection.send("text", { name: this.item.name, value: field.value });
+    this.connection.send({ type: "text", name: this.item.name, value: field.value });
     window.setTimeout(() => this.showText(field), ANSWER_MS);
   }
 
@@ -113,7 +112,7 @@ function meter(): HTMLMeterElement {
   return made;
 }
 
-function showAxis(made: HTMLMeterElement, item: Item): void {
+function showAxis(made: HTMLMeterElement, item: MenuItem): void {
   const position = Number(item.value);
   made.value = Number.isFinite(position) ? position : 0;
   made.setAttribute("aria-label", item.label);

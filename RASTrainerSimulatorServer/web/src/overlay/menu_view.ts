@@ -3,7 +3,7 @@
 import type { Connection } from "../stream/connection";
 import { byId, element } from "../elements";
 import { MenuRow } from "./menu_row";
-import type { Fact, Item, Menu } from "../stream/messages";
+import type { Fact, MenuItem, Menu } from "../generated";
 import { say } from "../texts";
 
 export class MenuView {
@@ -60,7 +60,7 @@ export class MenuView {
     this.follow(menu.focus, isOther, before);
   }
 
-  private fillText(menu: Menu, drawn: string, focused: Item | undefined): void {
+  private fillText(menu: Menu, drawn: string, focused: MenuItem | undefined): void {
     const pictures = [drawn, focused?.picture ?? ""];
     const content = JSON.stringify([menu.paragraphs, menu.facts, pictures]);
     if (content === this.shownText) return;

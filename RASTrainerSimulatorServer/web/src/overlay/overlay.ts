@@ -4,7 +4,7 @@ import { ACROSS, BESIDE } from "../scene/flat_view";
 import type { Connection } from "../stream/connection";
 import { byId, element } from "../elements";
 import { MenuView } from "./menu_view";
-import type { ControlNews, Menu, Message, PairingNews, Screen } from "../stream/messages";
+import type { ControlNews, Menu, ScreenMessage, PairingNews, Screen } from "../generated";
 import { controlsPicture, inputsOf } from "../panels/controls_picture";
 import { trendPlot } from "../panels/trend_plot";
 import { say, sayHolder, type TextName } from "../texts";
@@ -17,7 +17,7 @@ export class Overlay {
   /** What the page says itself in place of the simulator's warnings; "" for nothing. */
   private notice: TextName | "" = "";
   private control: ControlNews | null = null;
-  private warnings: readonly Message[] = [];
+  private warnings: readonly ScreenMessage[] = [];
   private menu: Menu | null = null;
   private facts: readonly string[] = [];
   private coverage = "";
@@ -49,7 +49,7 @@ export class Overlay {
         if (hint.action !== hint.control) place.append(element("span", hint.action));
         if (hint.item !== "") {
           place.dataset.item = hint.item;
-          const choose = () => connection.send("item", { name: hint.item });
+          const choose = () => connection.send({ type: "item", name: hint.item });
           // At once, not when the button is let go: the tip is where it is now.
           place.onpointerdown = (event) => {
             if (event.button === 0) choose();
@@ -111,7 +111,7 @@ export class Overlay {
   }
 
   private showWarnings(): void {
-    const own: Message[] = this.notice === "" ? [] : [{ text: say(this.notice), tone: "error" }];
+    const own: ScreenMessage[] = this.notice === "" ? [] : [{ text: say(this.notice), tone: "error" }];
     const all = [...own, ...this.warnings].slice(0, 3);
     this.part("warnings", all, (parent) => {
       for (const warning of all) {

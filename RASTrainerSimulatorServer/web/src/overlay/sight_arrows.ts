@@ -4,12 +4,11 @@ import { type PerspectiveCamera, Vector3 } from "three";
 
 import { byId } from "../elements";
 import type { SceneModel } from "../scene/scene_model";
-import type { StateNews } from "../stream/messages";
+import { IN_SIGHT_SHARE, type StateNews } from "../generated";
 import { yUp } from "../scene/viewpoint";
 import { say } from "../texts";
 
 /** How much of the picture, from its middle, counts as in sight. */
-const IN_SIGHT = 0.9;
 const REACH = 0.86;
 /** Half the height of an arrow with its text, pixels. */
 const ROOM = 40;
@@ -45,7 +44,7 @@ class EdgeArrow {
     }
     yUp(this.point.copy(found)).project(camera);
     const isBehind = this.point.z > 1;
-    const isSeen = Math.max(Math.abs(this.point.x), Math.abs(this.point.y)) <= IN_SIGHT;
+    const isSeen = Math.max(Math.abs(this.point.x), Math.abs(this.point.y)) <= IN_SIGHT_SHARE;
     place.hidden = isSeen && !isBehind;
     if (place.hidden) return;
     const sign = isBehind ? -1 : 1;

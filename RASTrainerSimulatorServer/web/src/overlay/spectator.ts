@@ -1,11 +1,11 @@
 /** The page of somebody who only watches: the simulator takes nothing from it, and the page says so. */
 
 import { byId } from "../elements";
-import type { Hello, Screen } from "../stream/messages";
+import type { Hello, Screen } from "../generated";
 import { isOnBoard } from "../stream/served";
 import { say } from "../texts";
 
-export const SPECTATOR: Hello = { kind: "spectator", device: "", refreshHz: 0 };
+export const SPECTATOR: Hello = { type: "hello", kind: "spectator", device: "", refreshHz: 0 };
 /** In the address, asks for the pairing form though this browser is paired. */
 const AGAIN = "#pair";
 
@@ -14,10 +14,10 @@ export function onlyRead(screen: Screen): Screen {
   const { menu } = screen;
   return {
     ...screen,
-    menu: menu && { ...menu, items: menu.items.map((item) => ({ ...item, is_enabled: false })) },
+    menu: menu && { ...menu, items: menu.items.map((item) => ({ ...item, isEnabled: false })) },
     hints: screen.hints.map((hint) => ({ ...hint, item: "" })),
-    is_spoken: false,
-    has_sticks: false,
+    isSpoken: false,
+    hasSticks: false,
   };
 }
 

@@ -9,8 +9,18 @@ import { FrameCount } from "../stream/frame_count";
 import { Ghost } from "../scene/ghost";
 import { Gamepads } from "../input/gamepads";
 import { Keyboard } from "../input/keyboard";
-import { hasGuide, isTouchError, type ControlNews, type EventNews, type Hello, type News, type SceneNews, type Screen, type StateNews } from "../stream/messages";
+import {
+  TONES,
+  type ControlNews,
+  type Feedback,
+  type Hello,
+  type News,
+  type SceneNews,
+  type Screen,
+  type StateNews,
+} from "../generated";
 import { isSoftware } from "../scene/graphics";
+import { hasGuide, isTouchError } from "../stream/stages";
 import { Loading } from "../overlay/loading";
 import { Overlay } from "../overlay/overlay";
 import { pair } from "../stream/pairing";
@@ -28,7 +38,7 @@ import { TouchControls } from "../input/touch_controls";
 import { TouchRing } from "../scene/touch_ring";
 import { TraceMarks } from "../scene/trace_marks";
 import { ViewMouse } from "../input/view_mouse";
-import { WornView } from "../scene/worn_view";
+import { HeadsetView } from "../scene/headset_view";
 import { GuidingPanel } from "../overlay/guiding_panel";
 import { Headset } from "../xr/headset";
 
@@ -56,7 +66,7 @@ export class Page {
   private readonly arrows = new SightArrows();
   private readonly sight = new ClearSight();
   private readonly ring = this.stage && new TouchRing(this.stage.scene);
-  private readonly worn = this.stage && new WornView(this.stage.world);
+  private readonly headsetView = this.stage && new HeadsetView(this.stage.world);
   private readonly errors = new ErrorArrows();
   private readonly trace = new TraceMarks();
   private readonly ghost = new Ghost();
@@ -83,7 +93,7 @@ export class Page {
         this.pads.release();
         this.touch.release();
       }
-      this.connection.send("visibility", { isVisible: isSeen });
+      this.connection.send({ type: "visibility", isVisible: isSeen });
     });
     this.label();
     const { stage } = this;
@@ -211,15 +221,15 @@ export class Page {
 
   private takeState(state: StateNews): void {
     const now = performance.now() / 1000;
-    this.poses.put(state.time, state.poses, now);
-    this.ghost.put(state.time, state.ghost, now);
-    this.worn?.put(state.wearer ?? null, now);
+    this.poses.put(state.timeS, state.poses, now);
+    this.ghost.put(state.timeS, state.ghost, now);
+    this.headsetView?.put(state.headset, now);
     this.state = state;
     this.touch.takeState(state);
     this.isDue = true;
   }
 
-  private happen(event: EventNews): void {
+  private happen(event: Feedback): void {
     if (event.number <= this.lastEvent) return;
     this.lastEvent = event.number;
     this.sounds.play(event.sound, event.volume);
@@ -288,7 +298,7 @@ export class Page {
   /** Show the tool of a procedure, and where it stands. */
   private showProcedure(model: SceneModel, { procedure }: StateNews): void {
     model.showInstrument(procedure);
-    model.clearHead(this.screen?.is_head_clear ?? false);
+    model.clearHead(this.screen?.isHeadClear ?? false);
     const isWorking = this.screen?.menu == null;
     const aim = isWorking ? (procedure?.aim ?? null) : null;
     const ruler = isWorking ? (this.screen?.ruler ?? null) : null;
@@ -299,7 +309,7 @@ export class Page {
 
   private drawFlat(flat: FlatView, now: number, model: SceneModel, state: StateNews): void {
     if (this.screen?.menu == null) this.mouse.tell();
-    flat.choose(state, now, this.worn?.place(now) ?? null);
+    flat.choose(state, now, this.headsetView?.place(now) ?? null);
     const pause = now - this.lastPicture;
     if (isSoftware && pause >= 0 && pause < LEAST_PAUSE_S) return;
     const hasMoved = flat.advance(now) || this.isDue;
@@ -311,12 +321,12 @@ export class Page {
     this.showProcedure(model, state);
     const isWorking = this.screen?.menu == null;
     // After the score the title of a clear head, whose lines it explains, needs the place.
-    const hasRoom = !this.screen?.is_head_clear || hasGuide(state);
+    const hasRoom = !this.screen?.isHeadClear || hasGuide(state);
     const inset = isWorking && hasRoom ? flat.insetName : "";
     this.overlay.showInset(inset);
     this.overlay.showError(isWorking && isTouchError(state.touch));
     this.ring?.show(model, state, flat.camera, isWorking);
-    this.arrows.show(model, flat.camera, state, isWorking, this.screen?.has_arrow ?? false);
+    this.arrows.show(model, flat.camera, state, isWorking, this.screen?.hasArrow ?? false);
     this.sight.show(model, flat.camera, state, isWorking);
     this.isDue = flat.draw(inset !== "", now);
     this.frames.drawn();
@@ -326,12 +336,13 @@ export class Page {
 
 /** Whether this is the window of the simulator's own computer, which reads the gamepads itself. */
 const isDesktop = new URLSearchParams(location.search).has("desktop");
-const PAGE: Hello = { kind: isDesktop ? "desktop" : "page", device: browserName(), refreshHz: 0 };
+const PAGE: Hello = { type: "hello", kind: isDesktop ? "desktop" : "page", device: browserName(), refreshHz: 0 };
 
 function browserName(): string {
   return /(Firefox|Edg|OPR|Chrome|Safari)\/\d+/.exec(navigator.userAgent)?.[0] ?? "";
 }
 
+for (const [tone, color] of Object.entries(TONES)) document.documentElement.style.setProperty(`--${tone}`, color);
 const page = new Page();
 /** For measurements from outside; the page itself makes no use of it. */
 (window as unknown as { page: Page }).page = page;

@@ -1,7 +1,7 @@
 /** A drawing of what the trainee has in their hands; the inputs that do something are colored. */
 
 import { nameOf } from "../key_names";
-import type { Menu } from "../stream/messages";
+import type { Menu } from "../generated";
 import { say, type TextName } from "../texts";
 import { COLORS } from "./pen";
 

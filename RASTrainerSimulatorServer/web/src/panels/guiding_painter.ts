@@ -1,7 +1,21 @@
 /** Paint the bull's-eye along the guide's axis, or the depth ruler of what is fed through it. */
 
-import type { Aim, DepthRuler } from "../stream/messages";
-import { COLORS, TONES, type Pen } from "./pen";
+import {
+  BULLS_EYE_FARTHEST_MM,
+  BULLS_EYE_NEAR_MM,
+  BULLS_EYE_RADIUS,
+  BULLS_EYE_RINGS_MM,
+  ENTRY_DOT,
+  ON_LINE_DEG,
+  ON_LINE_MM,
+  RULER_BEYOND_MM,
+  RULER_TICK_MM,
+  TARGET_RING,
+  TONES,
+  type GuideAim,
+  type DepthRuler,
+} from "../generated";
+import { COLORS, type Pen } from "./pen";
 
 export const GUIDING_WIDTH = 360;
 export const GUIDING_HEIGHT = 440;
@@ -13,45 +27,34 @@ const FIGURE = { size: 40, color: COLORS.text, isBold: true };
 const PAIR = { ...FIGURE, size: 34 };
 const SMALL = { size: 26, color: COLORS.soft };
 
-const RADIUS = 156;
-const RINGS_MM = [1, 5, 20];
-/** What the outer edge stands for, and where the scale turns from even to logarithmic, mm. */
-const FARTHEST_MM = 60;
-const NEAR_MM = 0.6;
-/** So near, a hand is on the line. */
-const GOOD_MM = 0.5;
-const GOOD_DEG = 0.5;
-
 const TRACK = { left: 74, width: 36, top: 84, bottom: 416 };
-const TICK_MM = 10;
-const BEYOND_MM = 10;
 
 /** Return a text that changes with all that is painted. */
-export function guidingContent(aim: Aim | null, ruler: DepthRuler | null, depth: number): string {
+export function guidingContent(aim: GuideAim | null, ruler: DepthRuler | null, depth: number): string {
   if (ruler !== null) return JSON.stringify([ruler, depth.toFixed(1)]);
   if (aim === null) return "";
   const places = [...aim.entryMm, ...aim.targetMm, aim.entryDistanceMm, aim.angleDeg];
   return places.map((value) => value.toFixed(1)).join(" ");
 }
 
-export function paintGuiding(pen: Pen, aim: Aim | null, ruler: DepthRuler | null, depth: number): void {
+export function paintGuiding(pen: Pen, aim: GuideAim | null, ruler: DepthRuler | null, depth: number): void {
   pen.box(0, 0, GUIDING_WIDTH, GUIDING_HEIGHT, "rgba(14, 23, 38, 0.84)");
   if (ruler !== null) paintRuler(pen, ruler, depth);
   else if (aim !== null) paintAim(pen, aim);
 }
 
-function paintAim(pen: Pen, aim: Aim): void {
+function paintAim(pen: Pen, aim: GuideAim): void {
   const middle = GUIDING_WIDTH / 2;
-  for (const ring of [...RINGS_MM, FARTHEST_MM]) pen.circle(middle, middle, RADIUS * shownRadius(ring), COLORS.pale, 3);
-  pen.stroke(middle - RADIUS, middle, middle + RADIUS, middle, COLORS.pale, 2);
-  pen.stroke(middle, middle - RADIUS, middle, middle + RADIUS, COLORS.pale, 2);
-  const isGood = aim.entryDistanceMm <= GOOD_MM && aim.angleDeg <= GOOD_DEG;
+  for (const ring of [...BULLS_EYE_RINGS_MM, BULLS_EYE_FARTHEST_MM]) pen.circle(middle, middle, BULLS_EYE_RADIUS * shownRadius(ring), COLORS.pale, 3);
+  pen.stroke(middle - BULLS_EYE_RADIUS, middle, middle + BULLS_EYE_RADIUS, middle, COLORS.pale, 2);
+  pen.stroke(middle, middle - BULLS_EYE_RADIUS, middle, middle + BULLS_EYE_RADIUS, COLORS.pale, 2);
+  const isGood = aim.entryDistanceMm <= ON_LINE_MM && aim.angleDeg <= ON_LINE_DEG;
   const color = isGood ? GOOD : OFF;
   const [entryX, entryY] = shown(aim.entryMm, middle);
   const [targetX, targetY] = shown(aim.targetMm, middle);
   pen.stroke(entryX, entryY, targetX, targetY, color, 4);
-  pen.circle(targetX, targetY, 15, color, 5);
-  pen.circle(entryX, entryY, 9, color);
+  pen.circle(targetX, targetY, TARGET_RING, color, 5);
+  pen.circle(entryX, entryY, ENTRY_DOT, color);
   const y = GUIDING_WIDTH + 36;
   pen.line(`${figure(aim.entryDistanceMm)} mm`, PAD, y, PAIR);
   pen.lineTo(`${figure(aim.angleDeg)}°`, GUIDING_WIDTH - PAD, y, PAIR);
@@ -65,36 +68,36 @@ function figure(value: number): string {
 
 /** Return where a distance is drawn, as a share of the radius: near ones are spread. */
 function shownRadius(distance: number): number {
-  return Math.min(1, Math.log1p(distance / NEAR_MM) / Math.log1p(FARTHEST_MM / NEAR_MM));
+  return Math.min(1, Math.log1p(distance / BULLS_EYE_NEAR_MM) / Math.log1p(BULLS_EYE_FARTHEST_MM / BULLS_EYE_NEAR_MM));
 }
 
 function shown([right, up]: readonly [number, number], middle: number): [number, number] {
   const distance = Math.hypot(right, up);
   if (distance === 0) return [middle, middle];
-  const far = (RADIUS * shownRadius(distance)) / distance;
+  const far = (BULLS_EYE_RADIUS * shownRadius(distance)) / distance;
   return [middle + far * right, middle - far * up];
 }
 
 function paintRuler(pen: Pen, ruler: DepthRuler, depth: number): void {
   const { left, width, top, bottom } = TRACK;
-  const longest = Math.max(ruler.target, depth, 1) + BEYOND_MM;
+  const longest = Math.max(ruler.targetMm, depth, 1) + RULER_BEYOND_MM;
   const y = (mm: number) => top + ((bottom - top) * Math.max(mm, 0)) / longest;
   pen.line(`${figure(depth)} mm`, PAD, 44, FIGURE);
   pen.box(left, top, width, bottom - top, COLORS.field, 4);
-  if (ruler.outer !== null && ruler.inner !== null) {
-    pen.box(left, y(ruler.outer), width, y(ruler.inner) - y(ruler.outer), COLORS.pale, 0);
+  if (ruler.outerMm !== null && ruler.innerMm !== null) {
+    pen.box(left, y(ruler.outerMm), width, y(ruler.innerMm) - y(ruler.outerMm), COLORS.pale, 0);
   }
   pen.box(left + width / 3, top, width / 3, y(depth) - top, COLORS.accent, 0);
-  for (let tick = 0; tick < longest; tick += TICK_MM) {
+  for (let tick = 0; tick < longest; tick += RULER_TICK_MM) {
     pen.stroke(left - 14, y(tick), left, y(tick), COLORS.pale, 2);
-    if (tick % (2 * TICK_MM) === 0) pen.lineTo(String(tick), left - 22, y(tick), SMALL);
+    if (tick % (2 * RULER_TICK_MM) === 0) pen.lineTo(String(tick), left - 22, y(tick), SMALL);
   }
   let lowest = -Infinity;
   const marks = [
-    [ruler.entry, GOOD],
-    [ruler.outer, OFF],
-    [ruler.inner, OFF],
-    [ruler.target, GOOD],
+    [ruler.entryMm, GOOD],
+    [ruler.outerMm, OFF],
+    [ruler.innerMm, OFF],
+    [ruler.targetMm, GOOD],
   ] as const;
   const begin = left + width + 26;
   for (const [index, [mm, color]] of marks.entries()) {

@@ -1,7 +1,7 @@
 /** Paint a menu; where each of its items lies is returned, for pointing at it. */
 
-import type { Fact, Item, Menu } from "../stream/messages";
-import { COLORS, LINE, TONES, type Pen, type TextStyle } from "./pen";
+import { TONES, type Fact, type MenuItem, type Menu } from "../generated";
+import { COLORS, LINE, type Pen, type TextStyle } from "./pen";
 import type { Region } from "./panel";
 
 const PAD = 48;
@@ -56,7 +56,7 @@ export function paintMenu(
   for (const item of shown) {
     const isFocus = item.name === menu.focus;
     paintItem(pen, item, PAD, y, room, isFocus, item.name === hovered);
-    if (item.is_enabled) regions.push({ name: item.name, x: PAD, y, width: room, height: ROW });
+    if (item.isEnabled) regions.push({ name: item.name, x: PAD, y, width: room, height: ROW });
     y += ROW + GAP;
   }
   if (help !== "") y += pen.paragraph(help, PAD, y + 4, HELP, room);
@@ -112,7 +112,7 @@ function paintFact(pen: Pen, fact: Fact, top: number, width: number, style: Styl
 }
 
 /** Return the items that fit, the focus among them. */
-function aroundFocus(menu: Menu, most: number): readonly Item[] {
+function aroundFocus(menu: Menu, most: number): readonly MenuItem[] {
   if (menu.items.length <= most) return menu.items;
   const focus = Math.max(0, menu.items.findIndex((item) => item.name === menu.focus));
   const first = Math.min(menu.items.length - most, Math.max(0, focus - Math.floor(most / 2)));
@@ -120,7 +120,7 @@ function aroundFocus(menu: Menu, most: number): readonly Item[] {
 }
 
 /** Mark by a bar beside the items in sight that there are others. */
-function paintMore(pen: Pen, menu: Menu, shown: readonly Item[], middle: number, top: number): void {
+function paintMore(pen: Pen, menu: Menu, shown: readonly MenuItem[], middle: number, top: number): void {
   const count = menu.items.length;
   if (shown.length === count) return;
   const height = shown.length * (ROW + GAP) - GAP;
@@ -131,17 +131,17 @@ function paintMore(pen: Pen, menu: Menu, shown: readonly Item[], middle: number,
 
 function paintItem(
   pen: Pen,
-  item: Item,
+  item: MenuItem,
   x: number,
   y: number,
   width: number,
   isFocus: boolean,
   isHovered: boolean,
 ): void {
-  pen.box(x, y, width, ROW, isFocus && item.is_enabled ? COLORS.accent : COLORS.row);
+  pen.box(x, y, width, ROW, isFocus && item.isEnabled ? COLORS.accent : COLORS.row);
   if (isFocus || isHovered) pen.frame(x, y, width, ROW, COLORS.accentEdge);
   const middle = y + ROW / 2 + 2;
-  const label = item.is_enabled ? LABEL : PALE;
+  const label = item.isEnabled ? LABEL : PALE;
   const value = item.kind === "choice" ? `◀ ${item.value} ▶` : item.value;
   if (item.kind === "axis") {
     const room = width - 350;

@@ -1,6 +1,5 @@
 /** Text and boxes on a canvas, in its pixels, with the colors of the flat page. */
 
-import type { Tone } from "../stream/messages";
 import { pieces } from "./line_breaks";
 
 export const COLORS = {
@@ -13,20 +12,6 @@ export const COLORS = {
   text: "#f4f7fb",
   soft: "#c3cede",
   pale: "#97a5bc",
-};
-
-export const TONES: Readonly<Record<Tone, string>> = {
-  plain: "#3f8fe0",
-  good: "#8ff0d0",
-  warning: "#ffe000",
-  error: "#ef5f66",
-};
-
-export const BANNERS: Readonly<Record<Tone, string>> = {
-  plain: "#0f2f70",
-  good: "#35786a",
-  warning: "#806f00",
-  error: "#700d18",
 };
 
 const FAMILY = 'system-ui, "Segoe UI", Roboto, "Noto Sans", "PingFang SC", "Microsoft YaHei", "Noto Sans CJK SC", sans-serif';

@@ -1,14 +1,13 @@
 /** A trainee's scores as bars, with the pass mark as a line: a drawing as in controls_picture. */
 
-import type { ScoreTrend } from "../stream/messages";
+import { TARGET_COLOR, TONES, type ScoreTrend } from "../generated";
 import { PICTURE_WIDTH } from "./controls_picture";
-import { COLORS, TONES } from "./pen";
+import { COLORS } from "./pen";
 
 const HEIGHT = 580;
 const TOP = 60;
 const BOTTOM = 560;
 const BROADEST_BAR = 110;
-const LINE = "#ffe14a";
 
 /** Return the drawing as the address of a picture. */
 export function trendPlot(trend: ScoreTrend): string {
@@ -22,7 +21,7 @@ export function trendPlot(trend: ScoreTrend): string {
   const last = trend.scores[count - 1] ?? 0;
   const middle = (count - 1) * step + 0.36 * step;
   const number = `<text x="${Math.max(30, middle)}" y="${level(last) - 12}" font-size="36" fill="${COLORS.text}">${last.toFixed(0)}</text>`;
-  const mark = trend.mark > 0 ? rect(0, level(trend.mark) - 2, PICTURE_WIDTH, 4, LINE) : "";
+  const mark = trend.mark > 0 ? rect(0, level(trend.mark) - 2, PICTURE_WIDTH, 4, TARGET_COLOR) : "";
   const floor = rect(0, BOTTOM, PICTURE_WIDTH, 4, COLORS.pale);
   const size = `width="${PICTURE_WIDTH}" height="${HEIGHT}" viewBox="0 0 ${PICTURE_WIDTH} ${HEIGHT}"`;
   const font = 'font-family="system-ui, sans-serif" font-weight="700" text-anchor="middle"';

@@ -1,8 +1,8 @@
 /** Paint what is read while the arm is driven: the instruction, short facts and the controls. */
 
-import type { Screen } from "../stream/messages";
+import { BANNERS, type Screen } from "../generated";
 import type { Region } from "./panel";
-import { BANNERS, COLORS, type Pen } from "./pen";
+import { COLORS, type Pen } from "./pen";
 
 const PAD = 40;
 const INSTRUCTION = { size: 46, color: COLORS.text, isBold: true };

@@ -14,12 +14,9 @@ import {
   type Object3D,
 } from "three";
 
-import type { ErrorArrow } from "../stream/messages";
-import { COLORS, Pen, TONES } from "../panels/pen";
+import { ARROW_BALL_M, ARROW_RADIUS_M, TONES, type ErrorArrow } from "../generated";
+import { COLORS, Pen } from "../panels/pen";
 
-/** Of an arrow's shaft, and of the ball at its end, m. */
-const RADIUS = 0.001;
-const BALL = 0.0022;
 const ALONG = new Vector3(0, 1, 0);
 /** Height of a name, m, and of its canvas, pixels; how far it is above the middle of its ball, in heights. */
 const NAME_HIGH = 0.009;
@@ -28,8 +25,8 @@ const NAME_ABOVE = 0.5;
 
 export class ErrorArrows {
   readonly group = new Group();
-  private readonly shaft = new CylinderGeometry(RADIUS, RADIUS, 1, 12);
-  private readonly ball = new SphereGeometry(BALL, 12, 8);
+  private readonly shaft = new CylinderGeometry(ARROW_RADIUS_M, ARROW_RADIUS_M, 1, 12);
+  private readonly ball = new SphereGeometry(ARROW_BALL_M, 12, 8);
   private shown = "[]";
 
   /** Show these in place of others, as children of `world`; return whether they are others. */

@@ -2,17 +2,17 @@
 
 import { PerspectiveCamera, Vector2 } from "three";
 
-import { hasGuide, type CameraPlace, type SceneNews, type StateNews } from "../stream/messages";
+import type { CameraPose, SceneNews, StateNews } from "../generated";
 import { BackgroundCache, STATIC } from "./background_cache";
 import { isSoftware } from "./graphics";
+import { hasGuide } from "../stream/stages";
 import type { Stage } from "./stage";
 import { Flight, Viewpoint } from "./viewpoint";
 
-export const INSET_SHARE = 0.22;
 /** Name of the view along the skin. */
 export const BESIDE = "beside";
 /** Name of the view through the eyes of who wears a headset. */
-const WORN = "worn";
+const HEADSET = "headset";
 /** Name of the view across the line of a procedure. */
 export const ACROSS = "across";
 const NEAR = 0.05;
@@ -57,13 +57,13 @@ export class FlatView {
   }
 
   /** Look as the simulator says, or through the eyes of who wears a headset. */
-  choose(state: StateNews, now: number, worn: CameraPlace | null): void {
+  choose(state: StateNews, now: number, headset: CameraPose | null): void {
     if (this.scene?.cameras[state.camera] === undefined) return;
     this.chosen = state.camera;
-    if (worn === null) this.flight.go(state.camera, state.view, now);
-    else this.flight.go(WORN, worn, now);
-    const { view, inset, worn: wornCovers } = state.translucent;
-    this.covers = { view: worn === null ? view : wornCovers, inset };
+    if (headset === null) this.flight.go(state.camera, state.view, now);
+    else this.flight.go(HEADSET, headset, now);
+    const { view, inset, headset: headsetCovers } = state.translucent;
+    this.covers = { view: headset === null ? view : headsetCovers, inset };
     this.isBeside = state.inset !== null;
     this.hasLine = hasGuide(state);
     const other = state.inset ?? this.scene.cameras[this.otherCamera];

@@ -1,18 +1,15 @@
 /** An earlier trial beside the arm: translucent doubles of its last link and tool. */
 
-import { Color, Group, Mesh, MeshLambertMaterial, type Object3D } from "three";
+import { GHOST_OPACITY } from "../generated";
+import { Group, Mesh, MeshLambertMaterial, type Object3D } from "three";
 
 import { PoseStream } from "./pose_stream";
-import type { SceneModel } from "./scene_model";
-
-/** sRGB, as in the simulator's scene/nodes.py. */
-const COLOR = new Color().setRGB(0.5, 0.34, 0.9, "srgb");
-const OPACITY = 0.45;
+import { COLORS, type SceneModel } from "./scene_model";
 
 export type GhostPoses = Readonly<Record<string, readonly number[]>>;
 
 export class Ghost {
-  private readonly material = new MeshLambertMaterial({ color: COLOR, transparent: true, opacity: OPACITY });
+  private readonly material = new MeshLambertMaterial({ color: COLORS.ghost, transparent: true, opacity: GHOST_OPACITY });
   private model: SceneModel | null = null;
   private names: readonly string[] = [];
   private doubles: readonly Object3D[] = [];

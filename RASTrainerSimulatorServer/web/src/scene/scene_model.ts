@@ -18,37 +18,29 @@ import { STATIC } from "./background_cache";
 import { isSoftware } from "./graphics";
 import { batch, ownColor, type Finish } from "./batch";
 import { served } from "../stream/served";
-import { isTouchError, type ProcedureNews, type SceneNews, type StateNews, type TouchStage } from "../stream/messages";
+import { CLEAR_SKIN_OPACITY, COVER_OPACITY, INSTRUMENTS, PULSE_COLOR, PULSE_S, SCENE_COLORS, TOOL_NODES, type Vector, type ProcedureNews, type SceneNews, type StateNews, type TouchStage } from "../generated";
+import { isTouchError } from "../stream/stages";
 
 const FIDUCIAL = "fiducial_";
 const FURNITURE = ["table", "floor", "room"];
-/** Nodes that are shown with each tool of a procedure. */
-const INSTRUMENTS: Readonly<Record<ProcedureNews["tool"], readonly string[]>> = {
-  pointer: [],
-  guide: ["guide", "axis"],
-  drill: ["guide", "drill"],
-  electrode: ["guide", "electrode"],
-};
-/** Nodes as long as they are fed; in the file they are 1 m long. */
-const FED = ["drill", "electrode"];
-const AT_THE_TOOL = ["guide", "axis", ...FED];
-const CLEAR_SKIN = 0.3;
-/** Opacity of a body that covers tip or point. */
-const COVER = 0.3;
-const PULSE_S = 1.4;
-const PULSE_COLOR = new Color(1, 0.97, 0.75);
+const AT_THE_TOOL = ["guide", "axis", ...INSTRUMENTS];
+const PULSE = new Color(...PULSE_COLOR);
 
-/** sRGB, as in the simulator's scene/nodes.py. */
+function srgb([red, green, blue]: Vector): Color {
+  return new Color().setRGB(red, green, blue, "srgb");
+}
+
 export const COLORS = {
-  waiting: new Color().setRGB(0.07, 0.2, 0.6, "srgb"),
-  next: new Color().setRGB(1.0, 0.88, 0.29, "srgb"),
-  touched: new Color().setRGB(0.18, 0.6, 0.29, "srgb"),
-  free: new Color().setRGB(0.06, 0.27, 0.91, "srgb"),
-  near: new Color().setRGB(0.29, 0.65, 1.0, "srgb"),
-  onSkin: new Color().setRGB(0.65, 1.0, 0.4, "srgb"),
-  traced: new Color().setRGB(0.02, 0.13, 0.42, "srgb"),
-  covered: new Color().setRGB(0.34, 0.71, 0.91, "srgb"),
-  error: new Color().setRGB(0.78, 0.0, 0.1, "srgb"),
+  waiting: srgb(SCENE_COLORS.waiting),
+  next: srgb(SCENE_COLORS.next),
+  touched: srgb(SCENE_COLORS.touched),
+  free: srgb(SCENE_COLORS.free),
+  near: srgb(SCENE_COLORS.near),
+  onSkin: srgb(SCENE_COLORS.onSkin),
+  traced: srgb(SCENE_COLORS.traced),
+  covered: srgb(SCENE_COLORS.covered),
+  error: srgb(SCENE_COLORS.error),
+  ghost: srgb(SCENE_COLORS.ghost),
 };
 
 const WHITE = new Color(1, 1, 1);
@@ -81,7 +73,7 @@ export class SceneModel {
   private readonly seenThrough = new MeshLambertMaterial({
     vertexColors: true,
     transparent: true,
-    opacity: COVER,
+    opacity: COVER_OPACITY,
     depthWrite: false,
   });
 
@@ -147,12 +139,12 @@ export class SceneModel {
 
   /** Show what the tool is in a procedure, how far it is fed, and its no-go structures. */
   showInstrument(procedure: ProcedureNews | null): void {
-    const shown = procedure === null ? [] : INSTRUMENTS[procedure.tool];
+    const shown: readonly string[] = procedure === null ? [] : TOOL_NODES[procedure.tool];
     const fed = procedure === null ? 0 : procedure.feedMm / 1000;
     for (const name of AT_THE_TOOL) {
       const node = this.named.get(name);
       if (node === undefined) continue;
-      const isFed = FED.includes(name);
+      const isFed = (INSTRUMENTS as readonly string[]).includes(name);
       node.visible = shown.includes(name) && (!isFed || fed > 0);
       if (isFed) node.scale.z = Math.max(fed, 1e-6);
     }
@@ -175,7 +167,7 @@ export class SceneModel {
   clearHead(isClear: boolean): void {
     if (this.skin.transparent === isClear) return;
     this.skin.transparent = isClear;
-    this.skin.opacity = isClear ? CLEAR_SKIN : 1;
+    this.skin.opacity = isClear ? CLEAR_SKIN_OPACITY : 1;
     this.skin.depthWrite = !isClear;
     this.skin.needsUpdate = true;
     // Through the skin only what is drawn before it can be seen.
@@ -192,7 +184,7 @@ export class SceneModel {
   /** Brighten and darken the next fiducial; return whether it changes the picture at `now` (s). */
   pulse(now: number): boolean {
     const share = 0.5 - 0.5 * Math.cos((2 * Math.PI * now) / PULSE_S);
-    this.nextMark.color.copy(COLORS.next).lerp(PULSE_COLOR, share);
+    this.nextMark.color.copy(COLORS.next).lerp(PULSE, share);
     return this.pulses;
   }
 

@@ -2,11 +2,10 @@
 
 import { type Camera, Mesh, MeshBasicMaterial, RingGeometry, type Scene, Vector3 } from "three";
 
-import { isTouchError, type StateNews } from "../stream/messages";
+import { CLOSED_RING_M, type StateNews } from "../generated";
+import { isTouchError } from "../stream/stages";
 import { COLORS, type SceneModel } from "./scene_model";
 
-/** Radius on the skin, m; above it, the ring is larger by the clearance. */
-const CLOSED = 0.005;
 const INNER = 0.84;
 const INNER_ON_SKIN = 0.55;
 
@@ -34,6 +33,6 @@ export class TouchRing {
     this.material.color.copy(isTouchError(state.touch) ? COLORS.error : isOnSkin ? COLORS.onSkin : COLORS.near);
     this.mesh.position.copy(tool.getWorldPosition(this.tip));
     camera.getWorldQuaternion(this.mesh.quaternion);
-    this.mesh.scale.setScalar(CLOSED + Math.max(0, state.clearanceMm) / 1000);
+    this.mesh.scale.setScalar(CLOSED_RING_M + Math.max(0, state.clearanceMm) / 1000);
   }
 }

@@ -13,29 +13,27 @@ import {
   Vector3,
 } from "three";
 
-import type { TraceUpdate } from "../stream/messages";
+import {
+  FULL_PAINT_SHARE,
+  MAX_TRACE_POINTS,
+  TRACE_LIFT_M,
+  TRACE_MARK_M,
+  TRACE_RIM_M,
+  TRACE_RING_M,
+  TRACE_RING_SIDES,
+  type TraceNews,
+} from "../generated";
 import { COLORS, type SceneModel } from "./scene_model";
 
-/** As many points as a trial takes. */
-const MOST = 500;
-/** Of a mark: on a few pixels nobody tells an octahedron from a ball. m. */
-const MARK = 0.0011;
-/** Of the ring, and of its dark rim; and so far above the skin it lies, as it is flat. m. */
-const RING = [0.0052, 0.0075] as const;
-const RIM = [0.0075, 0.0088] as const;
-const LIFT = 0.003;
-const SIDES = 40;
-/** Up to this share of the covered distance the paint is full; from there on it fades. */
-const FULL_SHARE = 0.5;
 const OUTWARD = new Vector3(0, 0, 1);
 
 export class TraceMarks {
-  private readonly marks = new InstancedMesh(new OctahedronGeometry(MARK), basic(COLORS.traced), MOST);
+  private readonly marks = new InstancedMesh(new OctahedronGeometry(TRACE_MARK_M), basic(COLORS.traced), MAX_TRACE_POINTS);
   private readonly ring = new Group();
   private readonly paint = new SkinPaint();
   private points: Vector3[] = [];
   private covered = 0;
-  private next: TraceUpdate["next"] = null;
+  private next: TraceNews["next"] = null;
   private model: SceneModel | null = null;
   private isNew = true;
 
@@ -43,8 +41,8 @@ export class TraceMarks {
     this.marks.count = 0;
     // Its marks lie anywhere on the head, not about its origin.
     this.marks.frustumCulled = false;
-    for (const [[inner, outer], color] of [[RING, COLORS.next], [RIM, COLORS.traced]] as const) {
-      this.ring.add(new Mesh(new RingGeometry(inner, outer, SIDES), basic(color)));
+    for (const [[inner, outer], color] of [[TRACE_RING_M, COLORS.next], [TRACE_RIM_M, COLORS.traced]] as const) {
+      this.ring.add(new Mesh(new RingGeometry(inner, outer, TRACE_RING_SIDES), basic(color)));
     }
   }
 
@@ -54,10 +52,10 @@ export class TraceMarks {
   }
 
   /** Take what is new. */
-  take(news: TraceUpdate): void {
+  take(news: TraceNews): void {
     this.points.length = Math.min(news.known, this.points.length);
     for (const [x, y, z] of news.points) this.points.push(new Vector3(x, y, z).multiplyScalar(0.001));
-    this.points.length = Math.min(MOST, this.points.length);
+    this.points.length = Math.min(MAX_TRACE_POINTS, this.points.length);
     this.covered = news.coveredMm / 1000;
     this.next = news.next;
     this.isNew = true;
@@ -85,7 +83,7 @@ export class TraceMarks {
     model.nextPlace = next === null ? null : new Vector3(...next.positionMm).multiplyScalar(0.001);
     if (next === null || model.nextPlace === null) return;
     const normal = new Vector3(...next.normal);
-    ring.position.copy(model.nextPlace).addScaledVector(normal, LIFT);
+    ring.position.copy(model.nextPlace).addScaledVector(normal, TRACE_LIFT_M);
     ring.quaternion.setFromUnitVectors(OUTWARD, normal);
   }
 }
@@ -114,7 +112,7 @@ class SkinPaint {
       let least = this.squares[index]!;
       for (const point of fresh) least = Math.min(least, at.distanceToSquared(point));
       this.squares[index] = least;
-      const fading = (1 - Math.sqrt(least) / covered) / (1 - FULL_SHARE);
+      const fading = (1 - Math.sqrt(least) / covered) / (1 - FULL_PAINT_SHARE);
       shares[index] = Math.min(1, Math.max(0, fading));
     }
     return shares;

@@ -2,9 +2,7 @@
 
 import { type PerspectiveCamera, Vector3 } from "three";
 
-import type { CameraPlace } from "../stream/messages";
-
-const FLIGHT_S = 0.7;
+import { FLIGHT_S, type CameraPose } from "../generated";
 
 export class Viewpoint {
   readonly position = new Vector3();
@@ -13,7 +11,7 @@ export class Viewpoint {
   angle = 30;
 
   /** Take the place of one of the simulator's cameras, which is in World, into three's y-up. */
-  take(place: CameraPlace): this {
+  take(place: CameraPose): this {
     yUp(this.position.fromArray(place.position));
     yUp(this.focus.fromArray(place.focalPoint));
     yUp(this.up.fromArray(place.viewUp));
@@ -65,7 +63,7 @@ export class Flight {
   private target = "";
 
   /** Go to a place by its name, the first one at once; a place that moves is followed. */
-  go(name: string, place: CameraPlace, now: number): void {
+  go(name: string, place: CameraPose, now: number): void {
     if (name === this.target) {
       this.to.take(place);
       return;

@@ -1,6 +1,6 @@
 /** Stay connected to the simulator, and reconnect whenever it was away. */
 
-import { SUBPROTOCOL, type Hello, type News, type Role } from "./messages";
+import { SUBPROTOCOL, type Hello, type News, type ViewInput, type ViewRole } from "../generated";
 import { streamUrl } from "./served";
 
 const RETRY_MS = 1000;
@@ -61,10 +61,10 @@ export class Connection {
   }
 
   /** Send a message, unless there is no connection: what was pressed then does not count. */
-  send(type: string, members: object = {}): void {
+  send(message: ViewInput): void {
     if (this.isConnected && !this.isWatching) {
       this.lastSent = performance.now();
-      this.socket?.send(JSON.stringify({ type, ...members }));
+      this.socket?.send(JSON.stringify(message));
     }
   }
 
@@ -75,7 +75,7 @@ export class Connection {
     socket.onopen = () => {
       wasOpen = true;
       this.hear();
-      socket.send(JSON.stringify({ type: "hello", ...this.hello }));
+      socket.send(JSON.stringify(this.hello));
       this.listener.onConnected(true);
     };
     socket.onmessage = (event) => {
@@ -120,18 +120,18 @@ export class Connection {
       this.lose(true);
       socket.close();
     }
-    if (this.isHolding() && now - this.lastSent >= ALIVE_MS) this.send("alive");
+    if (this.isHolding() && now - this.lastSent >= ALIVE_MS) this.send({ type: "alive" });
   }
 }
 
-let known: Role = "view";
+let known: ViewRole = "view";
 
 /** Return what this browser was paired for, null if it is not; a simulator that is away knows everyone. */
-export async function readRole(): Promise<Role | null> {
+export async function readRole(): Promise<ViewRole | null> {
   try {
     const answer = await fetch("role");
     if (answer.status === 401) return null;
-    if (answer.ok) known = ((await answer.json()) as { role: Role }).role;
+    if (answer.ok) known = ((await answer.json()) as { role: ViewRole }).role;
   } catch {
     // It is away.
   }

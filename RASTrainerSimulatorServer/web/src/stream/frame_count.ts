@@ -1,9 +1,9 @@
 /** How smoothly the picture is drawn, reported to the simulator once a second. */
 
+import { MAX_FRAMES } from "../generated";
 import type { Connection } from "./connection";
 
 const PERIOD_MS = 1000;
-const MOST = 10_000;
 const SMOOTHING = 0.1;
 
 export class FrameCount {
@@ -42,9 +42,10 @@ export class FrameCount {
   tell(now: number): void {
     if (now - this.reported < PERIOD_MS) return;
     this.reported = now;
-    this.connection.send("frames", {
-      shown: Math.min(MOST, this.shown),
-      dropped: Math.min(MOST, this.dropped),
+    this.connection.send({
+      type: "frames",
+      shown: Math.min(MAX_FRAMES, this.shown),
+      dropped: Math.min(MAX_FRAMES, this.dropped),
       refreshHz: Math.min(1000, Math.round(10 * this.refreshHz) / 10),
     });
     this.shown = this.dropped = 0;

@@ -1,6 +1,6 @@
 /** Ask for the pairing code, and exchange it for the cookie that lets this browser in. */
 
-import type { Role } from "./messages";
+import type { ViewRole } from "../generated";
 import { say, type TextName } from "../texts";
 
 /**
@@ -12,7 +12,7 @@ export async function pair(form: HTMLFormElement, wasPaired: boolean): Promise<v
   let wrong = wasPaired ? say("restarted") : "";
   if (given !== undefined) {
     history.replaceState(null, "", location.pathname + location.search);
-    wrong = await send(given, (role ?? "view") as Role, "oldCode");
+    wrong = await send(given, (role ?? "view") as ViewRole, "oldCode");
     if (wrong === "") return;
   }
   const input = form.querySelector("input")!;
@@ -44,7 +44,7 @@ function label(form: HTMLFormElement): void {
 }
 
 /** Return what is wrong with a code, "" for nothing; `wrong` names the sentence about a wrong one. */
-async function send(code: string, role: Role, wrong: TextName): Promise<string> {
+async function send(code: string, role: ViewRole, wrong: TextName): Promise<string> {
   const refusal = await exchangeCode(code, role);
   if (refusal === null) return "";
   const { problem, seconds } = refusal;
@@ -58,7 +58,7 @@ export interface CodeRefusal {
 }
 
 /** Exchange a code for the cookie; null where that has worked. */
-export async function exchangeCode(code: string, role: Role): Promise<CodeRefusal | null> {
+export async function exchangeCode(code: string, role: ViewRole): Promise<CodeRefusal | null> {
   try {
     const answer = await fetch("pair", { method: "POST", body: JSON.stringify({ code, role }) });
     if (answer.ok) return null;

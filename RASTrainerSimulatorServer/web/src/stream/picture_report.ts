@@ -30,6 +30,6 @@ export class PictureReport {
   private tell(task: string, share: number): void {
     this.task = task;
     this.share = share;
-    this.connection.send("picture", { task, share });
+    this.connection.send({ type: "picture", task, share });
   }
 }

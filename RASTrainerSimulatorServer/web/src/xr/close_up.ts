@@ -14,7 +14,7 @@ import {
 
 import { COLORS } from "../panels/pen";
 import { STATIC } from "../scene/background_cache";
-import type { StateNews } from "../stream/messages";
+import type { StateNews } from "../generated";
 import type { Stage } from "../scene/stage";
 import { Viewpoint } from "../scene/viewpoint";
 

@@ -13,7 +13,7 @@ import {
 } from "three";
 
 import type { Connection } from "../stream/connection";
-import type { EventNews } from "../stream/messages";
+import type { Feedback } from "../generated";
 import type { Panel } from "../panels/panel";
 import type { RoomPanels } from "./room_panels";
 import { controllerBody } from "../scene/controller_body";
@@ -64,8 +64,9 @@ export class Hands {
   private readonly raycaster = new Raycaster();
   private readonly hits: Intersection[] = [];
   private readonly message = {
-    translation: [0, 0, 0],
-    rotation: [0, 0],
+    type: "sticks" as const,
+    translation: [0, 0, 0] as [number, number, number],
+    rotation: [0, 0] as [number, number],
     fine: false,
     yawDeg: 0,
   };
@@ -130,11 +131,11 @@ export class Hands {
   }
 
   /** Let both hands feel something. */
-  feel(event: EventNews): void {
+  feel(event: Feedback): void {
     if (event.rumble <= 0) return;
     for (const hand of this.hands) {
       const pad = hand.source?.gamepad as PulsingPad | undefined;
-      void pad?.hapticActuators?.[0]?.pulse(event.rumble, event.data.rumbleMs ?? 100);
+      void pad?.hapticActuators?.[0]?.pulse(event.rumble, event.rumbleMs);
     }
   }
 
@@ -207,7 +208,7 @@ export class Hands {
   }
 
   private press(control: string): void {
-    this.connection.send("press", { control });
+    this.connection.send({ type: "press", control });
   }
 
   private tellSticks(): void {
@@ -227,7 +228,7 @@ export class Hands {
     this.sent.set(translation);
     this.sent.set(rotation, 3);
     this.sent[5] = Number(fine);
-    this.connection.send("sticks", this.message);
+    this.connection.send(this.message);
   }
 
   private repeat(step: string, passed: number): void {

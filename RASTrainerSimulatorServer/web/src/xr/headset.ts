@@ -4,7 +4,7 @@ import { PerspectiveCamera, Vector3 } from "three";
 
 import type { Connection } from "../stream/connection";
 import type { FrameCount } from "../stream/frame_count";
-import type { Aim, ControlNews, DepthRuler, EventNews, Hello, SceneNews, Screen, StateNews } from "../stream/messages";
+import type { GuideAim, ControlNews, DepthRuler, Feedback, Hello, SceneNews, Screen, StateNews } from "../generated";
 import type { SceneModel } from "../scene/scene_model";
 import type { Sounds } from "../audio/sounds";
 import { STATIC } from "../scene/background_cache";
@@ -16,7 +16,7 @@ import { Hands } from "./hands";
 import { Placement } from "./placement";
 import { type ArrowLook, SightArrow } from "./sight_arrow";
 import { Seating } from "./seating";
-import { WornPoses } from "./worn_poses";
+import { HeadsetPoses } from "./headset_poses";
 
 const HIGHEST_HZ = 90;
 const MAX_FOVEATION = 1;
@@ -37,7 +37,7 @@ export class Headset {
   private hasArrow = false;
   private isWorking = false;
   private readonly hands: Hands;
-  private readonly worn: WornPoses;
+  private readonly poses: HeadsetPoses;
   private base: XRReferenceSpace | null = null;
   private mustRecenter = false;
   private looked = 0;
@@ -55,7 +55,7 @@ export class Headset {
     private readonly leave: () => void,
   ) {
     const { scene, renderer } = stage;
-    this.worn = new WornPoses(connection, stage.world);
+    this.poses = new HeadsetPoses(connection, stage.world);
     this.camera.layers.enable(STATIC);
     this.placement.rig.add(this.camera);
     scene.add(this.placement.rig, this.panels.room);
@@ -82,9 +82,9 @@ export class Headset {
       const isVisible = this.session.visibilityState === "visible";
       if (!isVisible) {
         this.hands.release();
-        if (this.session.visibilityState === "hidden") this.worn.takeOff();
+        if (this.session.visibilityState === "hidden") this.poses.sendDoffed();
       }
-      this.connection.send("visibility", { isVisible });
+      this.connection.send({ type: "visibility", isVisible });
     });
     this.sounds.setSpatial(true);
     this.connection.rejoin(this.hello());
@@ -107,7 +107,7 @@ export class Headset {
 
   showScreen(screen: Screen): void {
     this.isWorking = screen.menu === null;
-    this.hasArrow = this.isWorking && screen.has_arrow;
+    this.hasArrow = this.isWorking && screen.hasArrow;
     this.panels.show(screen);
     this.hands.isStepped = this.panels.isStepped;
   }
@@ -116,7 +116,7 @@ export class Headset {
     this.panels.showControl(control);
   }
 
-  showGuiding(aim: Aim | null, ruler: DepthRuler | null, depth: number): void {
+  showGuiding(aim: GuideAim | null, ruler: DepthRuler | null, depth: number): void {
     this.panels.showGuiding(aim, ruler, depth);
     this.hands.isAligning = aim !== null;
   }
@@ -125,7 +125,7 @@ export class Headset {
     this.panels.setNotice(text);
   }
 
-  feel(event: EventNews): void {
+  feel(event: Feedback): void {
     this.hands.feel(event);
   }
 
@@ -152,14 +152,14 @@ export class Headset {
     this.looked = now;
     // A device may go on asking for pictures of a headset that was taken off.
     if (this.session.visibilityState !== "hidden") {
-      this.worn.tell(now, this.camera, this.hands.controller("left"), this.hands.controller("right"));
+      this.poses.send(now, this.camera, this.hands.controller("left"), this.hands.controller("right"));
     }
     this.hear(model);
     this.panels.closeUp.draw(this.stage, this.panels.room, state);
     this.arrow.show(this.hasArrow ? model.next(state.next, this.point) : null, this.camera);
     const isToolWanted = this.isWorking && state.phase !== "idle";
     this.toolArrow.show((isToolWanted && model.node("tool")?.position) || null, this.camera);
-    model.seeThrough(state.translucent.worn);
+    model.seeThrough(state.translucent.headset);
     this.stage.renderer.render(this.stage.scene, this.camera);
   }
 
@@ -226,7 +226,7 @@ export class Headset {
         this.leave();
         break;
       default:
-        this.connection.send("item", { name });
+        this.connection.send({ type: "item", name });
     }
   }
 
@@ -239,6 +239,6 @@ export class Headset {
 
   private hello(): Hello {
     const device = headsetModel(this.session, navigator.userAgent);
-    return { kind: "headset", device, refreshHz: this.frames.fixedHz };
+    return { type: "hello", kind: "headset", device, refreshHz: this.frames.fixedHz };
   }
 }

@@ -2,7 +2,7 @@
 
 import { Euler, Group, Quaternion, Vector3 } from "three";
 
-import type { CameraPlace } from "../stream/messages";
+import type { CameraPose } from "../generated";
 import { yUp } from "../scene/viewpoint";
 
 /** From the head to the trainee's eyes: a comfortable reach, seated and standing. */
@@ -26,7 +26,7 @@ export class Placement {
   private seenYaw = 0;
 
   /** Stand behind the close-up camera, looking where it looks. */
-  take(camera: CameraPlace): void {
+  take(camera: CameraPose): void {
     const position = yUp(new Vector3().fromArray(camera.position));
     yUp(this.focus.fromArray(camera.focalPoint));
     this.forward.subVectors(this.focus, position).setY(0).normalize();

@@ -2,12 +2,12 @@
 
 import { Group, Vector3 } from "three";
 
-import type { Aim, ControlNews, DepthRuler, Menu, Message, Screen } from "../stream/messages";
+import { BANNERS, type GuideAim, type ControlNews, type DepthRuler, type Menu, type ScreenMessage, type Screen } from "../generated";
 import { Panel, type Region } from "../panels/panel";
 import { GUIDING_HEIGHT, GUIDING_WIDTH, guidingContent, paintGuiding } from "../panels/guiding_painter";
 import { paintMenu } from "../panels/menu_painter";
 import { controlsPicture, inputsOf, PICTURE_HEIGHT, PICTURE_WIDTH } from "../panels/controls_picture";
-import { BANNERS, COLORS, type Pen } from "../panels/pen";
+import { COLORS, type Pen } from "../panels/pen";
 import { paintWork } from "../panels/work_painter";
 import { say, sayHolder, type TextName } from "../texts";
 import { trendPlot } from "../panels/trend_plot";
@@ -99,7 +99,7 @@ export class RoomPanels {
 
   /** Whether sticks step: through a menu, or through a trial that is shown again. */
   get isStepped(): boolean {
-    return this.screen !== null && (this.screen.menu !== null || this.screen.is_stepped);
+    return this.screen !== null && (this.screen.menu !== null || this.screen.sticksNavigate);
   }
 
   /** Whether a menu is open. */
@@ -146,7 +146,7 @@ export class RoomPanels {
   }
 
   /** Show the bull's-eye or the depth ruler; nothing where there is neither. */
-  showGuiding(aim: Aim | null, ruler: DepthRuler | null, depth: number): void {
+  showGuiding(aim: GuideAim | null, ruler: DepthRuler | null, depth: number): void {
     const { guiding } = this;
     guiding.mesh.visible = aim !== null || ruler !== null;
     if (guiding.mesh.visible) guiding.show(guidingContent(aim, ruler, depth), (pen) => paintGuiding(pen, aim, ruler, depth));
@@ -220,7 +220,7 @@ export class RoomPanels {
   }
 
   private paintWarning(screen: Screen): void {
-    const own: Message[] = this.notice === "" ? [] : [{ text: this.notice, tone: "error" }];
+    const own: ScreenMessage[] = this.notice === "" ? [] : [{ text: this.notice, tone: "error" }];
     const first = [...own, ...screen.warnings.filter(isUrgent)][0];
     this.warning.mesh.visible = first !== undefined;
     if (first === undefined) return;
@@ -257,7 +257,7 @@ export class RoomPanels {
   }
 }
 
-function isUrgent(message: Message): boolean {
+function isUrgent(message: ScreenMessage): boolean {
   return message.tone === "warning" || message.tone === "error";
 }
 

@@ -9,7 +9,7 @@ import pytest
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.views import view_server as view_server_module
-from rastrainer_simulator.net.views.access_control import ViewRole
+from rastrainer_simulator.presentation.messages import ViewRole
 from rastrainer_simulator.scene.scene_files import NO_TASK, SceneFiles, cache_folder
 from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.simulator.net.views.served import ServedViews, ViewClient

@@ -11,10 +11,10 @@ import aiohttp
 
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.limits import ViewLimits
-from rastrainer_simulator.net.views.access_control import ViewRole
 from rastrainer_simulator.net.views.view_server import ViewServer
 from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses
-from rastrainer_simulator.presentation.presenter import Control, Seat, TraceGuidance
+from rastrainer_simulator.presentation.messages import Seat, ViewRole
+from rastrainer_simulator.presentation.presenter import Control, TraceGuidance
 from rastrainer_simulator.presentation.screen import Screen
 from rastrainer_simulator.viewpoint.view_control import CameraPose, Pictures
 from Testing.free_port import free_port

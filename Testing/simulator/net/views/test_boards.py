@@ -7,9 +7,9 @@ import stat
 
 import pytest
 
-from rastrainer_simulator.net.views.access_control import BOARDS_FILE, Sessions, ViewRole
+from rastrainer_simulator.net.views.access_control import BOARDS_FILE, Sessions
 from rastrainer_simulator.ops.instructor_pin import PIN_FILE, GuessLimit, InstructorPin
-from rastrainer_simulator.presentation.presenter import Seat
+from rastrainer_simulator.presentation.messages import Seat, ViewRole
 from Testing.simulator.net.views.served import request
 
 PIN = "271828"
@@ -109,22 +109,19 @@ def test_an_order_with_the_pin_is_carried_out_or_says_why_not(guarded):
     assert guarded.presenter.calls == [("instruct", "say", "Slowly."), ("instruct", "replay", "")]
 
 
-NO_SENTENCE = "text must be printable text of 1 to 200 characters."
+NOT_PRINTABLE = "The body: text must be printable text of 0 to 200 characters."
 
 
 @pytest.mark.parametrize(
     ("values", "sentence"),
     [
-        ({"order": "drive"}, "order must be one of pause, say, replay."),
-        ({"order": None}, "order must be one of pause, say, replay."),
-        ({"pin": 271828}, "pin must be printable text of 1 to 12 characters."),
-        ({"pin": "2" * 13}, "pin must be printable text of 1 to 12 characters."),
-        (
-            {"order": "say", "text": "x" * 201},
-            "text must be printable text of 1 to 200 characters.",
-        ),
-        ({"order": "say", "text": "  "}, "text must say something."),
-        ({"order": "say", "text": "a\x1b"}, NO_SENTENCE),
+        ({"order": "drive"}, "The body: order must be one of pause, say, replay."),
+        ({"order": None}, "The body: order must be one of pause, say, replay."),
+        ({"pin": 271828}, "The body: pin must be printable text of 1 to 12 characters."),
+        ({"pin": "2" * 13}, "The body: pin must be printable text of 1 to 12 characters."),
+        ({"order": "say", "text": "x" * 201}, NOT_PRINTABLE),
+        ({"order": "say", "text": "  "}, "The text must say something."),
+        ({"order": "say", "text": "a\x1b"}, NOT_PRINTABLE),
     ],
 )
 def test_an_invalid_order_is_answered_with_what_would_be_right(guarded, values, sentence):

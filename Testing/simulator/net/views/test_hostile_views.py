@@ -25,7 +25,7 @@ STICKS = {
     "fine": False,
     "yawDeg": 0,
 }
-WORN = {"type": "worn", "eyes": None, "left": None, "right": None}
+WORN = {"type": "headsetPose", "eyes": None, "left": None, "right": None}
 ORBIT = {"type": "orbit", "aroundDeg": 5, "higherDeg": 0, "zoom": 1}
 GARBAGE = {
     "no JSON": "{",

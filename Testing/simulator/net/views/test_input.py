@@ -2,7 +2,7 @@ import asyncio
 
 import pytest
 
-from rastrainer_simulator.presentation.presenter import Frames
+from rastrainer_simulator.presentation.messages import Frames
 
 KEY = {"type": "key", "code": "KeyW", "isDown": True, "text": "w"}
 PAD = {"type": "pad", "axes": [0.5, -1.0, 0, 0], "buttons": [0, 1, 0.25]}

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from rastrainer_simulator.net.views.access_control import ViewRole
-from rastrainer_simulator.presentation.presenter import Control, Feedback
+from rastrainer_simulator.presentation.messages import Feedback, ViewRole
+from rastrainer_simulator.presentation.presenter import Control
 from rastrainer_simulator.presentation.screen import Fact, Menu, MenuItem, Screen
 
 SECRET = Screen(

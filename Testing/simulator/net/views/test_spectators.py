@@ -1,14 +1,18 @@
 """A spectator sees everything that a view sees, and drives nothing, whatever it sends."""
 
-import json
-
 import aiohttp
 import pytest
 
-from rastrainer_simulator.net.views.access_control import ViewRole
-from rastrainer_simulator.net.views.incoming import ALIVE, MEMBERS, Worn
+from rastrainer.json_records import record_to_json
 from rastrainer_simulator.net.views.outgoing import Mirror
-from rastrainer_simulator.presentation.presenter import Control, Feedback
+from rastrainer_simulator.presentation.messages import (
+    INPUTS,
+    Alive,
+    Feedback,
+    HeadsetPose,
+    ViewRole,
+)
+from rastrainer_simulator.presentation.presenter import Control
 from rastrainer_simulator.presentation.screen import Screen, ScreenMessage
 from Testing.security.stream_attack import MESSAGES
 from Testing.simulator.net.views.served import HELLO
@@ -16,7 +20,7 @@ from Testing.simulator.net.views.served import HELLO
 EXAMPLES = {message["type"]: message for message in MESSAGES}
 EYES = [0.5, -0.6, 1.25, 0.0, 0.6, 0.0, 0.8]
 HAND = [0.4, -0.2, 1.0, 0.0, 0.0, 0.0, 1.0]
-WORN = {"type": "worn", "eyes": EYES, "left": None, "right": HAND}
+WORN = {"type": "headsetPose", "eyes": EYES, "left": None, "right": HAND}
 TOLD = {"eyes": EYES, "left": None, "right": HAND}
 NOTHING_ELSE = (1008, "A spectator drives nothing: it may send alive and nothing else.")
 
@@ -31,7 +35,7 @@ def watch(served, connect, role=ViewRole.SPECTATOR, kind="spectator"):
 def wearers(view):
     """Return what a spectator has read about the wearer of a headset, state by state."""
     while True:
-        yield view.next("state")["wearer"]
+        yield view.next("state")["headset"]
 
 
 def is_cut_off(view):
@@ -48,14 +52,14 @@ def until(wanted, view):
 
 
 def test_every_message_of_the_protocol_has_an_example():
-    assert EXAMPLES.keys() == MEMBERS.keys()
+    assert EXAMPLES.keys() == INPUTS.keys()
 
 
 @pytest.mark.parametrize(
     ("role", "watcher"),
     [*((role, "spectator") for role in ViewRole), (ViewRole.BOARD, "board")],
 )
-@pytest.mark.parametrize("kind", [kind for kind in MEMBERS if kind != ALIVE])
+@pytest.mark.parametrize("kind", [kind for kind in INPUTS if kind != Alive.type])
 def test_a_spectator_that_sends_anything_is_closed_without_any_effect(
     served, connect, kind, role, watcher
 ):
@@ -67,10 +71,10 @@ def test_a_spectator_that_sends_anything_is_closed_without_any_effect(
 
 def test_a_spectator_that_reports_being_alive_keeps_watching(served, connect):
     spectator = watch(served, connect)
-    spectator.send(EXAMPLES[ALIVE])
-    spectator.send(EXAMPLES[ALIVE])
+    spectator.send(EXAMPLES[Alive.type])
+    spectator.send(EXAMPLES[Alive.type])
     spectator.leave()
-    assert watch(served, connect).next("state")["wearer"] is None
+    assert watch(served, connect).next("state")["headset"] is None
     assert served.presenter.calls == []
 
 
@@ -121,9 +125,9 @@ def test_only_a_spectator_is_sent_the_pose_of_a_headsets_eyes_and_hands(served, 
     assert next(wearers(spectator)) is None
     headset.send(WORN)
     until(TOLD, spectator)
-    assert "wearer" not in page.next("state")
+    assert page.next("state")["headset"] is None
     late = watch(served, connect)
-    assert late.next("state")["wearer"] == TOLD
+    assert late.next("state")["headset"] == TOLD
     headset.send({**WORN, "eyes": None})
     until(None, spectator)
 
@@ -139,14 +143,14 @@ def test_links_before_the_eyes_of_a_headset_are_translucent_for_these_alone(
 
     def until_translucent(eyes):
         headset.send({**WORN, "eyes": eyes})
-        is_so = lambda news: bool(news["translucent"]["worn"]) is bool(eyes)  # noqa: E731
+        is_so = lambda news: bool(news["translucent"]["headset"]) is bool(eyes)  # noqa: E731
         read = view.all_until(lambda news: news["type"] == "state" and is_so(news))
         return read[-1]["translucent"]
 
-    assert until_translucent(None) == {"view": [], "inset": [], "worn": []}
+    assert until_translucent(None) == {"view": [], "inset": [], "headset": []}
     # From behind the robot, which then stands before tip and head.
     seen = until_translucent([-1.5, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0])
-    assert all(body.startswith("link_") for body in seen["worn"])
+    assert all(body.startswith("link_") for body in seen["headset"])
     assert seen["view"] == []
     assert control_loop.submit("Abort", {}, "test").result().ok
 
@@ -161,19 +165,19 @@ def test_a_headset_that_leaves_is_no_longer_worn(served, connect):
 
 
 def test_the_newest_headset_is_followed_and_after_it_the_previous_one():
-    mirror, worn = Mirror(), Worn(tuple(EYES), None, tuple(HAND))
+    mirror, worn = Mirror(), HeadsetPose(tuple(EYES), None, tuple(HAND))
     mirror.take(1, worn)
-    assert mirror.text == "null", "it is no headset"
+    assert mirror.pose is None, "it is no headset"
     for headset in (1, 2):
         mirror.joined(headset)
         mirror.take(headset, worn)
-        assert json.loads(mirror.text) == TOLD
-    mirror.take(1, Worn(None, None, None))
-    assert json.loads(mirror.text) == TOLD, "it was left for the other one"
+        assert record_to_json(mirror.pose) == TOLD
+    mirror.take(1, HeadsetPose(None, None, None))
+    assert record_to_json(mirror.pose) == TOLD, "it was left for the other one"
     mirror.left(2)
-    assert mirror.text == "null"
+    assert mirror.pose is None
     mirror.take(1, worn)
-    assert json.loads(mirror.text) == TOLD
+    assert record_to_json(mirror.pose) == TOLD
 
 
 def test_spectators_do_not_use_up_the_slots_of_views(serve, connect):

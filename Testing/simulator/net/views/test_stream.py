@@ -8,7 +8,8 @@ from trimesh.transformations import quaternion_matrix
 
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.net.views.outgoing import quaternion
-from rastrainer_simulator.presentation.presenter import Control, Feedback, Hello
+from rastrainer_simulator.presentation.messages import Feedback, Hello
+from rastrainer_simulator.presentation.presenter import Control
 from rastrainer_simulator.presentation.screen import (
     Hint,
     Menu,
@@ -29,7 +30,7 @@ SCREEN = Screen(
 
 
 def feedback(number: int) -> Feedback:
-    return Feedback(number, "touch", "touch", rumble=0.5, data={"label": str(number)})
+    return Feedback(number, "touch", "touch", rumble=0.5, rumble_ms=120)
 
 
 def test_a_view_is_welcomed_first_and_sent_the_current_state(served, connect):
@@ -131,7 +132,7 @@ def test_every_view_gets_each_event_once_and_in_order(served, connect):
         "sound": "touch",
         "volume": 1.0,
         "rumble": 0.5,
-        "data": {"label": "3"},
+        "rumbleMs": 120,
     }
 
 

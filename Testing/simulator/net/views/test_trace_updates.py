@@ -9,7 +9,8 @@ import pytest
 from rastrainer.commands import CommandName
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.loop.timing import LoopStatistics
-from rastrainer_simulator.presentation.presenter import SkinPlace, TraceGuidance
+from rastrainer_simulator.presentation.messages import SkinPlace
+from rastrainer_simulator.presentation.presenter import TraceGuidance
 from rastrainer_simulator.state import StepResult
 from Testing.simulator.landmarked import with_landmarks
 from Testing.simulator.net.views.served import ServedViews

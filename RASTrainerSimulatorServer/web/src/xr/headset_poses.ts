@@ -3,12 +3,12 @@
 import { Matrix4, Quaternion, Vector3, type Object3D } from "three";
 
 import type { Connection } from "../stream/connection";
-import type { Pose } from "../stream/messages";
+import type { Pose } from "../generated";
 
 const PERIOD_S = 1 / 30;
 const DIGITS = 5;
 
-export class WornPoses {
+export class HeadsetPoses {
   private sentAt = -Infinity;
   private readonly toWorld = new Matrix4();
   private readonly matrix = new Matrix4();
@@ -22,21 +22,22 @@ export class WornPoses {
     private readonly world: Object3D,
   ) {}
 
-  /** Tell the poses at `now` (s) if it is time; a hand that is not there is null. */
-  tell(now: number, eyes: Object3D, left: Object3D | null, right: Object3D | null): void {
+  /** Send the poses at `now` (s) if it is time; a hand that is not there is null. */
+  send(now: number, eyes: Object3D, left: Object3D | null, right: Object3D | null): void {
     if (now - this.sentAt < PERIOD_S) return;
     this.sentAt = now;
     this.toWorld.copy(this.world.matrixWorld).invert();
-    this.connection.send("worn", {
+    this.connection.send({
+      type: "headsetPose",
       eyes: this.pose(eyes),
       left: left && this.pose(left),
       right: right && this.pose(right),
     });
   }
 
-  /** Tell that nobody wears the headset. */
-  takeOff(): void {
-    this.connection.send("worn", { eyes: null, left: null, right: null });
+  /** Send that nobody wears the headset. */
+  sendDoffed(): void {
+    this.connection.send({ type: "headsetPose", eyes: null, left: null, right: null });
   }
 
   private pose(object: Object3D): Pose {

@@ -2,7 +2,7 @@
 
 import { Object3D, Vector3 } from "three";
 
-import type { CameraPlace, Pose, Wearer } from "../stream/messages";
+import type { CameraPose, Pose, HeadsetPose } from "../generated";
 import { PoseStream } from "./pose_stream";
 import { controllerBody } from "./controller_body";
 
@@ -11,7 +11,7 @@ const ANGLE_DEG = 70;
 const AT_REST: Pose = [0, 0, 0, 0, 0, 0, 1];
 const BODIES = 3;
 
-export class WornView {
+export class HeadsetView {
   private readonly eyes = new Object3D();
   private readonly hands = [controllerBody(), controllerBody()] as const;
   private stream = new PoseStream(BODIES);
@@ -26,18 +26,19 @@ export class WornView {
   }
 
   /** Take what arrived at `now` (s); null while nobody wears a headset. */
-  put(wearer: Wearer | null, now: number): void {
+  put(pose: HeadsetPose | null, now: number): void {
     const [left, right] = this.hands;
-    left.visible = wearer?.left != null;
-    right.visible = wearer?.right != null;
+    left.visible = pose?.left != null;
+    right.visible = pose?.right != null;
+    const eyes = pose?.eyes ?? null;
     // Whoever puts it on again is elsewhere by then.
-    if (wearer === null && this.isWorn) this.stream = new PoseStream(BODIES);
-    this.isWorn = wearer !== null;
-    if (wearer !== null) this.stream.put(now, [wearer.eyes, wearer.left ?? AT_REST, wearer.right ?? AT_REST], now);
+    if (eyes === null && this.isWorn) this.stream = new PoseStream(BODIES);
+    this.isWorn = eyes !== null;
+    if (eyes !== null) this.stream.put(now, [eyes, pose?.left ?? AT_REST, pose?.right ?? AT_REST], now);
   }
 
   /** Return where the eyes look from at `now` (s), and place the hands; null while nobody wears a headset. */
-  place(now: number): CameraPlace | null {
+  place(now: number): CameraPose | null {
     if (!this.isWorn) return null;
     this.stream.place([this.eyes, ...this.hands], now);
     const { position, quaternion } = this.eyes;
