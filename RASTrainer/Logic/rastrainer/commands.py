@@ -11,7 +11,7 @@ import json
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, cast
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import (
@@ -609,7 +609,7 @@ def check_arguments(command: str, arguments: Mapping[str, Any]) -> dict[str, Any
     if arguments and not fields(kind):
         raise InputError(f"{command} takes no arguments.")
     record = record_from_json(kind, arguments, command, only_known=True)
-    return {each.key: getattr(record, each.name) for each in record_fields(kind)}
+    return {each.key: getattr(record, each.name) for each in record_fields(cast("Any", kind))}
 
 
 def decode_json_object(body: str) -> dict[str, Any]:
