@@ -6,9 +6,9 @@ from itertools import combinations
 
 import pytest
 from coloraide import Color
-from rastrainer_simulator.desktop.panels import theme
 
 from rastrainer.procedure.errors import PLACED_COLOR, PLANNED_COLOR, REGISTERED_COLOR
+from rastrainer_simulator.presentation import look
 from rastrainer_simulator.presentation.screen import Tone
 from rastrainer_simulator.scene import nodes
 
@@ -18,19 +18,18 @@ LEAST_CONTRAST = 4.5
 """WCAG 2.1, 1.4.3."""
 KINDS_OF_SIGHT = ("", "protan", "deutan", "tritan")
 TOLD_APART = {
-    "tones": list(theme.TONES.values()),
-    "banners": list(theme.BANNERS.values()),
+    "tones": list(look.TONES.values()),
+    "banners": list(look.BANNERS.values()),
     "tip": [
         each.color for each in (nodes.TIP_FREE, nodes.TIP_NEAR, nodes.TIP_ON_SKIN, nodes.TIP_ERROR)
     ],
-    "ring": [theme.NEAR, theme.ON_SKIN, theme.CONTACT],
     "fiducials": [each.color for each in (nodes.WAITING, nodes.NEXT, nodes.TOUCHED)],
     "lines of a procedure": [PLANNED_COLOR, REGISTERED_COLOR, PLACED_COLOR],
 }
 
 
 def as_color(values) -> Color:
-    return Color("srgb", list(values[:3]))
+    return Color(values) if isinstance(values, str) else Color("srgb", list(values[:3]))
 
 
 def seen(color: Color, sight: str) -> Color:
@@ -48,6 +47,6 @@ def test_colors_with_different_meanings_differ_for_every_kind_of_color_vision(na
 
 @pytest.mark.parametrize("tone", Tone, ids=lambda tone: tone.value)
 def test_text_is_legible_in_every_tone_and_on_every_banner(tone):
-    text, panel = as_color(theme.TEXT), as_color(theme.NIGHT)
-    assert as_color(theme.TONES[tone]).contrast(panel) >= LEAST_CONTRAST
-    assert text.contrast(as_color(theme.BANNERS[tone])) >= LEAST_CONTRAST
+    text, panel = as_color(look.TEXT), as_color(look.NIGHT)
+    assert as_color(look.TONES[tone]).contrast(panel) >= LEAST_CONTRAST
+    assert text.contrast(as_color(look.BANNERS[tone])) >= LEAST_CONTRAST

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from rastrainer_simulator.desktop.panels.theme import TONES
+from coloraide import Color
 from vtk.util.numpy_support import vtk_to_numpy
 
 from rastrainer import transforms
@@ -17,6 +17,7 @@ from rastrainer.slicer.scene.procedure_lines import (
     showProcedureErrors,
 )
 from rastrainer_simulator.flow.session.plan_marks import PLACED, PLANNED, SHOWN
+from rastrainer_simulator.presentation.look import TONES
 from Testing.domain.procedure.made_up_procedure import made_up_meshes, made_up_procedure, trajectory
 from Testing.domain.procedure.procedure_records import recorded, rotation
 
@@ -40,7 +41,7 @@ def test_each_meaning_has_one_color_in_slicer_and_in_the_simulators_views(headle
     showProcedureErrors(headless_scene.scene, analysis[1])
     for role, tone in zip(ROLES, (PLANNED, SHOWN, PLACED), strict=True):
         color = nodesOf(headless_scene.scene, LINE, role)[0].GetDisplayNode().GetSelectedColor()
-        assert color == pytest.approx(TONES[tone][:3], abs=1e-3)
+        assert color == pytest.approx(Color(TONES[tone]).coords(), abs=1e-3)
 
 
 def lines(scene, role):

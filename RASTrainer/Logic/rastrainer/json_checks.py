@@ -124,26 +124,6 @@ OBJECT_LIMIT = 65_536
 """Characters of a JSON object that is kept with a trial, such as the details of a score."""
 
 
-@dataclass(frozen=True)
-class Argument:
-    """One value of a JSON object: how it is checked, and what it is when left out.
-
-    `check` returns the accepted value or raises `ValueError` with the words that follow "must be".
-    A value without `default` is required.
-    """
-
-    check: Callable[[Any], Any]
-    default: Any = ...
-
-    @property
-    def is_required(self) -> bool:
-        return self.default is ...
-
-    def checked(self, values: Mapping[str, Any], name: str, what: str) -> Any:
-        """Return the accepted value of that name, or the default if it is missing."""
-        return accepted(self.check, values[name], what) if name in values else self.default
-
-
 IDENTIFIER_WORDS = "lower-case letters, digits and hyphens"
 _IDENTIFIER = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 
@@ -368,13 +348,3 @@ def plain_object(value: Any) -> dict[str, Any]:
     if not isinstance(value, dict) or size > OBJECT_LIMIT:
         raise ValueError(words)
     return value
-
-
-def checked_keys(value: object, keys: Mapping[str, Argument], what: str) -> dict[str, Any]:
-    """Return the checked values of a JSON object's known keys, defaults filled in."""
-    if not isinstance(value, Mapping):
-        raise InputError(f"{what} must be a JSON object.")
-    for key, argument in keys.items():
-        if key not in value and argument.is_required:
-            raise InputError(f"{what} needs the key {json.dumps(key)}.")
-    return {key: argument.checked(value, key, f"{what}: {key}") for key, argument in keys.items()}

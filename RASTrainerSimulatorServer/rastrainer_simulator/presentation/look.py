@@ -27,6 +27,8 @@ BANNERS: Mapping[Tone, str] = {
     Tone.WARNING: "#806f00",
     Tone.ERROR: "#700d18",
 }
+NIGHT, TEXT = "#0e1726", "#f4f7fb"
+"""Colors of a panel and of the text in it."""
 TARGET_COLOR = "#ffe14a"
 """Color of the arrow to a next point that is out of sight."""
 

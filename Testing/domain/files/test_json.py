@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-import json
-
 import pytest
 
 from rastrainer import json_checks
 from rastrainer.errors import InputError
-from rastrainer.files.json_fields import read_fields
 from rastrainer.json_checks import (
     MAX_DEPTH,
     MAX_MESSAGE_VALUES,
-    Argument,
     accepted,
-    checked_keys,
     decode_finite_json,
     decode_message,
     is_number,
@@ -92,20 +87,5 @@ def test_a_failed_check_says_what_the_value_must_be(check, value, words):
         accepted(check, value, "The value")
 
 
-def test_a_missing_required_key_is_named():
-    keys = {"a": Argument(json_checks.yes_or_no), "b": Argument(json_checks.text(), "usual")}
-    assert checked_keys({"a": True}, keys, "It") == {"a": True, "b": "usual"}
-    with pytest.raises(InputError, match='It needs the key "a"'):
-        checked_keys({}, keys, "It")
-
-
 def test_booleans_are_not_numbers():
     assert [is_number(value) for value in (1, 0.5, True, "1")] == [True, True, False, False]
-
-
-def test_a_file_may_contain_an_integer_with_a_decimal_point(tmp_path):
-    (tmp_path / "a.json").write_text(json.dumps({"count": 3.0, "half": 2.5}), encoding="utf-8")
-    fields = read_fields(tmp_path / "a.json")
-    assert fields.whole_number("count", 0, 9) == 3
-    with pytest.raises(InputError, match="the field half must be a whole number from 0 to 9"):
-        fields.whole_number("half", 0, 9)

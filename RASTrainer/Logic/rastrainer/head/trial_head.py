@@ -18,10 +18,9 @@ from numpy.random import default_rng
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.files.json_fields import Fields
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.json_checks import number, whole_number
-from rastrainer.protocol import SKIN_KEYS, SKIN_LIMIT_MM
+from rastrainer.protocol import SKIN_LIMIT_MM
 
 
 @dataclass(frozen=True)
@@ -166,16 +165,3 @@ class SkinShift:
 
 UNMOVED = SkinShift()
 """The skin lies as in the images."""
-
-
-def read_skin(fields: Fields, name: str = "skin") -> SkinShift:
-    """Return an optional field such as `{"shiftMm": 2, "indentationMm": 0.5}`."""
-    if name not in fields.names():
-        return UNMOVED
-    entry = fields.fields(name)
-    entry.check_names(SKIN_KEYS, "a skin")
-    amounts = (
-        entry.number(key, 0, SKIN_LIMIT_MM) if key in entry.names() else 0.0 for key in SKIN_KEYS
-    )
-    shift_mm, indentation_mm = amounts
-    return SkinShift(shift_mm, 0, indentation_mm)

@@ -1,15 +1,16 @@
 /** Text and boxes on a canvas, in its pixels, with the colors of the flat page. */
 
+import { NIGHT, TEXT } from "../generated";
 import { pieces } from "./line_breaks";
 
 export const COLORS = {
-  night: "#0e1726",
+  night: NIGHT,
   row: "#1f2837",
   accent: "#1b6ad6",
   accentEdge: "#bfdbff",
   field: "#0a111d",
   edge: "#37445a",
-  text: "#f4f7fb",
+  text: TEXT,
   soft: "#c3cede",
   pale: "#97a5bc",
 };

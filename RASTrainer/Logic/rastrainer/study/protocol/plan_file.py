@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from rastrainer.errors import InputError
-from rastrainer.files.json_fields import MAX_BYTES
-from rastrainer.files.reading import read_json
+from rastrainer.files.reading import MAX_RECORD_BYTES, read_json
 from rastrainer.json_records import record_from_json
 
 T = TypeVar("T")
@@ -16,7 +15,7 @@ T = TypeVar("T")
 
 def read_plan(kind: type[T], path: Path | str, versions: Mapping[str, Any]) -> T:
     """Read a file with one record; see `plan_from_json`."""
-    return plan_from_json(kind, read_json(Path(path), MAX_BYTES), versions, str(path))
+    return plan_from_json(kind, read_json(Path(path), MAX_RECORD_BYTES), versions, str(path))
 
 
 def plan_from_json(kind: type[T], value: object, versions: Mapping[str, Any], what: str) -> T:
