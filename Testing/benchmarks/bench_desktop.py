@@ -187,7 +187,7 @@ def _delay(lab: Lab, window: WindowProcess, random: np.random.Generator) -> Dela
     _push(lab, _way(lab))
     while np.linalg.norm(lab.view.pose("tool")[:3, 3] - start) < enough:
         lab.view.next_state()
-        assert time.monotonic() < begin + TIMEOUT_S, "the arm has not moved"
+        assert time.monotonic() < begin + TIMEOUT_S, f"the arm has not moved: {lab.view.screen}"
     streamed, tick = time.monotonic(), lab.view.state["tick"]
     shown: list[float] = []
 
