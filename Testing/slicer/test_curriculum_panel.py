@@ -80,8 +80,7 @@ def test_a_curriculum_for_everybody_shows_the_class_as_a_board_does_and_follows_
     (table,) = class_table(reader.read(), "en")
     reader.close()
     assert shown == [
-        [row["trainee"], f"{row['reached']} / {len(row['cells'])}", row["next"]]
-        for row in table["trainees"]
+        [row.trainee, f"{row.reached} / {len(row.cells)}", row.next] for row in table.trainees
     ]
     chosen = list(map(as_in_narrow_columns, table["trainees"][0]["cells"]))
     assert chosen == [row[1] for row in cells(panel, "assignmentsTable")]

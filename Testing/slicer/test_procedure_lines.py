@@ -93,7 +93,7 @@ def test_the_arrows_show_the_registration_error_then_the_hand_error_true_to_scal
         for role in (Role.ERRORS_BY_REGISTRATION, Role.ERRORS_BY_HAND)
     )
     for errors in found.trajectories:
-        target, shown = errors.trajectory.target, errors.shown_target
+        target, shown = errors.trajectory.target_ras, errors.shown_target
         for data, place in (
             (by_registration, target),
             (by_registration, shown),

@@ -208,12 +208,12 @@ def test_a_learning_curve_over_two_methods_says_so(scene, add_trial):
     assert (
         showLearningCurve(scene, "T-001", [first, second]).GetTitle() == "Learning curve of T-001"
     )
-    by_surface = replace(first, record=replace(first.record, method=RegistrationMethod.SURFACE))
-    chart = showLearningCurve(scene, "T-001", [by_surface, second])
-    assert chart.GetTitle().endswith("(scores by fiducials and surface cannot be compared)")
+    other = replace(first, record=replace(first.record, method=RegistrationMethod.LANDMARKS))
+    chart = showLearningCurve(scene, "T-001", [other, second])
+    assert chart.GetTitle().endswith("(scores by fiducials and landmarks cannot be compared)")
     table = findNode(scene, "vtkMRMLTableNode", Role.HISTORY)
     column = table.GetColumnIndex("method")
-    assert [table.GetCellText(row, column) for row in range(2)] == ["surface", "fiducials"]
+    assert [table.GetCellText(row, column) for row in range(2)] == ["landmarks", "fiducials"]
 
 
 def test_a_trial_without_results_has_empty_cells(scene, logic, make_record):

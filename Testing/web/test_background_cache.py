@@ -28,7 +28,7 @@ CHANGES = {
     "another view": "page.state.view.position[0] += 0.01",
     "another place of the head": "page.stage.model.node('head').position.x += 0.01",
     "paint": "page.stage.model.paintSkin(new Float32Array(page.stage.model.skinVertices.count))",
-    "a clear head": "page.screen = { ...page.screen, is_head_clear: true }",
+    "a clear head": "page.screen = { ...page.screen, isHeadClear: true }",
     "a restored context": (
         "page.stage.renderer.domElement.dispatchEvent(new Event('webglcontextrestored'))"
     ),

@@ -114,7 +114,7 @@ def _is_reached(planning: PlanningSetup, place: np.ndarray, poses: list[np.ndarr
 
 def landmarks_on(mesh: HeadMesh) -> tuple[Landmark, ...]:
     """Return the reference's landmarks on another head, RAS mm, in the order of their names."""
-    reference = read_head_mesh(asset_path("scenarios", "colin27") / "head.ply")
+    reference = _reference()
     onto = _whole(reference, mesh)
     places = {
         name: _local(reference, np.array(place), onto, mesh) for name, place in REFERENCE.items()
@@ -132,6 +132,10 @@ def landmarks_on(mesh: HeadMesh) -> tuple[Landmark, ...]:
 
 
 @cache
+def _reference() -> HeadMesh:
+    return read_head_mesh(asset_path("scenarios", "colin27") / "head.ply")
+
+
 def _whole(reference: HeadMesh, mesh: HeadMesh) -> np.ndarray:
     """Return the transform (4, 4) that lays the reference on the head: rigid after a scaling.
 

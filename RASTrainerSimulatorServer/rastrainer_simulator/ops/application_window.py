@@ -93,6 +93,11 @@ def _has_graphics() -> bool:
     return not sys.platform.startswith("linux") or any(Path("/dev/dri").glob("renderD*"))
 
 
+def _ends_with_us() -> list[str]:
+    """Return what has a command end when this process does, even by a crash; only Linux has it."""
+    return [] if shutil.which("setpriv") is None else ["setpriv", "--pdeathsig", "TERM"]
+
+
 class ApplicationWindow:
     """Shows the page of one simulator in a browser of its own, with a profile of its own."""
 
@@ -116,6 +121,7 @@ class ApplicationWindow:
                 announce(NO_BROWSER.format(url=self._url, code=self._code))
             return
         self._process = await asyncio.create_subprocess_exec(
+            *_ends_with_us(),
             *application_command(browser, page.as_uri(), page.parent / "profile"),
             env=environment_without_secrets(),
             stdout=subprocess.DEVNULL,

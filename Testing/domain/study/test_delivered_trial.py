@@ -85,7 +85,9 @@ def test_a_delivered_trial_is_checked_once_and_stored_with_its_unknown_keys(stud
         monkeypatch.setattr(
             module,
             "record_from_json",
-            lambda kind, value: checks.append(value) or record_from_json(kind, value),
+            lambda kind, value, *others: (
+                checks.append(value) or record_from_json(kind, value, *others)
+            ),
         )
     delivered = exact_touches(1) | {"ofALaterVersion": 1}
     taken = store_delivered(delivered, study, lambda record: analyze_trial(record, SCENARIO))

@@ -310,7 +310,7 @@ def test_a_trial_run_or_a_break_ends_early_only_with_a_reason(study):
 
 def test_a_trial_that_can_have_no_score_counts_for_no_step(study):
     progress = StudyProgress(study)
-    progress.set_protocol(protocol(questionnaires=[], trialRun={"minutes": 0}))
+    progress.set_protocol(protocol(questionnaires=[], trialRunMin=0))
     step = steps_for(progress.protocol(), 0)[0]
     progress.enroll("T001")
     utc = "2999-01-01T10:00:00Z"

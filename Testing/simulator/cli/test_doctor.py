@@ -11,7 +11,6 @@ import pytest
 from rastrainer_simulator.cli import doctor
 from rastrainer_simulator.cli.doctor import OK, PROBLEM, WARNING
 from rastrainer_simulator.cli.main import main
-from Testing.end_to_end.virtual_display import VirtualDisplay
 from Testing.free_port import free_port
 from Testing.sdl_virtual_gamepad import VirtualGamepad
 
@@ -70,37 +69,17 @@ def test_a_missing_package_is_a_problem_and_one_that_makes_it_faster_a_warning(m
     assert found[slower] == WARNING
 
 
-def test_without_a_display_the_window_is_reported_as_unavailable(monkeypatch):
-    for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER", "SDL_VIDEO_DRIVER"):
+def test_without_a_display_or_a_browser_the_window_is_reported_as_unavailable(monkeypatch):
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
-    ((verdict, sentence),) = answers(doctor.check_graphics)
-    assert verdict == WARNING
-    assert "no display" in sentence
-
-
-def test_on_a_display_the_renderer_of_opengl_is_named(monkeypatch):
-    with VirtualDisplay() as display:
-        monkeypatch.setenv("DISPLAY", display.name)
-        ((verdict, sentence),) = answers(doctor.check_graphics)
-    assert "OpenGL works" in sentence
-    assert verdict == (WARNING if "llvmpipe" in sentence else OK)
-
-
-@pytest.mark.parametrize(
-    ("script", "verdict", "words"),
-    [
-        ("print('OpenGL works: NVIDIA T4.')", OK, "OpenGL works: NVIDIA T4."),
-        ("import os; os.abort()", WARNING, "ended with -6"),
-        ("import sys; sys.exit('OpenGL does not work: none.')", WARNING, "not work: none."),
-        ("import sys; sys.exit('ModuleNotFoundError')", WARNING, "ended with 1"),
-    ],
-)
-def test_an_opengl_that_crashes_its_process_is_reported(monkeypatch, script, verdict, words):
+    ((verdict, sentence),) = answers(doctor.check_window)
+    assert (verdict, "no display" in sentence) == (WARNING, True)
     monkeypatch.setenv("DISPLAY", ":0")
-    monkeypatch.setattr(doctor, "PROBE", (sys.executable, "-c", script))
-    ((found, sentence),) = answers(doctor.check_graphics)
-    assert found == verdict
-    assert words in sentence
+    ((verdict, sentence),) = answers(doctor.check_window)
+    assert (verdict, "shows the page in a window" in sentence) == (OK, True)
+    monkeypatch.setenv("PATH", "/none")
+    ((verdict, sentence),) = answers(doctor.check_window)
+    assert (verdict, "no Chrome, Chromium or Edge" in sentence) == (WARNING, True)
 
 
 def test_a_gamepad_is_named_and_a_missing_one_is_a_warning():
@@ -185,7 +164,7 @@ def test_the_doctor_prints_one_screen_with_remedies_and_exits_with_1_if_there_is
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) <= 24
     assert {line[9:19].strip() for line in lines if line[:8].strip()} == {
-        *("python", "graphics", "browser", "gamepad", "ports", "slicer", "disk")
+        *("python", "window", "browser", "gamepad", "ports", "slicer", "disk")
     }
     assert main([*words(held), "--json"]) == 1
     findings = json.loads(capsys.readouterr().out)

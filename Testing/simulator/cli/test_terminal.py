@@ -49,7 +49,6 @@ def test_without_a_home_folder_what_needs_none_works_and_the_rest_says_what_to_d
         "--version": "0",
         "--help": "0",
         "simulator --help": "0",
-        "window --help": "0",
         f"scenario list --library {tmp_path}": "0",
         "scenario list": "2",
         "verify": "2",

@@ -25,7 +25,7 @@ def in_picture(pose, point) -> tuple[float, float]:
     right = np.cross(ahead, pose.view_up)
     right /= np.linalg.norm(right)
     off = np.array(point) - pose.position
-    depth = math.tan(math.radians(pose.angle_deg) / 2.0) * (off @ ahead)
+    depth = math.tan(math.radians(pose.view_angle_deg) / 2.0) * (off @ ahead)
     return float(off @ right / depth), float(off @ np.cross(right, ahead) / depth)
 
 
@@ -52,7 +52,7 @@ def test_the_line_is_viewed_from_the_trainees_side(name):
 
 def test_a_faraway_tool_does_not_shrink_the_line_beyond_visibility():
     pose = across_line(EYE, LINES["sloping"], (1.5, 1.5, 1.5))
-    shown = 2.0 * AWAY_M * math.tan(math.radians(pose.angle_deg) / 2.0)
+    shown = 2.0 * AWAY_M * math.tan(math.radians(pose.view_angle_deg) / 2.0)
     assert shown == pytest.approx(TALLEST_M)
 
 
@@ -61,6 +61,6 @@ def test_the_view_along_the_skin_widens_the_farther_the_tip_is():
     near, far, farther = (
         along_skin(eye, fiducial, (0.5, 0.1 + away, 0.25)) for away in (0.0, 0.1, 5.0)
     )
-    assert near.angle_deg < far.angle_deg < farther.angle_deg < 90.0
+    assert near.view_angle_deg < far.view_angle_deg < farther.view_angle_deg < 90.0
     assert near.view_up == UP
     assert (near.position, near.focal_point) == (eye, fiducial)

@@ -441,4 +441,4 @@ def test_the_tip_is_in_the_picture_from_the_first_step_on(learner):
     # Upward it moves by 30 mm, and the upper tenth of the picture is the instruction's.
     away = np.add(learner.tip, (0.0, 0.0, 0.03)) - eye
     height = np.degrees(np.arctan2(away @ (up / np.linalg.norm(up)), away @ ahead))
-    assert abs(height) < 0.4 * view.angle_deg
+    assert abs(height) < 0.4 * view.view_angle_deg

@@ -8,7 +8,7 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.protocol import Proximity
 from rastrainer.scenario.points import Task
-from rastrainer.scenario.scenario import Camera, Furniture
+from rastrainer.scenario.scenario import Camera, Furniture, OperatingTable, Stand
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.rendering.lighting import Shadows
 from rastrainer_simulator.rendering.picture import SceneMoment, render_picture, write_png
@@ -23,7 +23,9 @@ RADIUS = 80.0
 SIZE = (480, 270)
 UP = np.array([0.0, 0.0, 1.0])
 FAR = Camera(np.array([660.0, -2350.0, 950.0]), np.array([420.0, 0.0, 330.0]), UP, 24.0)
-FURNITURE = Furniture(np.array([300.0, 0.0]), np.array([1300.0, 1000.0, 40.0]), 80.0)
+FURNITURE = Furniture(
+    OperatingTable(np.array([300.0, 0.0]), np.array([1300.0, 1000.0, 40.0])), Stand(80.0)
+)
 FRONT = RADIUS * np.array([[0.0, 1.0, 0.0], [0.5, 0.75**0.5, 0.0], [-0.5, 0.75**0.5, 0.0]])
 
 

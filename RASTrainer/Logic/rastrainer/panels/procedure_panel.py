@@ -163,7 +163,7 @@ class ProcedurePanel(Panel):
     def _jumpToTarget(self) -> None:
         row = self._ui.procedureErrorsTable.currentRow()
         if self._shown is not None and 0 <= row < len(self._shown.analysis.trajectories):
-            self._session.slices.show(self._shown.analysis.trajectories[row].trajectory.target)
+            self._session.slices.show(self._shown.analysis.trajectories[row].trajectory.target_ras)
 
     def _showMessage(self, sentence: str) -> None:
         setText(self._ui.procedureMessageText, sentence)
