@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from rastrainer.json_records import record_to_json
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import day_of
 from rastrainer_simulator.board.class_table import ClassReader, class_table
@@ -77,10 +78,11 @@ def test_a_curriculum_for_everybody_shows_the_class_as_a_board_does_and_follows_
     shown = cells(panel, "classTable")
     assert shown[0][1] == "1 / 6"
     reader = ClassReader(Path(panel.find("studyPathLineEdit").currentPath))
-    (table,) = class_table(reader.read(), "en")
+    table = record_to_json(*class_table(reader.read(), "en"), with_defaults=True)
     reader.close()
     assert shown == [
-        [row.trainee, f"{row.reached} / {len(row.cells)}", row.next] for row in table.trainees
+        [row["trainee"], f"{row['reached']} / {len(row['cells'])}", row["next"]]
+        for row in table["trainees"]
     ]
     chosen = list(map(as_in_narrow_columns, table["trainees"][0]["cells"]))
     assert chosen == [row[1] for row in cells(panel, "assignmentsTable")]

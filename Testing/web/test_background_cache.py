@@ -15,8 +15,8 @@ BEGIN = """() => {
     if (camera === flat.camera && !camera.layers.isEnabled(0)) window.backgrounds++;
     render.call(stage.renderer, scene, camera);
   };
-  // The arm stays where a test puts it.
-  page.place = () => {};
+  // Arm and view stay where a test puts them.
+  page.place = page.take = () => {};
 }"""
 DRAW = """(seconds) => {
   window.now += seconds;

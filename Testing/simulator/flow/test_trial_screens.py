@@ -375,7 +375,7 @@ def test_straying_from_the_path_is_not_reported_where_guidance_has_faded(pilot):
     pilot.start("task-4")
     truth = pilot.loop.truth
     center = truth.in_world(truth.target_ras) / MM_PER_M
-    pilot.touch(truth.in_world(truth.fiducials["1"]) / MM_PER_M, center)
+    pilot.touch(truth.in_world(truth.fiducials_ras["1"]) / MM_PER_M, center)
     pilot.steer_to(center + np.array([0.0, 0.0, 0.25]), 0.02)
     for aside in ((0.09, 0.0, 0.25), (-0.09, 0.0, 0.25), (0.0, 0.09, 0.25), (0.0, -0.09, 0.25)):
         pilot.steer_to(center + np.array(aside), 0.02)
