@@ -22,7 +22,6 @@ from Testing.web.place import CarriedTrainee
 
 FOLDER = Path(__file__).parents[2] / "docs" / "pictures"
 SIZE = (1280, 720)
-COLORS = 96
 NEAR_MM, PRESSED_MM = 12.0, 0.25
 SLIP_AT, SLIP_M = 6, 0.006
 """After so many touches one is off by this much."""
@@ -35,7 +34,7 @@ def main() -> None:
         Lab(Path(folder), "--seed", "7", order="fixed", tutorial="required") as lab,
     ):
         window = lab.open_window("window", SIZE)
-        photographer = Photographer(lab, window, FOLDER, COLORS)
+        photographer = Photographer(lab, window, FOLDER)
         with Client(port=lab.simulator.port) as client:
             # It only carries the tip: the simulator is to score alone.
             hello = {"protocolVersion": PROTOCOL_VERSION, "client": "carrier", "scores": False}

@@ -205,8 +205,8 @@ def kinds(events: list[dict]) -> list[str]:
 
 def test_slicer_scores_the_trial_of_that_trainee(session):
     results = session["slicer_events"][-1]["results"]
-    assert results["trainee"] == TRAINEE
-    assert results["task"] == "task-1"
+    assert results["record"]["trainee"] == TRAINEE
+    assert results["record"]["task"] == "task-1"
     assert session["menu"].facts[0].label == "Score"
 
 

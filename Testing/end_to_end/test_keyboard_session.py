@@ -81,7 +81,7 @@ def touches_of(lab: Lab) -> list[dict]:
 
 def test_slicer_scores_the_trial_of_that_trainee(session):
     results = session["results"]
-    assert results["trainee"].lower() == TRAINEE
+    assert results["record"]["trainee"].lower() == TRAINEE
     assert session["menu"].name == "result"
 
 

@@ -25,6 +25,12 @@ BOX = """(item) => {
   const isShown = found !== null && found.getClientRects().length > 0;
   return isShown ? found.getBoundingClientRect().toJSON() : null;
 }"""
+MENU = """() => {
+  const menu = document.getElementById("menu");
+  const { left, top, bottom, width } = menu.getBoundingClientRect();
+  const high = (part) => menu.querySelector(part).offsetHeight + 10;
+  return [left + width / 2, top + high("h2"), bottom - high(".help")];
+}"""
 STICK = """(index) => {
   const box = document.querySelectorAll("#touch-controls .stick")[index].getBoundingClientRect();
   return [box.left + box.width / 2, box.top + box.height / 2, box.width / 2];
@@ -44,7 +50,7 @@ class WindowMouse:
 
     def click(self, item: str) -> None:
         """Click on an item of the menu or on a hint, once it is shown."""
-        wait_until(lambda: self._place(item) is not None, f"{item} in the window")
+        wait_until(lambda: self._is_in_sight(item), f"{item} in the window")
         self._move(*self._place(item))
         self._mouse.hold(True)
         self._mouse.hold(False)
@@ -88,6 +94,18 @@ class WindowMouse:
 
     def _move(self, x: float, y: float) -> None:
         self._mouse.move(self._corner[0] + round(x), self._corner[1] + round(y))
+
+    def _is_in_sight(self, item: str) -> bool:
+        """Return whether an item can be clicked; one out of the menu's sight is scrolled to."""
+        place = self._place(item)
+        if place is None:
+            return False
+        x, top, bottom = self._window.page.evaluate(MENU)
+        if item.startswith("press") or top < place[1] < bottom:
+            return True
+        self._move(x, (top + bottom) / 2)
+        self._mouse.turn_wheel(is_down=place[1] >= bottom)
+        return False
 
     def _place(self, item: str) -> tuple[float, float] | None:
         """Return the middle of what is clicked to choose an item; None where it is not shown."""

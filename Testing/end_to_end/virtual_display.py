@@ -89,6 +89,12 @@ class VirtualMouse(_Device):
         self._test.XTestFakeButtonEvent(self._display, 1, int(is_down), 0)
         self._x.XFlush(self._display)
 
+    def turn_wheel(self, is_down: bool) -> None:
+        """Turn the wheel by a step."""
+        for is_pressed in (1, 0):
+            self._test.XTestFakeButtonEvent(self._display, 5 if is_down else 4, is_pressed, 0)
+        self._x.XFlush(self._display)
+
     def window_corner(self, width: int) -> tuple[int, int]:
         """Return the left edge of the window of this width, in pixels."""
         root = ctypes.c_ulong(self._x.XDefaultRootWindow(self._display))

@@ -36,10 +36,9 @@ TOUCHED = 6
 class Photographer:
     """Takes pictures of the window."""
 
-    def __init__(self, lab: Lab, window: WindowProcess, folder: Path = FOLDER, colors: int = 256):
-        """Save in a folder, with so many colors."""
+    def __init__(self, lab: Lab, window: WindowProcess, folder: Path = FOLDER) -> None:
         self._lab, self._window = lab, window
-        self._folder, self._colors = folder, colors
+        self._folder = folder
 
     def keep(self, name: str) -> None:
         """Save what is shown, once the view has arrived."""
@@ -49,7 +48,8 @@ class Photographer:
         time.sleep(FLIGHT_S + 1.5)
         path = self._folder / f"{name}.png"
         picture = Image.open(io.BytesIO(self._window.page.screenshot())).convert("RGB")
-        picture.quantize(self._colors).save(path, optimize=True)
+        # Few pixels have the colors of fiducials and tip: none of them may be merged with another.
+        picture.quantize(256, Image.Quantize.MAXCOVERAGE).save(path, optimize=True)
         print(name, path.stat().st_size, flush=True)
 
 

@@ -109,6 +109,6 @@ def test_the_ruler_guides_the_needle_to_its_depth(operated):
 
 
 def test_slicers_side_scores_the_touches_and_the_procedure(operated):
-    assert operated["results"]["mode"] == "hmd"
+    assert operated["results"]["record"]["mode"] == "hmd"
     assert operated["results"]["procedure"]["score"]["score"] > 0.0
     assert operated["labels"][0] == "Score of the procedure"

@@ -65,7 +65,7 @@ def test_a_trial_is_played_registered_and_scored_with(way, tmp_path, browser):
         trainee.until_menu("result")
         assert page.problems == []
         mode = "hmd" if way.headset else "desktop"
-        assert (results["mode"], len(place.entries("touch"))) == (mode, 15)
+        assert (results["record"]["mode"], len(place.entries("touch"))) == (mode, 15)
         assert trainee.menu.facts[0].label == "Score"
         assert {entry["operator"] for entry in place.entries("input")} <= {way.operator, ""}
         (registered,) = place.entries("registered")

@@ -95,6 +95,7 @@ export class MenuView {
     if (isOther) this.parent.scrollTop = 0;
     // The help covers the end of a list that is scrolled.
     this.parent.style.scrollPaddingBottom = `${this.help.offsetHeight}px`;
+    this.parent.style.scrollPaddingTop = `${this.title.offsetHeight}px`;
     row?.line.scrollIntoView({ block: "nearest" });
   }
 }
