@@ -20,16 +20,19 @@ pytestmark = pytest.mark.soak
 SIZE = (960, 540)
 SPEED = "0.4"
 """Simulated seconds per second: a stick is released in time, however late a picture is."""
+SCROLLED_S = 0.5
 BOX = """(item) => {
   const found = document.querySelector(`[data-item="${item}"], li[data-name="${item}"]`);
   const isShown = found !== null && found.getClientRects().length > 0;
   return isShown ? found.getBoundingClientRect().toJSON() : null;
 }"""
+# The middle of the menu, and between which heights it is in sight: a low window scrolls it whole.
 MENU = """() => {
   const menu = document.getElementById("menu");
   const { left, top, bottom, width } = menu.getBoundingClientRect();
   const high = (part) => menu.querySelector(part).offsetHeight + 10;
-  return [left + width / 2, top + high("h2"), bottom - high(".help")];
+  const lowest = Math.min(bottom, innerHeight) - high(".help");
+  return [left + width / 2, Math.max(top, 0) + high("h2"), lowest];
 }"""
 STICK = """(index) => {
   const box = document.querySelectorAll("#touch-controls .stick")[index].getBoundingClientRect();
@@ -105,6 +108,8 @@ class WindowMouse:
             return True
         self._move(x, (top + bottom) / 2)
         self._mouse.turn_wheel(is_down=place[1] >= bottom)
+        # The page scrolls smoothly.
+        time.sleep(SCROLLED_S)
         return False
 
     def _place(self, item: str) -> tuple[float, float] | None:

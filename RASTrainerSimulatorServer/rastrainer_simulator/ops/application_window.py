@@ -54,7 +54,7 @@ AS_ROOT = ("--no-sandbox", "--test-type")
 """Chromium refuses to run as root otherwise; the second spares a bar that says so."""
 NICENESS = "10"
 """A browser that draws on the processor leaves it to the control loop first."""
-ENDING_S = 5.0
+ENDING_S, LOOK_S = 5.0, 0.1
 GONE = (
     "continues without its window, which ended with status {status}: open {url} in a browser, and "
     "type the pairing code {code}"
@@ -145,8 +145,12 @@ class ApplicationWindow:
             except asyncio.TimeoutError:
                 process.kill()
                 await process.wait()
-        if self._folder is not None:
+        # A browser's other processes write until they have noticed the end of the first.
+        for _ in range(round(ENDING_S / LOOK_S)):
+            if self._folder is None or not self._folder.exists():
+                break
             shutil.rmtree(self._folder, ignore_errors=True)
+            await asyncio.sleep(LOOK_S)
 
     def _write_redirection(self) -> Path:
         """Write the page that leads to ours; others can read a command line, but not this file."""
