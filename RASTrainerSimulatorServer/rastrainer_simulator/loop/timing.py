@@ -9,7 +9,6 @@ import os
 import sys
 import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -61,13 +60,6 @@ def raise_thread_priority() -> None:
         _set_windows_priority(_WINDOWS_PRIORITY[SECOND])
     elif hasattr(os, "SCHED_FIFO"):
         set_real_time(SECOND)
-
-
-def is_real_time_permitted() -> bool:
-    """Return whether a system with `SCHED_FIFO` lets the loop run before ordinary threads."""
-    # Tried in a thread that ends with it, so that nothing has to be undone.
-    with ThreadPoolExecutor(max_workers=1) as pool:
-        return pool.submit(set_real_time, FIRST).result()
 
 
 @contextlib.contextmanager

@@ -217,13 +217,6 @@ def without_secrets(screen: Screen) -> Screen:
     return dataclasses.replace(screen, menu=menu)
 
 
-def focused_picture(menu: Menu | None) -> str:
-    """Return where the picture of the item with the focus is, "" where it has none."""
-    if menu is None:
-        return ""
-    return next((item.picture for item in menu.items if item.name == menu.focus), "")
-
-
 NOTICE_S = 5.0
 
 
