@@ -58,28 +58,6 @@ COUNT_A_PICTURE = """async () => {
 }"""
 
 
-# The next fiducial pulses, so that each picture differs from the one before.
-COUNT_PICTURES = """async (seconds) => {
-  const { frames } = page;
-  const drawn = frames.drawn.bind(frames);
-  let count = 0;
-  frames.drawn = () => { count++; drawn(); };
-  const begin = performance.now();
-  await new Promise((done) => setTimeout(done, 1000 * seconds));
-  frames.drawn = drawn;
-  return (1000 * count) / (performance.now() - begin);
-}"""
-# As a dragged mouse turns the view.
-TURN = """() => {
-  window.turning = setInterval(() => {
-    page.connection.send("orbit", { aroundDeg: 2, higherDeg: 0, zoom: 1 });
-  }, 33);
-}"""
-SIZES = ((1920, 1080), (1280, 720))
-STROKE_S = 2.0
-SPEED_MM_S = 30.0
-
-
 def rows(quick: bool) -> list[dict]:
     """Return the rows `web.*`."""
     packed = sum((DIST / f"{name}.br").stat().st_size for name in PAGE_FILES) / KB
@@ -89,8 +67,6 @@ def rows(quick: bool) -> list[dict]:
             found += _picture(page, "page")
             found.append(_bytes(page, 3 if quick else 10))
             found.append(_delay(place, page, 5 if quick else 40))
-            for size in SIZES:
-                found += _pictures(place, page, size, 4 if quick else 10)
         with _page(playwright, HEADSET) as (_place, page):
             found += _picture(page, "headset")
         found += _heaps(playwright, 5 if quick else 60)
@@ -148,29 +124,6 @@ def _bytes(page: Page, seconds: int) -> dict:
     passed = time.monotonic() - begin
     session.detach()
     return row("web.stream per view", [sum(sizes) / KB / passed], "kB/s")
-
-
-def _pictures(place: Place, page: Page, size: tuple[int, int], seconds: int) -> list[dict]:
-    """Count a window's pictures while the arm moves, near and far, and while the view turns."""
-    width, height = size
-    page.set_viewport_size({"width": width, "height": height})
-    rates = {}
-    for camera in ("close-up", "far"):
-        with Client(port=place.simulator.port) as client:
-            client.send_command("Hello", {"protocolVersion": PROTOCOL_VERSION, "client": "bench"})
-            client.send_command("SetCamera", {"camera": camera})
-            page.wait_for_timeout(3000)
-            counts = []
-            for piece in range(round(seconds / STROKE_S)):
-                velocity = [0.0, 0.0, SPEED_MM_S * (-1) ** piece]
-                client.send_command("Jog", {"velocityMmS": velocity, "durationS": STROKE_S})
-                counts.append(page.evaluate(COUNT_PICTURES, STROKE_S))
-        rates[camera] = counts
-    page.evaluate(TURN)
-    rates["turning"] = [page.evaluate(COUNT_PICTURES, seconds)]
-    page.evaluate("clearInterval(window.turning)")
-    name = f"web.pictures {width}x{height}"
-    return [row(f"{name} {kind}", counts, "1/s") for kind, counts in rates.items()]
 
 
 def _delay(place: Place, page: Page, count: int) -> dict:

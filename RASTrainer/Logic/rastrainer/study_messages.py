@@ -13,8 +13,7 @@ from typing import Annotated, Any
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import (
-    IDENTIFIER_WORDS,
-    is_identifier,
+    identifier,
     number,
     one_of,
     text,
@@ -46,13 +45,6 @@ from rastrainer.protocol import (
 WHOLE_WAY = 100
 """Percent of the way to competence."""
 FIDUCIALS = RegistrationMethod.FIDUCIALS.value
-
-
-def identifier(value: Any) -> str:
-    """Accept a name for commands and files."""
-    if not isinstance(value, str) or not is_identifier(value):
-        raise ValueError(IDENTIFIER_WORDS)
-    return value
 
 
 def skin_amounts(value: Any) -> dict[str, float]:

@@ -41,7 +41,6 @@ def run_simulator(arguments: argparse.Namespace) -> int:
         has_gamepad=arguments.gamepad,
         has_desktop=arguments.desktop,
         config=arguments.config,
-        logs=logs,
         resumes=arguments.resume,
         scores_alone=arguments.own_score,
         connect_to=connect_to,

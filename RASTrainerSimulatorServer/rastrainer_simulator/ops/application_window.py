@@ -13,9 +13,9 @@ import webbrowser
 from collections.abc import Callable
 from pathlib import Path
 
-from rastrainer.files.writing import make_private_folder
+from rastrainer.files.writing import make_private_folder, write_text
 from rastrainer.home_folder import home_folder
-from rastrainer_simulator.ops.processes import BELOW_NORMAL, environment_without_secrets
+from rastrainer_simulator.ops.processes import environment_without_secrets
 
 PROGRAMS = (
     *("google-chrome-stable", "google-chrome", "chromium", "chromium-browser"),
@@ -126,7 +126,6 @@ class ApplicationWindow:
             env=environment_without_secrets(),
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
-            creationflags=0 if _has_graphics() else BELOW_NORMAL,
         )
         status = await self._process.wait()
         if status == 0:
@@ -159,6 +158,5 @@ class ApplicationWindow:
         make_private_folder(parent)
         self._folder = Path(tempfile.mkdtemp(dir=parent))
         page = self._folder / "open.html"
-        page.touch(mode=0o600)
-        page.write_text(_REDIRECTION.format(url=self._url, code=self._code), encoding="utf-8")
+        write_text(page, _REDIRECTION.format(url=self._url, code=self._code), is_private=True)
         return page

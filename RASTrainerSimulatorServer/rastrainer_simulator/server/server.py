@@ -74,7 +74,6 @@ class ServerOptions:
         has_gamepad: whether gamepads at this computer are read.
         has_desktop: whether a window is opened; the simulator ends when its user closes it.
         config: folder of the user's settings; None is the usual one.
-        logs: folder of the logs of the window; None is the usual one.
         resumes: whether a trial that the simulator's end has interrupted is resumed.
         scores_alone: whether a trial outside of a study is scored where no Slicer is connected.
     """
@@ -94,7 +93,6 @@ class ServerOptions:
     has_gamepad: bool = True
     has_desktop: bool = False
     config: Path | None = None
-    logs: Path | None = None
     resumes: bool = True
     scores_alone: bool = True
 

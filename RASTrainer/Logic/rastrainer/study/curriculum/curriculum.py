@@ -7,19 +7,13 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from rastrainer.errors import InputError
-from rastrainer.json_checks import text
+from rastrainer.json_checks import identifier, list_of, text
 from rastrainer.json_records import record_to_json
 from rastrainer.protocol import MAX_ASSIGNMENTS
 from rastrainer.study.protocol.plan_file import plan_from_json, read_plan
-from rastrainer.study_messages import Assignment, identifier
+from rastrainer.study_messages import Assignment
 
 _VERSIONS = {"formatVersion": 1}
-
-
-def _some_assignments(value: Any) -> Any:
-    if not isinstance(value, list) or not 1 <= len(value) <= MAX_ASSIGNMENTS:
-        raise ValueError(f"a list of 1 to {MAX_ASSIGNMENTS} objects")
-    return value
 
 
 @dataclass(frozen=True)
@@ -33,7 +27,7 @@ class Curriculum:
 
     name: Annotated[str, identifier]
     title: Annotated[str, text(80)]
-    assignments: Annotated[tuple[Assignment, ...], _some_assignments]
+    assignments: Annotated[tuple[Assignment, ...], list_of(1, MAX_ASSIGNMENTS, "objects")]
 
     def __post_init__(self) -> None:
         earlier: set[str] = set()
