@@ -63,15 +63,15 @@ def test_citation_readme_and_the_module_in_slicer_name_the_same_publications():
             assert reference.get("doi", reference.get("url")) in text
 
 
-def test_the_readme_states_the_measured_simulator_sizes_that_the_module_shows():
+def test_the_documentation_states_the_measured_simulator_sizes_that_the_module_shows():
     resources = ROOT / "RASTrainer" / "Resources" / "RASTrainerSimulator"
     measured = json.loads((resources / "sizes.json").read_text(encoding="utf-8"))
     columns = ("linux-x86_64", "win32-AMD64", "darwin-arm64", "darwin-x86_64")
     assert sorted(measured) == sorted(columns)
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "how-to" / "use-slicer.md").read_text(encoding="utf-8")
     for title, key in (("downloaded, once", "downloadMB"), ("kept", "keptMB")):
         row = " | ".join(f"{measured[name][key]} MB" for name in columns)
-        assert f"| {title} | {row} |" in readme
+        assert f"| {title} | {row} |" in page
 
 
 @pytest.mark.parametrize("name", ["MIT", "BSD-3-Clause", "LicenseRef-Colin27"])

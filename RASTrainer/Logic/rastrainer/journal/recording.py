@@ -118,10 +118,6 @@ class Recording:
             sim_time = self._paused_since
         return sim_time - self._start_s - self._paused_s
 
-    def _event_time(self, entry: Mapping[str, Any]) -> float:
-        """Return the trial time of an event: that of the tick before its line."""
-        return self._trial_time(entry["simTimeS"] - self._tick_s)
-
     def _header(self, entry: Mapping[str, Any]) -> None:
         self._tick_s = entry["tickS"]
         self._start_s = entry["simTimeS"] - self._tick_s
@@ -137,7 +133,9 @@ class Recording:
             self._refused.append(self._touch_of(entry))
 
     def _touch_of(self, entry: Mapping[str, Any]) -> Touch:
-        return Touch(entry["label"], _position(entry), self._event_time(entry))
+        return Touch(
+            entry["label"], _position(entry), self._trial_time(entry["simTimeS"] - self._tick_s)
+        )
 
     def _undo(self, entry: Mapping[str, Any]) -> None:
         self._undone += 1

@@ -210,15 +210,11 @@ def _propagated(
     fit = fit_of_errors(registration)
     of_parameters = np.einsum("pni,nij,qnj->pq", fit, covariances, fit)
     center = registration.fixed_mm.mean(axis=0)
-    moved = motions(registration.kind, _checked_targets(targets) - center)
-    return moved @ of_parameters @ np.swapaxes(moved, 1, 2)
-
-
-def _checked_targets(targets: np.ndarray) -> np.ndarray:
     array = np.asarray(targets, dtype=float)
     if array.ndim != 2 or array.shape[1] != 3 or not np.isfinite(array).all():
         raise InputError("Each target must be three finite coordinates (x, y, z in mm).")
-    return array
+    moved = motions(registration.kind, array - center)
+    return moved @ of_parameters @ np.swapaxes(moved, 1, 2)
 
 
 LEAST_SHARE_ALONG_SKIN = 0.1

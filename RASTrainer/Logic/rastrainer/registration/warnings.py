@@ -62,7 +62,11 @@ def find_warnings(
         warnings += _duplicates(points, which, labels)
     scale = find_scale(moving, fixed)
     if scale is not None:
-        warnings.append(_scale(scale, labels))
+        message = (
+            f"The fixed points ({', '.join(labels)}) are {scale:.4g} times as far apart as the moving "
+            f"points; {_unit_advice(scale)}."
+        )
+        warnings.append(RegistrationWarning("scale", labels, message))
         # The larger set is taken to be in mm, so that later sentences give true distances.
         moving, fixed = moving * max(scale, 1.0), fixed / min(scale, 1.0)
     if is_mirrored(moving, fixed):
@@ -111,14 +115,6 @@ def _duplicates(
         "touch or place each fiducial once."
     )
     return [RegistrationWarning("duplicate", twins, message)]
-
-
-def _scale(scale: float, labels: tuple[str, ...]) -> RegistrationWarning:
-    message = (
-        f"The fixed points ({', '.join(labels)}) are {scale:.4g} times as far apart as the moving "
-        f"points; {_unit_advice(scale)}."
-    )
-    return RegistrationWarning("scale", labels, message)
 
 
 def _unit_advice(scale: float) -> str:

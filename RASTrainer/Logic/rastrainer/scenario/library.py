@@ -152,7 +152,12 @@ def pack(folder: Path, package: Path) -> Path:
             write_scenario(clean, scenario, head, skull, volume, no_go)
             if scenario.preview:
                 shutil.copyfile(scenario.preview, clean / PREVIEW_NAME)
-            _write_archive(partial, clean)
+            with zipfile.ZipFile(partial, "x", zipfile.ZIP_DEFLATED) as archive:
+                for file in sorted(entry for entry in clean.rglob("*") if entry.is_file()):
+                    info = zipfile.ZipInfo(file.relative_to(clean).as_posix(), _TIME)
+                    info.compress_type = zipfile.ZIP_DEFLATED
+                    info.external_attr = (stat.S_IFREG | 0o644) << 16
+                    archive.writestr(info, file.read_bytes())
         partial.replace(package)
     except OSError as error:
         raise InputError(f"{package} cannot be written: {error.strerror}.") from None
@@ -217,15 +222,6 @@ def require_usable_lines(scenario: Scenario) -> None:
         wrong += unusable_lines(procedure, head, meshes.skull)
     if wrong:
         raise InputError(" ".join(wrong))
-
-
-def _write_archive(path: Path, folder: Path) -> None:
-    with zipfile.ZipFile(path, "x", zipfile.ZIP_DEFLATED) as archive:
-        for file in sorted(entry for entry in folder.rglob("*") if entry.is_file()):
-            info = zipfile.ZipInfo(file.relative_to(folder).as_posix(), _TIME)
-            info.compress_type = zipfile.ZIP_DEFLATED
-            info.external_attr = (stat.S_IFREG | 0o644) << 16
-            archive.writestr(info, file.read_bytes())
 
 
 def _read_archive(package: Path, folder: Path, progress: Progress) -> None:

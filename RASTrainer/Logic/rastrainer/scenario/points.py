@@ -158,8 +158,10 @@ def check_landmarks(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> list[str]:
             f"The head has {len(landmarks)} landmarks; place {COARSE_LANDMARKS} to "
             f"{MAX_LANDMARKS} of them."
         ]
+    names = [landmark.name for landmark in landmarks]
+    twice = [name for name in dict.fromkeys(names) if names.count(name) > 1]
     return [
-        *_named_twice(landmarks),
+        *[f"{name} is placed {names.count(name)} times; keep one." for name in twice],
         *_off_skin(mesh, landmarks),
         *_on_other_side(mesh, landmarks),
         *_close(landmarks),
@@ -182,12 +184,6 @@ def spread_first(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
 def _area(three: Sequence[Landmark]) -> float:
     a, b, c = (landmark.position_ras for landmark in three)
     return float(np.linalg.norm(np.cross(b - a, c - a)))
-
-
-def _named_twice(landmarks: Sequence[Landmark]) -> list[str]:
-    names = [landmark.name for landmark in landmarks]
-    twice = [name for name in dict.fromkeys(names) if names.count(name) > 1]
-    return [f"{name} is placed {names.count(name)} times; keep one." for name in twice]
 
 
 def _off_skin(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> list[str]:
