@@ -1,6 +1,6 @@
 """`python -m Testing.error_rates [--write]`: simulate again how often the statistics err.
 
-Prints the tables of docs/error-rates.md, each with what is asked of it, in a few minutes on one
+Prints the tables of Testing/error_rates/tables.md, each with what is asked of it, in a few minutes on one
 core; `--write` puts them into the page. The exit status is 1 where something asked does not hold.
 """
 

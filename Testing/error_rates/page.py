@@ -1,4 +1,4 @@
-"""The tables of docs/error-rates.md."""
+"""The tables of Testing/error_rates/tables.md."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from Testing.error_rates import (
 )
 from Testing.error_rates.measured import Row, markdown
 
-PAGE = Path(__file__).parents[2] / "docs" / "error-rates.md"
+PAGE = Path(__file__).with_name("tables.md")
 SETS = 2000
 TABLES: dict[str, tuple[Sequence[str], Callable[[int], Sequence[Row]]]] = {
     "learning": (learning.HEADER, learning.series),

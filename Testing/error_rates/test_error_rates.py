@@ -1,4 +1,4 @@
-"""The error rates of the statistics are those in docs/error-rates.md."""
+"""The error rates of the statistics are those in Testing/error_rates/tables.md."""
 
 import dataclasses
 import re

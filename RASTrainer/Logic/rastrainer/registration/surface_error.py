@@ -104,7 +104,7 @@ def surface_target_error(
     adds 3σ² of its standard deviation on each axis, as with fiducials. The interval is that of
     fiducials, too (`rastrainer.registration.target_error.target_error`), and has the same blind
     spots: errors that neighboring points share. It holds less often for drawn traces; see
-    docs/error-rates.md.
+    Testing/error_rates/tables.md.
     """
     return error_of_covariance(
         target,

@@ -10,7 +10,7 @@ Equal skill should get equal scores on every task of every head. So the referenc
 the tip's path through the fiducials, and the reference error from how touching errors propagate to
 the region. A touch is on the skin, so its errors lie along the skin; isotropic errors (Fitzpatrick,
 West and Maurer 1998) would allow tasks on a small patch up to twice the error that the same skill
-causes. docs/error-rates.md compares the scores on three heads.
+causes. Testing/error_rates/tables.md compares the scores on three heads.
 """
 
 from __future__ import annotations
