@@ -35,8 +35,8 @@ _POINT = """async (name) => {
   const { x, y, width, height } = panel.regions.find((region) => region.name === name);
   const size = panel.mesh.geometry.parameters;
   const target = panel.mesh.position.clone().set(
-    ((x + width / 2) / panel.width - 0.5) * size.width,
-    (0.5 - (y + height / 2) / panel.height) * size.height, 0);
+    ((x + width / 2) / panel.canvas.width - 0.5) * size.width,
+    (0.5 - (y + height / 2) / panel.canvas.height) * size.height, 0);
   placement.rig.worldToLocal(panel.mesh.localToWorld(target));
   const hand = panel.mesh.position.clone().copy(device.position);
   hand.x += 0.2;

@@ -267,10 +267,10 @@ def test_proximity_pulses_both_controllers(worn, trainee):
 def test_the_holder_of_control_is_shown_while_driving_and_in_menus(worn, trainee):
     holder = "You drive: headset's controllers"
     trainee.press("camera", lambda: trainee.view.state["camera"] == "far", "the far camera")
-    wait_for(worn, f"page.headset.panels.work.shown.includes(`{holder}`)")
+    wait_for(worn, f"page.headset.panels.work.root.textContent.includes(`{holder}`)")
     trainee.press("camera", lambda: trainee.view.state["camera"] != "far", "the close camera")
     trainee.press("menu", lambda: trainee.menu is not None, "the menu")
-    wait_for(worn, f"page.headset.panels.actions.shown.includes(`{holder}`)")
+    wait_for(worn, f"page.headset.panels.actions.root.textContent.includes(`{holder}`)")
 
 
 def test_taking_the_headset_off_pauses_the_trial_and_loses_nothing(place, worn, trainee):

@@ -20,6 +20,7 @@ export class MenuRow {
 
   constructor(
     item: MenuItem,
+    helpId: string,
     private readonly connection: Connection,
   ) {
     this.item = item;
@@ -39,7 +40,7 @@ export class MenuRow {
       this.control = this.button();
       this.line.append(this.control);
     }
-    this.control?.setAttribute("aria-describedby", "menu-help");
+    this.control?.setAttribute("aria-describedby", helpId);
   }
 
   show(item: MenuItem, hasFocus: boolean): void {

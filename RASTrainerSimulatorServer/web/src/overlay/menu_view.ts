@@ -1,13 +1,12 @@
 /** The simulator's menu as a dialog of real controls: kept while they change, so that focus and caret stay. */
 
 import type { Connection } from "../stream/connection";
-import { byId, element } from "../elements";
+import { element } from "../elements";
 import { MenuRow } from "./menu_row";
 import type { Fact, MenuItem, Menu } from "../generated";
 import { say } from "../texts";
 
 export class MenuView {
-  private readonly parent = byId("menu");
   private readonly title = element("h2", "");
   private readonly text = element("div", "");
   private readonly list = element("ul", "");
@@ -20,10 +19,13 @@ export class MenuView {
   private shape = "";
   private focus = "";
 
-  constructor(private readonly connection: Connection) {
-    this.title.id = "menu-title";
-    this.text.id = "menu-text";
-    this.help.id = "menu-help";
+  constructor(
+    private readonly parent: HTMLElement,
+    private readonly connection: Connection,
+  ) {
+    this.title.id = `${parent.id}-title`;
+    this.text.id = `${parent.id}-text`;
+    this.help.id = `${parent.id}-help`;
     this.help.className = "help";
     this.spoken.className = "unseen";
     this.spoken.setAttribute("role", "status");
@@ -48,7 +50,7 @@ export class MenuView {
 
   private fill(menu: Menu, drawn: string): void {
     const focused = menu.items.find((item) => item.name === menu.focus);
-    this.parent.className = drawn !== "" ? "pictured" : menu.facts.length > 0 ? "wide" : "";
+    this.parent.className = drawn !== "" ? "menu pictured" : menu.facts.length > 0 ? "menu wide" : "menu";
     this.title.textContent = menu.title;
     this.fillText(menu, drawn, focused);
     const shape = JSON.stringify([menu.name, menu.items.map((item) => [item.name, item.kind])]);
@@ -75,7 +77,7 @@ export class MenuView {
   private build(menu: Menu, shape: string): void {
     this.shape = shape;
     this.rows.clear();
-    for (const item of menu.items) this.rows.set(item.name, new MenuRow(item, this.connection));
+    for (const item of menu.items) this.rows.set(item.name, new MenuRow(item, this.help.id, this.connection));
     this.list.replaceChildren(...[...this.rows.values()].map((row) => row.line));
   }
 

@@ -2,8 +2,9 @@
 
 import { ACROSS, BESIDE } from "../scene/flat_view";
 import type { Connection } from "../stream/connection";
-import { byId, element } from "../elements";
+import { byId } from "../elements";
 import { MenuView } from "./menu_view";
+import { factLines, hintLine, message } from "./parts";
 import type { ControlNews, Menu, ScreenMessage, PairingNews, Screen } from "../generated";
 import { controlsPicture, inputsOf } from "../panels/controls_picture";
 import { trendPlot } from "../panels/trend_plot";
@@ -25,7 +26,7 @@ export class Overlay {
   private readonly menuView: MenuView;
 
   constructor(private readonly connection: Connection) {
-    this.menuView = new MenuView(connection);
+    this.menuView = new MenuView(byId("menu"), connection);
   }
 
   show(screen: Screen): void {
@@ -33,35 +34,12 @@ export class Overlay {
     document.body.dataset.menu = screen.menu?.name ?? "";
     this.menu = screen.menu;
     this.showMenu();
-    this.part("instruction", screen.instruction, (parent) => {
-      parent.textContent = screen.instruction.text;
-      parent.dataset.tone = screen.instruction.tone;
-    });
+    this.part("instruction", screen.instruction, (parent) => message(screen.instruction, parent));
     this.facts = screen.status;
     this.coverage = screen.coverage;
     this.showFacts();
-    this.part("hints", screen.hints, (parent) => {
-      for (const hint of screen.hints) {
-        const line = element("li", "");
-        const place = hint.item === "" ? line : line.appendChild(element("button", ""));
-        place.append(element("kbd", hint.control));
-        // What is written on it already is not said twice.
-        if (hint.action !== hint.control) place.append(element("span", hint.action));
-        if (hint.item !== "") {
-          place.dataset.item = hint.item;
-          const choose = () => connection.send({ type: "item", name: hint.item });
-          // At once, not when the button is let go: the tip is where it is now.
-          place.onpointerdown = (event) => {
-            if (event.button === 0) choose();
-          };
-          place.onclick = (event) => {
-            const isByKey = event.detail === 0;
-            if (isByKey) choose();
-          };
-        }
-        parent.append(line);
-      }
-    });
+    const choose = (item: string) => connection.send({ type: "item", name: item });
+    this.part("hints", screen.hints, (parent) => parent.append(...screen.hints.map((hint) => hintLine(hint, choose))));
     this.warnings = screen.warnings;
     this.showWarnings();
   }
@@ -113,13 +91,7 @@ export class Overlay {
   private showWarnings(): void {
     const own: ScreenMessage[] = this.notice === "" ? [] : [{ text: say(this.notice), tone: "error" }];
     const all = [...own, ...this.warnings].slice(0, 3);
-    this.part("warnings", all, (parent) => {
-      for (const warning of all) {
-        const line = element("li", warning.text);
-        line.dataset.tone = warning.tone;
-        parent.append(line);
-      }
-    });
+    this.part("warnings", all, (parent) => parent.append(...all.map((warning) => message(warning))));
   }
 
   private part(id: string, content: unknown, fill: (parent: HTMLElement) => void): void {
@@ -136,14 +108,7 @@ export class Overlay {
     const isTold = pairing !== null && this.menu !== null;
     const how = isTold ? [say("pairing", { code: pairing.code, address: pairing.addresses[1] ?? pairing.addresses[0]! })] : [];
     const facts = [...this.facts, ...how];
-    this.part("status", [facts, this.coverage], (parent) => {
-      parent.append(...facts.map((fact) => element("li", fact)));
-      if (this.coverage === "") return;
-      const legend = element("li", "");
-      legend.className = "legend";
-      legend.append(element("i", ""), this.coverage);
-      parent.append(legend);
-    });
+    this.part("status", [facts, this.coverage], (parent) => parent.append(...factLines(facts, this.coverage)));
   }
 
   private showMenu(): void {

@@ -70,7 +70,7 @@ export class Page {
   private readonly errors = new ErrorArrows();
   private readonly trace = new TraceMarks();
   private readonly ghost = new Ghost();
-  private readonly guiding = new GuidingPanel();
+  private readonly guiding = new GuidingPanel(byId("guiding") as HTMLCanvasElement);
   private readonly loading = new Loading();
   private readonly enter = new EnterButton((session) => void this.enterHeadset(session));
   private headset: Headset | null = null;

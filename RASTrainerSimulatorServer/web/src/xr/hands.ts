@@ -14,7 +14,7 @@ import {
 
 import type { Connection } from "../stream/connection";
 import type { Feedback } from "../generated";
-import type { Panel } from "../panels/panel";
+import type { ElementPanel } from "../panels/element_panel";
 import type { RoomPanels } from "./room_panels";
 import { controllerBody } from "../scene/controller_body";
 import type { Grab } from "./grab";
@@ -160,7 +160,7 @@ export class Hands {
     if (hit?.uv === undefined) return "";
     hand.line.visible = true;
     hand.line.scale.z = hit.distance;
-    return (hit.object.userData.panel as Panel).at(hit.uv);
+    return (hit.object.userData.panel as ElementPanel).at(hit.uv);
   }
 
   /** Choose what a tracked hand points at, or have the tip follow the hand while it pinches. */

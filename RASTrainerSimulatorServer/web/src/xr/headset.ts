@@ -29,7 +29,7 @@ const TO_TOOL: ArrowLook = { color: 0x8cc8ff, down: 0.22, radius: 0.003 };
 export class Headset {
   private readonly camera = new PerspectiveCamera(70, 1, 0.05, 20);
   private readonly placement = new Placement();
-  private readonly panels = new RoomPanels();
+  private readonly panels: RoomPanels;
   private readonly seating = new Seating();
   private readonly grab = new Grab();
   private readonly arrow = new SightArrow(TO_POINT);
@@ -55,6 +55,7 @@ export class Headset {
     private readonly leave: () => void,
   ) {
     const { scene, renderer } = stage;
+    this.panels = new RoomPanels(connection);
     this.poses = new HeadsetPoses(connection, stage.world);
     this.camera.layers.enable(STATIC);
     this.placement.rig.add(this.camera);

@@ -2,16 +2,17 @@
 
 import { Group, Vector3 } from "three";
 
-import { BANNERS, type GuideAim, type ControlNews, type DepthRuler, type Menu, type ScreenMessage, type Screen } from "../generated";
-import { Panel, type Region } from "../panels/panel";
-import { GUIDING_HEIGHT, GUIDING_WIDTH, guidingContent, paintGuiding } from "../panels/guiding_painter";
-import { paintMenu } from "../panels/menu_painter";
+import { element } from "../elements";
+import type { ControlNews, DepthRuler, GuideAim, Screen, ScreenMessage } from "../generated";
+import { GuidingPanel } from "../overlay/guiding_panel";
+import { MenuView } from "../overlay/menu_view";
+import { factLines, hintLine, message } from "../overlay/parts";
 import { controlsPicture, inputsOf, PICTURE_HEIGHT, PICTURE_WIDTH } from "../panels/controls_picture";
-import { COLORS, type Pen } from "../panels/pen";
-import { paintWork } from "../panels/work_painter";
-import { say, sayHolder, type TextName } from "../texts";
+import { ElementPanel } from "../panels/element_panel";
+import { Panel } from "../panels/panel";
 import { trendPlot } from "../panels/trend_plot";
-import { thumbnail } from "../panels/thumbnails";
+import type { Connection } from "../stream/connection";
+import { say, sayHolder } from "../texts";
 import { CloseUp } from "./close_up";
 import type { Seating } from "./seating";
 
@@ -46,8 +47,6 @@ const WARNING_WIDE = 0.66;
 const GUIDING_WIDE = 0.24;
 /** Order of drawing; what points at a panel comes after it. */
 const ON_TOP = 10;
-const BUTTON = { size: 32, color: COLORS.text, isBold: true };
-const WARNING = { size: 40, color: COLORS.text, isBold: true };
 
 /** Names of what the headset does itself; an item of a menu never has such a name. */
 export const LOCAL = ["recenter", "higher", "lower", "grab", "leave"] as const;
@@ -59,41 +58,43 @@ export class RoomPanels {
   /** In the room. */
   readonly room = new Group();
   readonly closeUp = new CloseUp(CLOSE_UP_WIDE);
-  private readonly menu = new Panel(1024, 1024, WIDE);
-  private readonly work = new Panel(1024, 760, WIDE);
-  private readonly actions = new Panel(1024, 236, WIDE);
-  private readonly picture = new Panel(PICTURE_WIDTH + 2 * PAD, PICTURE_HEIGHT + 2 * PAD, PICTURE_WIDE);
-  /** What is drawn on `picture`; it is there a moment later than its address. */
+  private readonly menu = new ElementPanel(1024, 1024, WIDE);
+  private readonly work = new ElementPanel(1024, 760, WIDE);
+  private readonly actions = new ElementPanel(1024, 236, WIDE);
+  private readonly picture = new ElementPanel(PICTURE_WIDTH + 2 * PAD, PICTURE_HEIGHT + 2 * PAD, PICTURE_WIDE);
+  private readonly warning = new ElementPanel(1024, 256, WARNING_WIDE);
+  private readonly aim = new GuidingPanel(element("canvas", ""));
+  private readonly guiding = new Panel(this.aim.canvas, GUIDING_WIDE);
+  private readonly menuView: MenuView;
   private readonly drawing = new Image();
-  private readonly warning = new Panel(1024, 256, WARNING_WIDE);
-  private readonly guiding = new Panel(GUIDING_WIDTH, GUIDING_HEIGHT, GUIDING_WIDE);
   private screen: Screen | null = null;
   private seating: Seating | null = null;
   private control: ControlNews | null = null;
   private notice = "";
-  private hovered = "";
   private mayGrab = true;
 
-  constructor() {
-    const panels = [this.menu, this.work, this.actions, this.picture, this.warning, this.guiding];
-    this.guiding.mesh.visible = false;
-    this.room.add(...panels.map((panel) => panel.mesh), this.closeUp.mesh);
-    this.drawing.onload = () => this.paint();
-    const before = [this.menu, this.actions, this.picture, this.warning, this.guiding];
-    for (const [order, panel] of before.entries()) {
+  constructor(connection: Connection) {
+    const { menu, work, actions, picture, warning, guiding, closeUp } = this;
+    this.room.add(...[menu, work, actions, picture, warning, guiding].map((panel) => panel.mesh), closeUp.mesh);
+    for (const [order, panel] of [menu, actions, picture, warning, guiding].entries()) {
       // The arm may stand before them.
       panel.mesh.material.depthTest = false;
       panel.mesh.renderOrder = ON_TOP + order;
     }
+    const section = element("section", "");
+    section.id = "room-menu";
+    menu.root.append(section);
+    this.menuView = new MenuView(section, connection);
+    picture.root.append(part("div", "drawing", this.drawing));
   }
 
   /** Those that can be pointed at. */
-  get pointable(): readonly Panel[] {
+  get pointable(): readonly ElementPanel[] {
     return [this.menu, this.actions];
   }
 
   /** Those that tracked hands, which have no buttons, can point at. */
-  get touchable(): readonly Panel[] {
+  get touchable(): readonly ElementPanel[] {
     return [...this.pointable, this.work];
   }
 
@@ -147,9 +148,8 @@ export class RoomPanels {
 
   /** Show the bull's-eye or the depth ruler; nothing where there is neither. */
   showGuiding(aim: GuideAim | null, ruler: DepthRuler | null, depth: number): void {
-    const { guiding } = this;
-    guiding.mesh.visible = aim !== null || ruler !== null;
-    if (guiding.mesh.visible) guiding.show(guidingContent(aim, ruler, depth), (pen) => paintGuiding(pen, aim, ruler, depth));
+    this.guiding.mesh.visible = aim !== null || ruler !== null;
+    if (this.aim.show(aim, ruler, depth)) this.guiding.texture.needsUpdate = true;
   }
 
   setNotice(text: string): void {
@@ -158,8 +158,7 @@ export class RoomPanels {
   }
 
   hover(name: string): void {
-    this.hovered = name;
-    this.paint();
+    for (const panel of this.touchable) panel.hover(name);
   }
 
   setGrab(mayGrab: boolean): void {
@@ -182,79 +181,58 @@ export class RoomPanels {
     const { screen } = this;
     if (screen === null) return;
     const { menu } = screen;
-    const holder = sayHolder(this.control?.holder ?? "", this.control?.isYou ?? false);
-    this.menu.mesh.visible = this.actions.mesh.visible = menu !== null;
-    this.work.mesh.visible = this.closeUp.mesh.visible = menu === null;
-    this.paintPicture(menu);
+    const holder = part("p", "control", sayHolder(this.control?.holder ?? "", this.control?.isYou ?? false));
+    this.closeUp.mesh.visible = menu === null;
     if (menu !== null) {
-      const focused = menu.items.find((item) => item.name === menu.focus);
-      const image = thumbnail(menu.trend ? trendPlot(menu.trend) : (focused?.picture ?? ""), () => this.paint());
-      this.menu.show(JSON.stringify([menu, this.hovered, image !== null]), (pen) =>
-        paintMenu(pen, menu, this.menu.width, this.menu.height, this.hovered, image),
-      );
-      const content = JSON.stringify([this.hovered, this.mayGrab, holder, screen.language]);
-      this.actions.show(content, (pen) => this.paintActions(pen, holder));
+      this.menuView.show(menu, menu.trend ? trendPlot(menu.trend) : "");
+      const buttons = LOCAL.map((action) => this.button(action));
+      this.actions.root.replaceChildren(part("div", "actions", ...buttons, holder));
+      if (menu.picture) this.drawing.src = controlsPicture(menu.picture, inputsOf(menu));
     } else {
-      const plain = screen.warnings.filter((warning) => !isUrgent(warning));
-      const read = { ...screen, warnings: plain };
-      this.work.show(JSON.stringify([read, holder, this.hovered]), (pen) =>
-        paintWork(pen, read, holder, this.work.width, this.work.height, this.hovered),
-      );
+      this.work.root.replaceChildren(workOf(screen, holder));
     }
-    this.paintWarning(screen);
-  }
-
-  private paintPicture(menu: Menu | null): void {
-    const { drawing, picture } = this;
-    const isWanted = Boolean(menu?.picture);
-    if (menu?.picture) {
-      const source = controlsPicture(menu.picture, inputsOf(menu));
-      if (drawing.src !== source) drawing.src = source;
-    }
-    picture.mesh.visible = isWanted && drawing.complete;
-    if (!picture.mesh.visible) return;
-    picture.show(drawing.src, (pen) => {
-      pen.box(0, 0, picture.width, picture.height, COLORS.night, PAD);
-      pen.image(drawing, PAD, PAD);
-    });
-  }
-
-  private paintWarning(screen: Screen): void {
     const own: ScreenMessage[] = this.notice === "" ? [] : [{ text: this.notice, tone: "error" }];
-    const first = [...own, ...screen.warnings.filter(isUrgent)][0];
-    this.warning.mesh.visible = first !== undefined;
-    if (first === undefined) return;
-    const { width } = this.warning;
-    this.warning.show(JSON.stringify(first), (pen) => {
-      const lines = Math.min(4, pen.wrapped(first.text, WARNING, width - 80).length);
-      pen.box(0, 0, width, lines * 51 + 48, BANNERS[first.tone], 28);
-      pen.paragraph(first.text, 40, 24, WARNING, width - 80);
-    });
+    const first = [...own, ...screen.warnings.filter(isUrgent)].slice(0, 1);
+    this.warning.root.replaceChildren(part("ul", "warnings", ...first.map((one) => message(one))));
+    for (const [panel, isShown] of [
+      [this.menu, menu !== null],
+      [this.actions, menu !== null],
+      [this.picture, Boolean(menu?.picture)],
+      [this.work, menu === null],
+      [this.warning, first.length > 0],
+    ] as const) {
+      if (isShown) panel.update();
+      panel.show(isShown);
+    }
   }
 
-  private paintActions(pen: Pen, holder: string): Region[] {
-    const { width, height } = this.actions;
-    pen.box(0, 0, width, height, COLORS.night, 40);
-    const labels: readonly TextName[] = ["recenter", "higher", "lower", this.mayGrab ? "grab" : "noGrab", "leave"];
-    const regions: Region[] = [];
-    let x = 32;
-    let y = 20;
-    LOCAL.forEach((action, index) => {
-      const name = PREFIX + action;
-      const text = say(labels[index]!);
-      const wide = pen.width(text, BUTTON) + 44;
-      if (x + wide > width - 24) {
-        x = 32;
-        y += 74;
-      }
-      pen.box(x, y, wide, 62, name === this.hovered ? COLORS.accent : COLORS.row, 16);
-      pen.line(text, x + 22, y + 33, BUTTON);
-      regions.push({ name, x, y, width: wide, height: 62 });
-      x += wide + 14;
-    });
-    pen.line(holder, 32, height - 38, { size: 32, color: COLORS.soft }, width - 64);
-    return regions;
+  private button(action: Local): HTMLElement {
+    const button = element("button", say(action === "grab" && !this.mayGrab ? "noGrab" : action));
+    button.dataset.name = PREFIX + action;
+    return button;
   }
+}
+
+/** Return what is read while the arm is driven: the instruction, short facts and the controls. */
+function workOf(screen: Screen, holder: HTMLElement): HTMLElement {
+  const plain = screen.warnings.filter((warning) => !isUrgent(warning)).slice(0, 2);
+  const instruction = message(screen.instruction, part("p", "instruction"));
+  return part(
+    "div",
+    "work",
+    instruction,
+    part("ul", "warnings", ...plain.map((one) => message(one))),
+    part("ul", "status", ...factLines(screen.status, screen.coverage)),
+    part("ul", "hints", ...screen.hints.map((hint) => hintLine(hint, () => undefined))),
+    holder,
+  );
+}
+
+function part(tag: "div" | "p" | "ul", name: string, ...content: (Node | string)[]): HTMLElement {
+  const made = element(tag, "");
+  made.className = name;
+  made.append(...content);
+  return made;
 }
 
 function isUrgent(message: ScreenMessage): boolean {
