@@ -16,7 +16,8 @@ LAYERS = """
     stream
     audio, panels
     scene
-    input, overlay, xr
+    input, overlay
+    xr
     board, page
 """
 FLOOR_OF = {
