@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import random
+import sys
 from dataclasses import asdict
 from functools import partial
 
@@ -19,6 +20,8 @@ REPLAYS = 20
 
 
 def replay(arguments: argparse.Namespace) -> int:
+    if arguments.film is not None:
+        return _film(arguments)
     if not arguments.verify:
         return _show(arguments)
     # Only here: the robot and the scenario take time to import.
@@ -33,6 +36,30 @@ def replay(arguments: argparse.Namespace) -> int:
     else:
         print(_summary(reading.sentence, report))
     return 0 if report.is_identical else 1
+
+
+def _film(arguments: argparse.Namespace) -> int:
+    # Only here: the robot and the scenario take time to import.
+    from rastrainer.journal.recording import read_track
+    from rastrainer_simulator.record.trial_context import setup_of
+    from rastrainer_simulator.replay.film import write_film
+    from rastrainer_simulator.replay.recorded_trial import RecordedTrial
+
+    if not 0.1 <= arguments.speed <= 20.0:
+        raise InputError("--speed must be from 0.1 to 20 seconds of the trial per second.")
+    track = read_track(arguments.journal)
+    setup = setup_of(track.header, arguments.scenario)
+    tenths = 0
+
+    def tell(share: float) -> None:
+        nonlocal tenths
+        if int(10 * share) > tenths:
+            tenths = int(10 * share)
+            print(f"{10 * tenths} %", file=sys.stderr)
+
+    write_film(arguments.film, RecordedTrial(track, setup), setup, arguments.speed, tell)
+    print(arguments.film)
+    return 0
 
 
 def _show(arguments: argparse.Namespace) -> int:
@@ -98,6 +125,8 @@ COMMANDS = (
                 "simulate the trial again and compare it with the journal instead of showing it",
             ),
             arg.flag("--json", "print the report of --verify as JSON"),
+            arg.path("--film", "FILE.webm", "write the trial as a film instead of showing it"),
+            arg.number("--speed", 1.0, "seconds of the trial per second of the film"),
             *PLAYBACK,
         ),
         "Shows the trial in the window and to every view; Escape ends it. Exit status: 0 shown, or "

@@ -1,0 +1,161 @@
+"""A recorded trial as a film: drawn without a window, encoded by OpenCV."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
+
+from rastrainer.errors import InputError
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.scenario.scenario import Camera, task_by_method
+from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.rendering.lighting import Shadows, light_room
+from rastrainer_simulator.rendering.picture import (
+    INSET_SHARE,
+    OffscreenWindow,
+    SceneMoment,
+    lay_in_corner,
+    node_actors,
+)
+from rastrainer_simulator.replay.recorded_trial import RecordedTrial
+from rastrainer_simulator.robot.kinematics import make_kinematics
+from rastrainer_simulator.scene.nodes import Material
+from rastrainer_simulator.scene.scene_glb import scene_nodes
+from rastrainer_simulator.scene.surfaces import vtk_matrix
+from rastrainer_simulator.state import SimulationState
+from rastrainer_simulator.viewpoint.best_view import TouchViews
+from rastrainer_simulator.viewpoint.view_control import STILL, CameraPose, ViewControl, orbit_to
+
+RATE_HZ = 25
+SIZE = (1280, 720)
+CLOSE_UP, FAR = "close-up", "far"
+
+
+def write_film(
+    path: Path,
+    trial: RecordedTrial,
+    setup: SimulationSetup,
+    speed: float = 1.0,
+    progress: Callable[[float], None] = lambda _share: None,
+) -> None:
+    """Write a trial's touches as a film (VP9 in WebM), whole or not at all.
+
+    The picture is the best view of the next fiducial, with the far view in its corner. `speed` is
+    in seconds of the trial per second of the film; `progress` is told the share that is done.
+    """
+    if path.suffix.lower() != ".webm":
+        raise InputError(f"The film {path.name} must be named *.webm.")
+    try:
+        import cv2
+    except ImportError:
+        raise InputError(
+            "A film needs OpenCV: install it with `python -m pip install 'rastrainer[film]'`."
+        ) from None
+    partial = path.with_name(f"{path.stem}.partial.webm")
+    encoder = cv2.VideoWriter(str(partial), cv2.VideoWriter_fourcc(*"VP90"), RATE_HZ, SIZE)
+    if not encoder.isOpened():
+        raise InputError(f"The film {path} cannot be written: is its folder there and writable?")
+    scene = _FilmedScene(trial, setup)
+    frames = max(1, round(trial.duration_s / speed * RATE_HZ))
+    try:
+        for frame in range(frames):
+            state = trial.state_at(frame * speed / RATE_HZ)
+            pixels = scene.frame(state, 1.0 / RATE_HZ)
+            text = f"{len(state.training.touches)}/{scene.count}   {_clock(state.completion_time)}"
+            for color, width in (((20, 20, 20), 6), ((255, 255, 255), 2)):
+                cv2.putText(
+                    pixels, text, (32, 58), cv2.FONT_HERSHEY_DUPLEX, 1.2, color, width, cv2.LINE_AA
+                )
+            encoder.write(pixels[..., ::-1])
+            progress((frame + 1) / frames)
+        encoder.release()
+        partial.replace(path)
+    finally:
+        scene.close()
+        encoder.release()
+        partial.unlink(missing_ok=True)
+
+
+def _clock(seconds: float) -> str:
+    return f"{int(seconds) // 60:02d}:{int(seconds) % 60:02d}"
+
+
+class _FilmedScene:
+    """The scene of a trial, whose moving parts follow a state from frame to frame."""
+
+    def __init__(self, trial: RecordedTrial, setup: SimulationSetup) -> None:
+        scenario = setup.scenario
+        head = read_head_mesh(scenario.head_mesh)
+        first = trial.state_at(0.0)
+        task = task_by_method(scenario, trial.task, first.training.method)
+        self.count = len(task.labels)
+        self._scenario, self._robot, self._head_base = scenario, setup.robot, head.base
+        self._kinematics = make_kinematics(setup.robot)
+        self._nodes = scene_nodes(scenario, setup.robot, head, task)
+        self._views = TouchViews(setup, head)
+        self._head_to_world = first.head_to_world.copy()
+        self._head_to_world[:3, 3] *= MM_PER_M
+        self._views.begin(task, self._head_to_world)
+        self._control = ViewControl()
+        self._next_point: str | None = None
+        self._looks: dict[str, Material] = {}
+        self._actors: dict[str, list[vtkActor]] = {}
+        self._renderer = vtkRenderer()
+        light_room(self._renderer, Shadows.NONE)
+        self._window = OffscreenWindow(self._renderer)
+
+    def frame(self, state: SimulationState, passed_s: float) -> np.ndarray:
+        """Return the picture of a state, (height, width, 3) uint8; the view moves on by a time."""
+        training = state.training
+        moment = SceneMoment(
+            self._kinematics.links(np.array(state.q)),
+            self._head_to_world,
+            self._head_base,
+            frozenset(touch.label for touch in training.touches),
+            training.next_point,
+            state.proximity,
+        )
+        self._move_parts(moment)
+        camera = self._follow(training.next_point, state.q, passed_s)
+        pixels = self._window.frame(camera, SIZE)
+        width, height = (round(INSET_SHARE * length) for length in SIZE)
+        lay_in_corner(pixels, self._window.frame(self._scenario.cameras[FAR], (width, height)))
+        return pixels
+
+    def close(self) -> None:
+        self._window.close()
+
+    def _move_parts(self, moment: SceneMoment) -> None:
+        poses, looks = moment.poses(self._robot), moment.looks()
+        if looks != self._looks:
+            self._looks = looks
+            self._renderer.RemoveAllViewProps()
+            for node in self._nodes:
+                self._actors[node.name] = node_actors([node], poses, looks)
+                for actor in self._actors[node.name]:
+                    self._renderer.AddActor(actor)
+        for name, pose in poses.items():
+            for actor in self._actors.get(name, ()):
+                actor.SetUserMatrix(vtk_matrix(pose))
+
+    def _follow(self, next_point: str | None, q: tuple[float, ...], passed_s: float) -> Camera:
+        """Return the camera on its way to the best view of the next fiducial."""
+        camera = self._scenario.cameras[CLOSE_UP]
+        if next_point is not None and next_point != self._next_point:
+            self._next_point = next_point
+            best = self._views.best(next_point, q)
+            if best is not None:
+                self._control.go(orbit_to(camera, best.eye, best.fiducial))
+        self._control.advance(passed_s, camera, STILL, is_arm_still=True)
+        return _camera(self._control.pose(camera))
+
+
+def _camera(pose: CameraPose) -> Camera:
+    position, focal_point = (
+        MM_PER_M * np.array(place) for place in (pose.position, pose.focal_point)
+    )
+    return Camera(position, focal_point, np.array(pose.view_up), pose.view_angle_deg)
