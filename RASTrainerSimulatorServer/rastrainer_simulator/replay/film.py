@@ -56,7 +56,7 @@ def write_film(
             "A film needs OpenCV: install it with `python -m pip install 'rastrainer[film]'`."
         ) from None
     partial = path.with_name(f"{path.stem}.partial.webm")
-    encoder = cv2.VideoWriter(str(partial), cv2.VideoWriter_fourcc(*"VP90"), RATE_HZ, SIZE)
+    encoder = cv2.VideoWriter(str(partial), cv2.VideoWriter.fourcc(*"VP90"), RATE_HZ, SIZE)
     if not encoder.isOpened():
         raise InputError(f"The film {path} cannot be written: is its folder there and writable?")
     scene = _FilmedScene(trial, setup)
@@ -112,7 +112,7 @@ class _FilmedScene:
         """Return the picture of a state, (height, width, 3) uint8; the view moves on by a time."""
         training = state.training
         moment = SceneMoment(
-            self._kinematics.links(np.array(state.q)),
+            self._kinematics.links(state.q),
             self._head_to_world,
             self._head_base,
             frozenset(touch.label for touch in training.touches),
