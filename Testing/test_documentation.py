@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from Testing.pictures import MOST_BYTES
 from Testing.test_architecture import FILES, named_in_strings, our_imports
 from tools import command_table
 
@@ -223,3 +224,12 @@ def test_a_missing_path_would_be_detected():
 
 def test_the_table_of_commands_is_made_of_their_entries():
     assert command_table.page() == command_table.PAGE.read_text(encoding="utf-8")
+
+
+def test_every_picture_of_the_documentation_is_small_and_shown_on_a_page():
+    shown = " ".join((ROOT / page).read_text(encoding="utf-8") for page in PAGES)
+    for folder in ("Screenshots", "docs/pictures"):
+        pictures = [name for name in TRACKED if name.startswith(f"{folder}/")]
+        assert pictures
+        assert [name for name in pictures if (ROOT / name).stat().st_size > MOST_BYTES] == []
+        assert [name for name in pictures if Path(name).name not in shown] == []

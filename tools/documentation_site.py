@@ -17,7 +17,7 @@ from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
 ROOT = Path(__file__).resolve().parents[1]
-SITE_FILES = ("*.md", "docs/*.css", "docs/*.png", "Screenshots/*.png", "assets/scenarios/*.png")
+SITE_FILES = ("*.md", "docs/*.css", "docs/pictures/*", "Screenshots/*", "assets/scenarios/*.png")
 NO_PAGES = (".github/",)
 PACKAGES = (
     ("The domain and the Slicer side", "RASTrainer/Logic/rastrainer"),

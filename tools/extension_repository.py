@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parents[1]
 TREE = ROOT / "build" / "extension-repository"
 CONTENT = ("CMakeLists.txt", "LICENSE.txt", "NOTICE.md", "LICENSES", "RASTrainer")
 README = Path("RASTrainer", "README.md")
-PICTURES = ("Screenshots/residuals.png", "Screenshots/module-score.png")
+PICTURES = ("Screenshots/residuals.jpg", "Screenshots/module-score.webp")
 """Pictures of the README; `CMakeLists.txt` shows the first in Slicer's list of extensions."""
 
 

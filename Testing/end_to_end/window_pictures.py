@@ -6,12 +6,9 @@ hand that looks at a computer which draws large pictures sees late, and rests on
 
 from __future__ import annotations
 
-import io
 import tempfile
 import time
 from pathlib import Path
-
-from PIL import Image
 
 from rastrainer.igtl.client import Client
 from rastrainer.scenario.scenario import load_scenario
@@ -23,6 +20,7 @@ from Testing.end_to_end.hands import GamepadHands
 from Testing.end_to_end.lab import Lab
 from Testing.end_to_end.virtual_display import VirtualKeyboard
 from Testing.end_to_end.window_process import WindowProcess
+from Testing.pictures import keep_picture
 from Testing.web.place import CarriedTrainee
 
 FOLDER = Path(__file__).parents[2] / "Screenshots"
@@ -46,11 +44,7 @@ class Photographer:
             # Beside a menu nothing changes, and nothing is drawn again.
             self._window.wait_for_tick(self._lab.view.state["tick"])
         time.sleep(FLIGHT_S + 1.5)
-        path = self._folder / f"{name}.png"
-        picture = Image.open(io.BytesIO(self._window.page.screenshot())).convert("RGB")
-        # Few pixels have the colors of fiducials and tip: none of them may be merged with another.
-        picture.quantize(256, Image.Quantize.MAXCOVERAGE).save(path, optimize=True)
-        print(name, path.stat().st_size, flush=True)
+        keep_picture(self._window.page.screenshot(), self._folder / f"{name}.webp")
 
 
 def main() -> None:

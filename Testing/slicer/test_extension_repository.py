@@ -89,7 +89,7 @@ def test_the_readme_says_what_the_index_asks_for_and_its_links_lead_somewhere(tr
     assert "*Sample Data*" in readme
     links = re.findall(r"\]\(([^)]+)\)", readme)
     assert [unquote(link) for link in links if "://" not in link and link not in files] == []
-    assert any(link.endswith(".png") for link in links)
+    assert any(link.endswith(".jpg") for link in links)
     documents = re.findall(r"/RASTrainer/RASTrainer/(?:blob|tree)/main/([\w./-]+)", readme)
     assert documents
     assert all((ROOT / name).exists() for name in documents)

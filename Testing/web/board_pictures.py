@@ -20,6 +20,7 @@ from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
 from rastrainer_simulator.presentation.messages import SeatNews, message_text
 from rastrainer_simulator.state import TouchStage
 from rastrainer_simulator.texts.texts import Texts
+from Testing.pictures import keep_picture
 from Testing.simulator.board.class_study import play_class
 from Testing.simulator.board.conftest import BoardClient
 from Testing.simulator.board.seat_double import HOST, serve_seat
@@ -100,11 +101,11 @@ def take_picture(board: BoardClient, stopped: Iterable[web.AppRunner]) -> None:
         page.get_by_role("cell", name="Window 1").wait_for()
         top = page.locator("#class").bounding_box()["y"]
         clip = {"x": 0, "y": 0, "width": SIZE["width"], "height": top - 16}
-        page.screenshot(path=FOLDER / "board.png", full_page=True, clip=clip)
+        keep_picture(page.screenshot(full_page=True, clip=clip), FOLDER / "board.webp")
         page.set_viewport_size(WIDE)
         box = page.locator("#class").bounding_box()
         clip = {"x": 0, "y": box["y"] - 16, "width": WIDE["width"], "height": box["height"] + 32}
-        page.screenshot(path=FOLDER / "class.png", full_page=True, clip=clip)
+        keep_picture(page.screenshot(full_page=True, clip=clip), FOLDER / "class.webp")
         browser.close()
 
 

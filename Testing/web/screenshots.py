@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import io
 import tempfile
 from pathlib import Path
 
-from PIL import Image
 from playwright.sync_api import Page, sync_playwright
 
+from Testing.pictures import keep_picture
 from Testing.web.chromium import enter_headset, launch, open_page
 from Testing.web.hands import Controllers, PageKeys
 from Testing.web.place import WITHOUT_GRAPHICS, Place
@@ -22,9 +21,7 @@ LOOK_DOWN_AND_ASIDE = "device.quaternion.set(-0.19, -0.17, -0.03, 0.966)"
 def keep(page: Page, name: str) -> None:
     """Save what the window shows."""
     page.evaluate("frames_(8)")
-    image = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
-    image.save(FOLDER / name, optimize=True)
-    print(name, (FOLDER / name).stat().st_size)
+    keep_picture(page.screenshot(), FOLDER / name)
 
 
 def main() -> None:
@@ -43,7 +40,7 @@ def main() -> None:
             if trainee.menu is not None:
                 trainee.choose("resume")
                 page.wait_for_selector('body[data-menu=""]')
-            keep(page, "page.png")
+            keep(page, "page.webp")
             page.close()
             page = open_page(browser, url, code, "metaQuest2", size=BOTH_EYES)
             trainee.hands = Controllers(page)
@@ -51,7 +48,7 @@ def main() -> None:
             trainee.choose("resume")
             page.evaluate(LOOK_DOWN_AND_ASIDE)
             page.wait_for_selector('body[data-menu=""]')
-            keep(page, "headset.png")
+            keep(page, "headset.webp")
         browser.close()
 
 

@@ -17,8 +17,8 @@ from rastrainer.study.database.study import Study
 from rastrainer.study_messages import CurriculumMessage
 from rastrainer_simulator.assets import asset_path
 from Testing.domain.trial.trial_records import gentle_score, make_record
-from Testing.end_to_end.module.few_colors import reduce_colors
 from Testing.end_to_end.simulator_process import ViewedSimulator
+from Testing.pictures import keep_picture
 from Testing.slicer.host.host import Host
 from Testing.web.chromium import launch, open_page
 
@@ -66,7 +66,7 @@ def keep_panel(folder: Path) -> CurriculumMessage:
     host.idle_for(1.0)
     picture = FOLDER / "curriculum-in-slicer.png"
     host.find("curriculumCollapsibleButton").grab().save(str(picture))
-    reduce_colors(picture)
+    keep_picture(picture, picture.with_suffix(".webp"))
     with Study.open_for_reading(path) as study:
         message = CurriculumStore(study).standing("T001").message("T001")
     host.close()
@@ -99,10 +99,8 @@ def keep_seat(folder: Path, message: CurriculumMessage) -> None:
         page.click("[data-name='assignments']")
         page.wait_for_selector("body[data-menu='assignments']")
         page.evaluate("page.stage.setQuality('high'); frames_(4)")
-        picture = FOLDER / "assignments.png"
-        page.screenshot(path=picture)
+        keep_picture(page.screenshot(), FOLDER / "assignments.webp")
         browser.close()
-    reduce_colors(picture)
 
 
 def main() -> None:

@@ -28,7 +28,7 @@ from rastrainer_simulator.virtual.virtual_procedure import (
     ProcedureSetting,
     carry_out,
 )
-from Testing.end_to_end.module.few_colors import reduce_colors
+from Testing.pictures import keep_picture
 from Testing.slicer.host.host import Host
 
 PROCEDURE, TASK, TOUCHING_S, FLE_MM = "seeg", "task-3", 90.0, 2.0
@@ -74,7 +74,7 @@ def save(picture: Path) -> None:
         host.idle_for(1.0)
         host.window_screenshot(picture)
         host.close()
-    reduce_colors(picture)
+    keep_picture(picture, picture.with_suffix(".webp"))
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Save a picture of each section at work: `python -m Testing.end_to_end.module.screenshots DIR`."""
+"""Save pictures of two sections at work: `python -m Testing.end_to_end.module.screenshots DIR`."""
 
 from __future__ import annotations
 
@@ -6,27 +6,18 @@ import sys
 import tempfile
 from pathlib import Path
 
-from rastrainer.slicer.logic.views import jumpTo
-from Testing.end_to_end.module.few_colors import reduce_colors
-from Testing.end_to_end.module.story import PLAN_MM, Story
+from Testing.end_to_end.module.story import Story
+from Testing.pictures import keep_picture
 from Testing.slicer.host.host import Host
 
 SECTIONS = ("simulator", "trainees", "scenario", "training", "registration", "plan", "score")
-# Which section is shown after which step.
-SHOWN_AFTER = {
-    "start_simulator": ("simulator",),
-    "show_scenario": ("scenario",),
-    "touch_some": ("training",),
-    "look_at_registration": ("registration",),
-    "plan_a_target": ("plan",),
-    "look_at_score": ("score", "trainees"),
-}
+SHOWN_AFTER = {"look_at_registration": "registration", "look_at_score": "score"}
+"""Which section is shown after which step."""
 FOLDED = ("advancedGroupBox", "pointListsGroupBox")
 """Groups that a user opens now and then."""
 OPTIONS = ("--speed", "4", "--no-views", "--no-gamepad")
 """Not too fast: the trainee would seem to make a long pause."""
 AZIMUTH, ELEVATION, ZOOM = 35.0, 20.0, 1.3
-NEAR = ("registration", "plan")
 HEAD, DISTANCE_MM = (0.0, -10.0, 30.0), 620.0
 WIDTH = 520
 
@@ -40,18 +31,18 @@ def save_all(folder: Path) -> None:
             for step in Story.STEPS:
                 step(story)
                 host.wait_until(lambda: host.text("nextStepButton") != "Scoring…", "it is scored")
-                for section in SHOWN_AFTER.get(step.__name__, ()):
-                    show_only(host, section)
-                    if section == "plan":
-                        jumpTo(host.scene, PLAN_MM)
-                    if section in NEAR:
-                        host.look_at(HEAD, AZIMUTH, ELEVATION, DISTANCE_MM)
-                    else:
-                        host.look_from(AZIMUTH, ELEVATION, ZOOM)
-                    picture = folder / f"module-{section}.png"
-                    host.window_screenshot(picture, WIDTH)
-                    reduce_colors(picture)
-                    show_all(host)
+                section = SHOWN_AFTER.get(step.__name__)
+                if section is None:
+                    continue
+                show_only(host, section)
+                if section == "registration":
+                    host.look_at(HEAD, AZIMUTH, ELEVATION, DISTANCE_MM)
+                else:
+                    host.look_from(AZIMUTH, ELEVATION, ZOOM)
+                picture = folder / f"module-{section}.png"
+                host.window_screenshot(picture, WIDTH)
+                keep_picture(picture, picture.with_suffix(".webp"))
+                show_all(host)
         finally:
             host.close()
 

@@ -16,10 +16,10 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic.views import jumpTo
 from rastrainer.slicer.settings import PROGRAM
 from rastrainer_simulator.assets import asset_path
-from Testing.end_to_end.module.few_colors import reduce_colors
 from Testing.end_to_end.module.installed_simulator import write_program
 from Testing.end_to_end.module.screenshots import DISTANCE_MM, HEAD
 from Testing.end_to_end.module.story import PLAN_MM
+from Testing.pictures import keep_picture
 from Testing.slicer.host.host import Host
 
 OPTIONS = ("--no-views", "--no-gamepad")
@@ -202,7 +202,7 @@ class Tutorial:
         self._host.idle_for(0.5)
         path = self._pictures / f"tutorial-{name}.png"
         self._host.window_screenshot(path)
-        reduce_colors(path)
+        keep_picture(path, path.with_suffix(".webp"))
 
 
 def save_all(pictures: Path) -> None:

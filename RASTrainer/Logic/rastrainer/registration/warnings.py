@@ -63,8 +63,8 @@ def find_warnings(
     scale = find_scale(moving, fixed)
     if scale is not None:
         message = (
-            f"The fixed points ({', '.join(labels)}) are {scale:.4g} times as far apart as the moving "
-            f"points; {_unit_advice(scale)}."
+            f"The fixed points ({', '.join(labels)}) are {scale:.4g} times as far apart as the "
+            f"moving points; {_unit_advice(scale)}."
         )
         warnings.append(RegistrationWarning("scale", labels, message))
         # The larger set is taken to be in mm, so that later sentences give true distances.
