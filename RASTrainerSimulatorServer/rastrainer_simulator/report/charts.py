@@ -9,7 +9,7 @@ import io
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -31,7 +31,7 @@ MODE_COLORS = {"desktop": "#0b6fa4", "hmd": "#d1661b"}
 OTHER_COLORS = ("#3d7f5f", "#8a4f9e", "#b3972c", "#5a6672")
 FONT, MEASURED_FONT = "'Helvetica Neue', Helvetica, Arial, sans-serif", "'DejaVu Sans'"
 """What pages show, and what Matplotlib brings along and lays the texts out with."""
-STYLE = {
+STYLE: Any = {
     "font.family": "DejaVu Sans",
     "font.size": 10.0,
     "text.color": INK,
@@ -213,7 +213,7 @@ def grouped_bars(
         for index, one in enumerate(series):
             places = np.arange(len(groups)) + (index - (len(series) - 1) / 2) * width
             means = [float(np.mean(own)) if own else np.nan for own in one.values]
-            bar = {"color": one.color, "alpha": 0.32, "label": one.name}
+            bar: dict[str, Any] = {"color": one.color, "alpha": 0.32, "label": one.name}
             axes.bar(places, means, 0.88 * width, **bar)
             for place, mean, own in zip(places, means, one.values, strict=True):
                 if own:
@@ -360,7 +360,13 @@ def _difference(chart: Chart, difference: float, interval: tuple[float, float]) 
     right.yaxis.tick_right()
     right.axhline(0.0, color="#9aa5b1", linewidth=1)
     reach = [[difference - low], [high - difference]]
-    style = {"color": INK, "markersize": 9, "elinewidth": 2, "capsize": 6, "capthick": 2}
+    style: dict[str, Any] = {
+        "color": INK,
+        "markersize": 9,
+        "elinewidth": 2,
+        "capsize": 6,
+        "capthick": 2,
+    }
     right.errorbar([0.0], [difference], reach, fmt="o", **style)
     right.update_datalim([(0.0, value) for value in (0.0, 1.1 * low, 1.1 * high)])
     right.autoscale_view()
@@ -404,7 +410,11 @@ def effect_sizes(comparisons: Sequence[ModeComparison]) -> Markup:
         axes.set_yticks(range(len(shown)), titles, fontsize=11, color=INK)
         axes.set_xlabel("Hedges' g_z with 95 % interval")
         first, second = (mode_title(mode) for mode in (shown[0][0].first, shown[0][0].second))
-        above = {"color": FAINT, "xycoords": ("data", "axes fraction"), "annotation_clip": False}
+        above: dict[str, Any] = {
+            "color": FAINT,
+            "xycoords": ("data", "axes fraction"),
+            "annotation_clip": False,
+        }
         axes.annotate(f"← higher with {first}", (-0.05 * reach, 1.03), ha="right", **above)
         axes.annotate(f"higher with {second} →", (0.05 * reach, 1.03), ha="left", **above)
         return chart.svg()
@@ -415,7 +425,7 @@ def _scatter(
     title: str, x_title: str, y_title: str, farthest: float, highest: float
 ) -> Iterator[Chart]:
     """Make a chart whose axes start at 0, with the line on which both are equal."""
-    with drawn(660, 360, (52, 640, 56, 306), title) as chart:
+    with drawn(660, 360, (60, 640, 56, 306), title) as chart:
         axes = chart.axes
         axes.update_datalim([(0.0, 0.0), (farthest, highest)])
         axes.autoscale_view()
@@ -423,14 +433,14 @@ def _scatter(
         axes.locator_params(axis="x", nbins=8)
         axes.tick_params(axis="x", length=4)
         axes.set_xlabel(x_title, fontsize=11, color=INK)
-        axes.set_ylabel(y_title, fontsize=11, color=INK)
+        axes.set_ylabel(y_title, fontsize=11, color=INK, labelpad=8)
         yield chart
 
 
 def _equal(chart: Chart, label: str) -> None:
     end = min(chart.axes.get_xlim()[1], chart.axes.get_ylim()[1])
     chart.axes.plot([0, end], [0, end], "--", color=INK, linewidth=1.3, label=label)
-    chart.legend(52 / 660)
+    chart.legend(60 / 660)
 
 
 def calibration_chart(
@@ -454,7 +464,12 @@ def calibration_chart(
             ends = np.array([point.interval_mm for point in own])
             middles = ends.mean(axis=1)
             reach = np.abs(ends.T - middles)
-            bars = {"fmt": "none", "ecolor": color, "alpha": opacity, "elinewidth": 1.6}
+            bars: dict[str, Any] = {
+                "fmt": "none",
+                "ecolor": color,
+                "alpha": opacity,
+                "elinewidth": 1.6,
+            }
             chart.axes.errorbar(expected, middles, reach, capsize=2.5, **bars)
             off = np.array([not point.is_inside for point in own])
             radius = 3.6 if few else 2.4
@@ -466,7 +481,7 @@ def calibration_chart(
             ]
             chart.dots(expected, true, color, radius, 0.85, titles)
             chart.axes.scatter([], [], color=color, s=50, label=name)
-        rim = {"facecolors": GRID, "edgecolors": OFF, "linewidths": 2.4, "s": 50}
+        rim: dict[str, Any] = {"facecolors": GRID, "edgecolors": OFF, "linewidths": 2.4, "s": 50}
         chart.axes.scatter([], [], label="outside of its interval", **rim)
         chart.axes.plot([], [], "|", color=FAINT, markersize=14, label="95 % interval")
         _equal(chart, "true = expected")

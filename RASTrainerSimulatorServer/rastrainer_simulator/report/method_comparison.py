@@ -62,21 +62,26 @@ def method_comparison(data: StudyData) -> Markup:
         rows=[_row(by_method, method) for method in methods],
         chart=charts.grouped_bars("Residual and target error, mm", names, series, "method"),
         pairs=pairs,
-        findings=[
-            what_it_shows(
-                f"{TRUE.title} ({TITLES[one.first].lower()} and {TITLES[one.second].lower()})",
-                TRUE.unit,
-                TITLES[one.first].lower(),
-                TITLES[one.second].lower(),
-                result,
-                one.adjusted_p,
-                TRUE.digits,
-                "pairs of methods",
-            )
-            for one, result in tested(pairs)
-            if one.adjusted_p is not None
-        ],
+        findings=method_findings(pairs),
     )
+
+
+def method_findings(pairs: Sequence[ModeComparison]) -> list[str]:
+    """Return a sentence on the true errors of each two methods that are tested."""
+    return [
+        what_it_shows(
+            f"{TRUE.title} ({TITLES[one.first].lower()} and {TITLES[one.second].lower()})",
+            TRUE.unit,
+            TITLES[one.first].lower(),
+            TITLES[one.second].lower(),
+            result,
+            one.adjusted_p,
+            TRUE.digits,
+            "pairs of methods",
+        )
+        for one, result in tested(pairs)
+        if one.adjusted_p is not None
+    ]
 
 
 def as_conditions(data: StudyData) -> StudyData:

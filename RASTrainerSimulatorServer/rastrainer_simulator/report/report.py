@@ -26,7 +26,13 @@ from rastrainer_simulator.report.comparisons import (
     tested,
 )
 from rastrainer_simulator.report.learning import learning
-from rastrainer_simulator.report.method_comparison import method_comparison, shifted_skin
+from rastrainer_simulator.report.method_comparison import (
+    as_conditions,
+    compare_methods,
+    method_comparison,
+    method_findings,
+    shifted_skin,
+)
 from rastrainer_simulator.report.mode_comparison import distributions, mode_comparison, motion
 from rastrainer_simulator.report.page import render
 from rastrainer_simulator.report.paired_statistics import (
@@ -79,6 +85,7 @@ def report_html(
 ) -> str:
     """Return the page, in the order of its readers: answers, the paper's tables, and the rest."""
     left_out, everything = methods_note(data), data
+    of_methods = method_findings(compare_methods(as_conditions(data)))
     data = with_ctps(with_one_method(data))
     pairs = list(itertools.combinations(sorted(data.modes), 2))
     main = [compare_modes(data, MAIN_OUTCOMES, *pair) for pair in pairs]
@@ -86,7 +93,7 @@ def report_html(
     comparisons = [comparison for of_pair in main for comparison in of_pair]
     passed = passing_of(data)
     steps = (
-        ("Answers", lambda: answers(data, comparisons, passed, left_out)),
+        ("Answers", lambda: answers(data, comparisons, of_methods, passed, left_out)),
         ("The paper's tables", lambda: published_tables(data) + paper_notes(data)),
         ("Comparison of modes", lambda: Markup().join(map(paired_statistics, main))),
         ("Charts by task", lambda: mode_comparison(data) + distributions(data)),
@@ -119,6 +126,7 @@ def report_html(
 def answers(
     data: StudyData,
     comparisons: Sequence[ModeComparison],
+    of_methods: Sequence[str],
     passed: Sequence[ModePassing],
     left_out: str,
 ) -> Markup:
@@ -132,7 +140,7 @@ def answers(
         has_score=any("score" in trial.values for trial in data.trials),
         passed=passed,
         most_named=MAX_NAMED,
-        findings=findings(comparisons),
+        findings=[*findings(comparisons), *of_methods],
         compared=n,
         are_few=0 < n < FEW_SUBJECTS,
         detected=what_is_detected(n, with_period) if results else "",
