@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import scipy
 from markupsafe import Markup
 
 from rastrainer.errors import InputError
@@ -74,9 +75,7 @@ def _of_form(form: RatingForm, marks: Marks, data: StudyData) -> dict[str, Any]:
         found["correlation"] = correlation(total, computed)
     except InputError:
         return {**found, "scored": len(rated), "correlation": None}
-    from scipy import stats
-
-    return {**found, "rank": float(stats.spearmanr(total, computed).statistic)}
+    return {**found, "rank": float(scipy.stats.spearmanr(total, computed).statistic)}
 
 
 def _domain(

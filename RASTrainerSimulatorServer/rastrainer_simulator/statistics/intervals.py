@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import optimize, stats
+import scipy
 
 from rastrainer.errors import InputError
 
@@ -38,7 +38,7 @@ def noncentrality_interval(t: float, dof: float) -> tuple[float, float]:
 
 def _noncentrality(t: float, dof: float, probability: float) -> float:
     """Return the noncentrality at which so much of the distribution lies below t."""
-    below = stats.nct.cdf
+    below = scipy.stats.nct.cdf
 
     def excess(noncentrality: float) -> float:
         share = float(below(t, dof, noncentrality))
@@ -51,7 +51,7 @@ def _noncentrality(t: float, dof: float, probability: float) -> float:
         low, step = low - step, 2 * step
     while excess(high) > 0:
         high, step = high + step, 2 * step
-    return float(optimize.brentq(excess, low, high, xtol=1e-12))
+    return float(scipy.optimize.brentq(excess, low, high, xtol=1e-12))
 
 
 ALPHA = 0.05
@@ -70,11 +70,11 @@ def paired_power(effect_dz: float, n: int, with_period: bool = False) -> float:
             freedom; the orders are taken as balanced.
     """
     dof = n - 1 - with_period
-    critical, shift = stats.t.ppf(1 - ALPHA / 2, dof), effect_dz * math.sqrt(n)
+    critical, shift = scipy.stats.t.ppf(1 - ALPHA / 2, dof), effect_dz * math.sqrt(n)
     if shift == 0:
         return ALPHA
-    shift = abs(shift)
-    above, below = stats.nct.sf(critical, dof, shift), stats.nct.cdf(-critical, dof, shift)
+    noncentral = scipy.stats.nct(dof, abs(shift))
+    above, below = noncentral.sf(critical), noncentral.cdf(-critical)
     # Far out in a tail, scipy gives no number: there, all or nothing lies beyond.
     return float(np.nan_to_num(above, nan=1.0) + np.nan_to_num(below, nan=0.0))
 
@@ -108,7 +108,7 @@ def detectable_effect(n: int, with_period: bool = False) -> float:
     high = 1.0
     while missing(high) < 0:
         high *= 2
-    return float(optimize.brentq(missing, 0.0, high))
+    return float(scipy.optimize.brentq(missing, 0.0, high))
 
 
 @dataclass(frozen=True)
@@ -126,7 +126,7 @@ def correlation(x: np.ndarray, y: np.ndarray) -> Correlation:
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if len(x) < 3 or np.ptp(x) == 0 or np.ptp(y) == 0:
         raise InputError("A correlation needs three pairs of values that vary.")
-    found = stats.pearsonr(x, y)
+    found = scipy.stats.pearsonr(x, y)
     interval = None
     if len(x) > 3 and abs(found.statistic) < 1:
         limits = found.confidence_interval(0.95)
@@ -205,7 +205,7 @@ def _factors(tail: float, dof: float, other_dof: float) -> np.ndarray:
     """
     own = 1 - 1 / chi2_ratio(1 - tail, dof)
     others = 1 - 1 / chi2_ratio(tail, other_dof)
-    ratio = float(stats.f.isf(tail, dof, other_dof))
+    ratio = float(scipy.stats.f.isf(tail, dof, other_dof))
     product = ((ratio - 1) ** 2 - (own * ratio) ** 2 - others**2) / ratio
     return np.array([own**2, others**2, product])
 
@@ -213,9 +213,9 @@ def _factors(tail: float, dof: float, other_dof: float) -> np.ndarray:
 @functools.lru_cache(maxsize=256)
 def t_quantile(dof: float) -> float:
     """Return by how many standard errors a 95 % interval reaches to either side."""
-    return float(stats.t.isf(TAIL, dof))
+    return float(scipy.stats.t.isf(TAIL, dof))
 
 
 @functools.lru_cache(maxsize=256)
 def chi2_ratio(probability: float, dof: float) -> float:
-    return float(stats.chi2.ppf(probability, dof)) / dof
+    return float(scipy.stats.chi2.ppf(probability, dof)) / dof

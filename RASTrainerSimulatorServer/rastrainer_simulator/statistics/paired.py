@@ -15,7 +15,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
+import scipy
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.statistics.intervals import (
@@ -124,7 +124,7 @@ def compare_sequences(
     between, between_interval = None, None
     if min(map(len, groups)) >= MIN_SEQUENCE_SIZE and np.ptp(means) > 0:
         between = float(groups[0].mean() - groups[1].mean())
-        limits = stats.ttest_ind(*groups).confidence_interval(CONFIDENCE)
+        limits = scipy.stats.ttest_ind(*groups).confidence_interval(CONFIDENCE)
         between_interval = (float(limits.low), float(limits.high))
     return Sequences(
         first_first=len(groups[1]),
@@ -196,7 +196,7 @@ def compare_paired(
         dof=dof,
         interval=coefficient(mean, error, dof).interval,
         t=t,
-        p=float(2 * stats.t.sf(abs(t), dof)),
+        p=float(2 * scipy.stats.t.sf(abs(t), dof)),
         hedges_gz=gz,
         gz_interval=gz_interval,
         ranks=rank_test(differences, order),
@@ -210,7 +210,7 @@ def equivalence_margin(comparison: PairedComparison) -> float:
     For every margin above it two one-sided tests at 5 % both reject (Schuirmann 1987). Whether so
     small a difference may be neglected must be decided before the study.
     """
-    quantile = float(stats.t.ppf(CONFIDENCE, comparison.dof))
+    quantile = float(scipy.stats.t.ppf(CONFIDENCE, comparison.dof))
     return abs(comparison.mean_difference) + quantile * comparison.standard_error
 
 
@@ -266,7 +266,7 @@ def signed_rank_test(differences: np.ndarray) -> RankTest:
         raise InputError(
             f"The signed-rank test needs 1 to {MAX_SIGNED} differences that are not 0."
         )
-    doubled = _doubled(stats.rankdata(np.abs(values)))
+    doubled = _doubled(scipy.stats.rankdata(np.abs(values)))
     chances = np.zeros(int(doubled.sum()) + 1)
     chances[0] = 1.0
     for rank in doubled:
@@ -287,9 +287,11 @@ def rank_sum_test(one: np.ndarray, other: np.ndarray) -> RankTest | None:
     drawn = len(one)
     if not drawn or not len(other):
         return None
-    ranks = stats.rankdata(np.concatenate([one, other]))
+    ranks = scipy.stats.rankdata(np.concatenate([one, other]))
     if len(ranks) > MAX_EXACT_SUMS:
-        return RankTest(float(stats.mannwhitneyu(one, other, method="asymptotic").pvalue), 0.0)
+        return RankTest(
+            float(scipy.stats.mannwhitneyu(one, other, method="asymptotic").pvalue), 0.0
+        )
     doubled = _doubled(ranks)
     counts = np.zeros((drawn + 1, int(doubled.sum()) + 1))
     counts[0, 0] = 1.0

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from statistics import NormalDist
 
 import numpy as np
-from scipy import optimize
+import scipy
 
 from rastrainer.errors import InputError
 
@@ -67,5 +67,5 @@ def _crossing(below: NormalDist, above: NormalDist) -> float:
     if below.pdf(left) < above.pdf(left) or above.pdf(right) < below.pdf(right):
         # One curve covers the other's mean: they do not cross between the means.
         return (left * above.stdev + right * below.stdev) / (above.stdev + below.stdev)
-    apart = optimize.brentq(lambda score: below.pdf(score) - above.pdf(score), left, right)
+    apart = scipy.optimize.brentq(lambda score: below.pdf(score) - above.pdf(score), left, right)
     return float(apart)

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.cluster import vq
+import scipy
 
 from rastrainer.errors import RASTrainerError
 from rastrainer.number_text import p_phrase
@@ -245,5 +245,7 @@ def _once(points: np.ndarray, count: int, random: np.random.Generator) -> tuple[
     with warnings.catch_warnings():
         # A start that loses a cluster is not the best one.
         warnings.simplefilter("ignore", UserWarning)
-        centers, labels = vq.kmeans2(points, count, iter=MAX_ROUNDS, minit="++", seed=random)
+        centers, labels = scipy.cluster.vq.kmeans2(
+            points, count, iter=MAX_ROUNDS, minit="++", seed=random
+        )
     return float(((points - centers[labels]) ** 2).sum()), labels

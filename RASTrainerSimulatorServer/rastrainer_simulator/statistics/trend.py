@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
-from scipy import stats
+import scipy
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.statistics.intervals import mean
@@ -70,7 +70,7 @@ def falling_trend(values: Sequence[float] | np.ndarray) -> Trend:
     change = float(weights @ y)
     residuals = y - y.mean() - change * (x - x.mean()) / x[-1]
     error = float(np.sqrt(residuals @ residuals / (len(y) - 2) * (weights @ weights)))
-    reach = float(stats.t.ppf(1 - ALPHA, len(y) - 2)) * error
+    reach = float(scipy.stats.t.ppf(1 - ALPHA, len(y) - 2)) * error
     p = _permuted_p(y, weights)
     interval = (change - reach, change + reach)
     return Trend(len(y), change, interval, p, _verdict(p, interval, float(np.abs(y).mean())))
@@ -96,7 +96,7 @@ def cohort_trend_p(rows: np.ndarray) -> float:
     if values.ndim != 2 or values.shape[0] < 2 or values.shape[1] < 3:
         raise InputError("Page's test needs at least two trainees with three trials each.")
     falling = np.arange(values.shape[1], 0, -1)
-    return float(stats.page_trend_test(values, predicted_ranks=falling).pvalue)
+    return float(scipy.stats.page_trend_test(values, predicted_ranks=falling).pvalue)
 
 
 def _permuted_p(y: np.ndarray, weights: np.ndarray) -> float:
@@ -105,7 +105,7 @@ def _permuted_p(y: np.ndarray, weights: np.ndarray) -> float:
     def change(ordered: np.ndarray, axis: int = -1) -> np.ndarray:
         return (np.moveaxis(ordered, axis, -1) * weights).sum(axis=-1)
 
-    found = stats.permutation_test(
+    found = scipy.stats.permutation_test(
         (y,),
         change,
         permutation_type="pairings",

@@ -18,6 +18,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+import scipy
 
 from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.trial.scoring import ScoreMeasures, ScoreReference, score_trial
@@ -223,9 +224,7 @@ def rejection_rates(
         own = np.diff(values.mean(axis=-1))[..., 0]
         differences.append(own)
         fits.append(fit_differences(own, delays))
-    from scipy import stats
-
-    students = stats.t
+    students = scipy.stats.t
     p_values = np.stack(
         [2 * students.sf(np.abs(fit.mean / fit.standard_error), fit.dof) for fit in fits], axis=-1
     )
