@@ -26,7 +26,7 @@ FOLDERS = {
 LAYERS = {
     "the domain": """
         rastrainer
-        rastrainer.files, rastrainer.igtl, rastrainer.statistics
+        rastrainer.files, rastrainer.igtl
         rastrainer.head
         rastrainer.registration
         rastrainer.procedure
@@ -36,7 +36,6 @@ LAYERS = {
         rastrainer.study.protocol
         rastrainer.study.curriculum
         rastrainer.study
-        rastrainer.report
     """,
     "Slicer's side": """
         rastrainer.slicer
@@ -50,7 +49,8 @@ LAYERS = {
     """,
     "the simulator": """
         rastrainer_simulator
-        rastrainer_simulator.export
+        rastrainer_simulator.export, rastrainer_simulator.statistics
+        rastrainer_simulator.report
         rastrainer_simulator.input, rastrainer_simulator.robot, rastrainer_simulator.texts
         rastrainer_simulator.collision, rastrainer_simulator.teleoperation
         rastrainer_simulator.ops, rastrainer_simulator.training

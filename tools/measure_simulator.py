@@ -84,6 +84,7 @@ def _stays(name: str) -> bool:
     # What pip puts beside the packages stands below `….data/purelib` or `platlib`.
     inside = name.split(".data/purelib/")[-1].split(".data/platlib/")[-1]
     never = any(inside.startswith(f"{folder}/") for folder in trim_packages.NEVER_OPENED)
+    never = never or trim_packages.TESTS in Path(inside).parts[:-1]
     return not never and not any(fnmatch(inside, form) for form in trim_packages.BUILDING_ONLY)
 
 

@@ -30,8 +30,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         from rastrainer_headless.volume_files import readAnyVolume
     except ImportError as error:
         print(
-            f"A head cannot be made here, {error.name} is missing: pip install slicer-core scipy "
-            "pydicom",
+            f"A head cannot be made here, {error.name} is missing: pip install slicer-core pydicom",
             file=sys.stderr,
         )
         return 2

@@ -7,16 +7,17 @@ import itertools
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from scipy import stats
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import fixed
-from rastrainer.statistics.agreement import (
+from rastrainer_simulator.statistics.agreement import (
     Agreement,
     intraclass_correlations,
     kappa_of_table,
     quadratic_kappa,
 )
-from rastrainer.statistics.intervals import TAIL, scipy_module
+from rastrainer_simulator.statistics.intervals import TAIL
 from Testing.error_rates.measured import Measured, share_of, share_text
 
 HEADER = (
@@ -110,7 +111,7 @@ def _by_satterthwaite(totals: np.ndarray) -> Agreement:
     ratio, share = columns / error, n * (1 + (k - 1) * value) - k * value
     above = (k - 1) * (n - 1) * (k * value * ratio + share) ** 2
     dof = above / ((n - 1) * k**2 * value**2 * ratio**2 + share**2)
-    quantile = scipy_module("stats").f.isf
+    quantile = stats.f.isf
     first, second = float(quantile(TAIL, n - 1, dof)), float(quantile(TAIL, dof, n - 1))
     others = k * columns + (k * n - k - n) * error
     low = n * (rows - first * error) / (first * others + n * rows)

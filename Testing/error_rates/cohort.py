@@ -21,11 +21,11 @@ from rastrainer import transforms
 from rastrainer.number_text import fixed
 from rastrainer.registration.registration import register
 from rastrainer.scenario.scenario import Scenario, load_scenario
-from rastrainer.statistics.intervals import Estimate
 from rastrainer.study.study_data import StudyData, TrialRow, read_study_data
 from rastrainer.trial.score_reference import fiducial_normals
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.setup import DEFAULT_SCENARIO
+from rastrainer_simulator.statistics.intervals import Estimate
 from rastrainer_simulator.virtual.cohort import DATABASE, simulate_cohort
 from rastrainer_simulator.virtual.play import PlaySettings
 from rastrainer_simulator.virtual.population import ModeEffect, Population, trial_jobs

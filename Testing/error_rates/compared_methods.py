@@ -7,11 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import stats
 
-from rastrainer.report.method_comparison import TITLES
-from rastrainer.statistics.intervals import ALPHA, scipy_module
-from rastrainer.statistics.paired import fit_differences, holm, is_separable
 from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer_simulator.report.method_comparison import TITLES
+from rastrainer_simulator.statistics.intervals import ALPHA
+from rastrainer_simulator.statistics.paired import fit_differences, holm, is_separable
 from Testing.error_rates.measured import Measured, share_of, share_text
 
 HEADER = (
@@ -67,7 +68,7 @@ def drawn_errors(
 def decisions(errors: np.ndarray, places: np.ndarray) -> Decisions:
     """Analyze studies of `drawn_errors` as the report does."""
     found = []
-    students = scipy_module("stats").t
+    students = stats.t
     for first, second in itertools.combinations(range(errors.shape[-1]), 2):
         order = np.sign(places[:, second] - places[:, first]).astype(float)
         differences = errors[..., second] - errors[..., first]

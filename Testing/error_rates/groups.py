@@ -6,7 +6,7 @@ import contextlib
 
 import numpy as np
 
-from rastrainer.statistics.trainee_clusters import (
+from rastrainer_simulator.statistics.trainee_clusters import (
     ALPHA,
     MIN_TRAINEES,
     NoClustersError,

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy import stats
 
-from rastrainer.statistics.intervals import scipy_module, small_sample_factor
-from rastrainer.statistics.paired import compare_paired, fit_differences, rank_test
+from rastrainer_simulator.statistics.intervals import small_sample_factor
+from rastrainer_simulator.statistics.paired import compare_paired, fit_differences, rank_test
 from rastrainer_simulator.virtual.outcome_model import OutcomeModel, rejection_rates
 from Testing.error_rates.measured import Measured, share_of, share_text
 
@@ -61,7 +62,7 @@ def _sequences(
     shares = []
     for own in (order, None):
         fit = fit_differences(rows, own)
-        students = scipy_module("stats").t
+        students = stats.t
         p_values = 2 * students.sf(np.abs(fit.mean / fit.standard_error), fit.dof)
         shares.append(share_of(p_values < 0.05))
         if own is not None:
@@ -138,7 +139,7 @@ def _coverage(
 
 def _holds(t: np.ndarray, dof: int, noncentrality: float) -> np.ndarray:
     """Return whether the interval contains a noncentrality."""
-    below = scipy_module("stats").nct.cdf(t, dof, noncentrality)
+    below = stats.nct.cdf(t, dof, noncentrality)
     # Far out in a tail, scipy gives no number.
     below = np.where(np.isnan(below), noncentrality < t, below)
     return (below >= 0.025) & (below <= 0.975)

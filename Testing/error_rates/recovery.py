@@ -8,15 +8,16 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy import special
 
 from rastrainer.number_text import fixed
 from rastrainer.protocol import FIDUCIAL_COUNT, StepKind
 from rastrainer.registration.target_error import COMMON_BIAS_SD_MM
-from rastrainer.report.variation import StudyVariation, study_variation, view_bias
-from rastrainer.statistics.intervals import Estimate, scipy_module
 from rastrainer.study.protocol.study_protocol import StudyProtocol, steps_for
 from rastrainer.study.study_data import StudyData, TrialRow
 from rastrainer.study_messages import StudyStep
+from rastrainer_simulator.report.variation import StudyVariation, study_variation, view_bias
+from rastrainer_simulator.statistics.intervals import Estimate
 from rastrainer_simulator.virtual.outcome_model import DOF, OutcomeModel, draw
 from rastrainer_simulator.virtual.population import pseudonym
 from Testing.error_rates.measured import Measured, share_of
@@ -201,7 +202,7 @@ def _estimated(sets: int, seed: int = 9) -> list[list[Estimate]]:
 
 def truths() -> dict[str, float]:
     """Return the true value of each estimate; squared, because standard deviations are biased."""
-    of_residual = float(scipy_module("special").polygamma(1, DOF / 2)) / 4
+    of_residual = float(special.polygamma(1, DOF / 2)) / 4
     haste = MODEL.trial_time_sd
     return {
         "practice, time: b": MODEL.learning,

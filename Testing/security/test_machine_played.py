@@ -6,7 +6,6 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_from_json, record_to_json
-from rastrainer.report.report import report_html
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
@@ -14,6 +13,7 @@ from rastrainer.study.study_data import read_study_data
 from rastrainer.trial.how_played import Allowance, HowPlayed, MovedBy, SeedSource
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.report.report import report_html
 from Testing.domain.trial.trial_records import gentle_score, make_record
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.end_to_end.test_trial_over_openigtlink import SPEED, TASK, Player, play

@@ -49,7 +49,7 @@ print(json.dumps({"at_start": at_start, "started": started, "imported": imported
 HEAVY = ("numpy", "scipy", "vtk", "vtkmodules")
 """Slicer imports numpy and scipy when they are first used, and each of VTK's modules with the first
 of its classes; `import vtk` alone is nothing, then."""
-ONLY_WHEN_NEEDED = ("report", "statistics", "head.head_draft", "slicer.head", "study.study_data")
+ONLY_WHEN_NEEDED = ("head.head_draft", "slicer.head", "study.study_data")
 """Below `rastrainer`: what a button needs that most users never press, or a separate process. Here
 scipy may be imported, and VTK's."""
 
@@ -95,9 +95,7 @@ def test_opening_the_module_imports_neither_scipy_nor_parts_of_vtk(found):
 
 def test_opening_the_module_imports_nothing_that_only_a_button_or_a_process_needs(found):
     prefixes = tuple(f"rastrainer.{each}" for each in ONLY_WHEN_NEEDED)
-    # Each package's own file, and what judges a trainee's standing, is needed.
-    needed = {"rastrainer.statistics", "rastrainer.statistics.competence"}
-    assert [n for n in found["opened"] if n.startswith(prefixes) and n not in needed] == []
+    assert [name for name in found["opened"] if name.startswith(prefixes)] == []
 
 
 def test_the_module_opens_in_turns_of_few_imports_each(found):

@@ -23,6 +23,7 @@ from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli.main import main
+from Testing.end_to_end.module.installed_simulator import write_program
 from Testing.slicer.recorded_trial import scored_analysis, write_recorded_trial
 from Testing.slicer.test_images_in_module import wait_for_images
 
@@ -101,6 +102,13 @@ def touch(host, points):
         lambda: host.find("residualsTable").rowCount == (count if count > 2 else 0),
         "the touches are registered",
     )
+    host.process_events()
+
+
+def use_installed(host, folder):
+    """Have the module use the simulator of this checkout."""
+    program = write_program(folder / "rastrainer", folder / "pid", [])
+    host.find("programPathLineEdit").currentPath = str(program)
     host.process_events()
 
 
@@ -490,6 +498,9 @@ def test_the_report_of_those_who_consent_is_written_and_opened(
 ):
     for number in (1, 2, 3):
         add_trial(number, "T-001", mode="hmd" if number == 3 else "desktop")
+    panels.press("reportButton")
+    assert "is not set up yet: in the section Simulator, press Set up" in panels.messages[-1].text
+    use_installed(panels, tmp_path)
     panels.answer("Folder for the report", str(tmp_path / "report"))
     panels.press("reportButton")
     assert "consented to research" in panels.messages[-1].text
@@ -583,6 +594,7 @@ def test_deleting_a_trainee_leaves_no_trace_in_database_journals_and_later_expor
     assert "1 trials and 1 journals" in panels.text("traineeText")
     panels.answer("Export all trials", str(tmp_path / "later" / "all.csv"))
     panels.press("exportScoresButton")
+    use_installed(panels, tmp_path)
     panels.answer("Folder for the report", str(tmp_path / "later" / "report"))
     panels.press("reportButton")
     command = ["export", study_path, "-o", str(tmp_path / "later" / "exports")]

@@ -28,8 +28,8 @@ from rastrainer.slicer.scene.tables import showCalibration, showHistory, showLea
 from rastrainer.study.database.study import Study
 from rastrainer.trial.ctps import CTPS_WARNING, Trial
 from rastrainer.trial.scoring import score_trial
-from Testing.domain.report.studied_procedures import outcome
 from Testing.domain.trial.trial_records import REFERENCE, gentle_score, make_traced
+from Testing.simulator.report.studied_procedures import outcome
 from Testing.slicer.host.failures import FAILURES, VtkMessages
 from Testing.slicer.host.stand_ins.plot_view import draw_chart
 from Testing.slicer.recorded_trial import scored_analysis

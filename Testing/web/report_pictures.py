@@ -20,13 +20,13 @@ from playwright.sync_api import Browser, Locator, Page, sync_playwright
 
 from rastrainer import transforms
 from rastrainer.json_records import record_from_json
-from rastrainer.report.report import write_report
 from rastrainer.scenario.scenario import Scenario, Task, load_scenario
 from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
 from rastrainer.trial.analysis import analyze_trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.report.report import write_report
 from rastrainer_simulator.virtual.cohort import DATABASE
 from Testing.domain.trial.trial_records import make_record
 from Testing.web.chromium import launch

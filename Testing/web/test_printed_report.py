@@ -7,12 +7,12 @@ import re
 import numpy as np
 import pytest
 
-from rastrainer.report.report import report_html
 from rastrainer.study.study_data import read_study_data
-from Testing.domain.report.test_report import cohort
-from Testing.domain.report.test_tables_have_n import in_two_groups, with_intervals
-from Testing.domain.statistics.test_variation import drawn
+from rastrainer_simulator.report.report import report_html
 from Testing.domain.study.played_study import STUDIES
+from Testing.simulator.report.test_report import cohort
+from Testing.simulator.report.test_tables_have_n import in_two_groups, with_intervals
+from Testing.simulator.statistics.test_variation import drawn
 from Testing.web.chromium import PATIENCE_MS
 
 WIDTH, HEIGHT = 180, 263

@@ -13,7 +13,6 @@ from rastrainer.files.writing import make_empty_folder, write_text
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.number_text import fixed
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.report.mode_comparison import Series, grouped_bars
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
@@ -23,6 +22,7 @@ from rastrainer.trial.touch_registration import GivenPoints
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli import arg
 from rastrainer_simulator.cli.options import Subcommand, json_text, text_table
+from rastrainer_simulator.report.charts import Series, grouped_bars
 from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE
 from rastrainer_simulator.virtual.method_trials import (
     MethodResult,

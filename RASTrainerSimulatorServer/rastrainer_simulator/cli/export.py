@@ -11,7 +11,6 @@ from rastrainer.files.writing import make_empty_folder, write_text
 from rastrainer.journal.recording import read_trajectory
 from rastrainer.number_text import counted
 from rastrainer.protocol import Mode, RegistrationMethod
-from rastrainer.report.published_tables import with_ctps
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
@@ -31,6 +30,7 @@ from rastrainer_simulator.cli.options import Subcommand, read_known_study
 from rastrainer_simulator.export.grades import PLATFORMS, RULES, grade, grades_csv
 from rastrainer_simulator.export.trial_files import write_motion_bids, write_slicer_files
 from rastrainer_simulator.export.xapi import HOME_PAGE, statements_text
+from rastrainer_simulator.report.published_tables import with_ctps
 
 FORMATS = ("csv", "bids", "xapi", "slicer")
 

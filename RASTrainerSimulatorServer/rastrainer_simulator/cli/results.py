@@ -14,6 +14,7 @@ from rastrainer.trial.ctps import (
     score_cohort,
     trials_by_mode,
 )
+from rastrainer.work_progress import print_progress
 from rastrainer_simulator.cli import arg
 from rastrainer_simulator.cli.options import (
     Subcommand,
@@ -79,13 +80,13 @@ def _or_dash(value: float | None, digits: int) -> str:
 
 def report(arguments: argparse.Namespace) -> int:
     # Only here: what `score` needs is imported much faster.
-    from rastrainer.report.report import write_report
+    from rastrainer_simulator.report.report import write_report
 
     data = read_known_study(arguments)
     means = _mean_times(arguments.mean_ct, list(data.modes))
-    written = write_report(data.with_mean_times(means), arguments.output)
+    page = write_report(data.with_mean_times(means), arguments.output, progress=print_progress)
     aborted = f", {len(data.aborted)} aborted ones" if data.has_order else ""
-    print(f"{written.page}: {len(data.trainees)} trainees, {len(data.trials)} trials{aborted}")
+    print(f"{page}: {len(data.trainees)} trainees, {len(data.trials)} trials{aborted}")
     return 0
 
 

@@ -11,7 +11,6 @@ from rastrainer.errors import InputError
 from rastrainer.files.writing import write_text
 from rastrainer.number_text import fixed, percent
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.statistics.competence import PassMark, pass_mark
 from rastrainer.study.curriculum.curriculum import read_curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import (
@@ -27,6 +26,7 @@ from rastrainer.study.protocol.study_protocol import protocol_text, read_study_p
 from rastrainer.trial.trial_feedback import PastTrial
 from rastrainer_simulator.cli import arg
 from rastrainer_simulator.cli.options import Subcommand, aligned
+from rastrainer_simulator.statistics.pass_marks import PassMark, pass_mark
 
 HEADER = ("assignment", "trial", "so far", "goal", "after", "trials", "mean")
 

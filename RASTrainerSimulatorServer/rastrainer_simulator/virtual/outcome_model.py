@@ -18,12 +18,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+import scipy
 
 from rastrainer.protocol import FIDUCIAL_COUNT
-from rastrainer.report.comparisons import CONFIRMATORY
-from rastrainer.statistics.intervals import ALPHA, scipy_module
-from rastrainer.statistics.paired import fit_differences, holm, is_separable, rank_test
 from rastrainer.trial.scoring import ScoreMeasures, ScoreReference, score_trial
+from rastrainer_simulator.report.comparisons import CONFIRMATORY
+from rastrainer_simulator.statistics.intervals import ALPHA
+from rastrainer_simulator.statistics.paired import fit_differences, holm, is_separable, rank_test
 
 DOF = 3 * FIDUCIAL_COUNT - 6
 REFERENCE_RMSE_MM, REFERENCE_TRE_MM = 1.4, 0.4
@@ -223,7 +224,7 @@ def rejection_rates(
         own = np.diff(values.mean(axis=-1))[..., 0]
         differences.append(own)
         fits.append(fit_differences(own, delays))
-    students = scipy_module("stats").t
+    students = scipy.stats.t
     p_values = np.stack(
         [2 * students.sf(np.abs(fit.mean / fit.standard_error), fit.dof) for fit in fits], axis=-1
     )

@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.study.tidy_csv import PROCEDURE_COLUMNS, procedures_csv
-from Testing.domain.report.studied_procedures import TOO_DEEP_MM, with_procedures
-from Testing.domain.report.test_report import cohort
+from Testing.simulator.report.studied_procedures import TOO_DEEP_MM, with_procedures
+from Testing.simulator.report.test_report import cohort
 
 
 @pytest.fixture(scope="module")

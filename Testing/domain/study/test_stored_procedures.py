@@ -12,8 +12,8 @@ from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.trial.procedure_outcome import PROCEDURE_SCORE_VERSION
 from rastrainer.trial.record import TrialRecord
-from Testing.domain.report.studied_procedures import TOO_DEEP_MM, outcome
 from Testing.domain.trial.trial_records import gentle_score, make_record
+from Testing.simulator.report.studied_procedures import TOO_DEEP_MM, outcome
 
 DBS = outcome(ProcedureKind.DBS)
 

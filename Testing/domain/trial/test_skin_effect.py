@@ -10,7 +10,6 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.trial_head import UNMOVED, SkinShift
 from rastrainer.json_records import record_from_json, record_to_json
-from rastrainer.report.method_comparison import shifted_skin
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import StudyData, trial_rows
@@ -19,7 +18,8 @@ from rastrainer.trial.analysis import RevealedTruth, analyze_trial, score_argume
 from rastrainer.trial.record import TouchedPoint, TrialRecord
 from rastrainer.trial.touch_registration import unshifted_tre_mm
 from rastrainer_simulator.assets import asset_path
-from Testing.domain.report.test_report import words_of
+from rastrainer_simulator.report.method_comparison import shifted_skin
+from Testing.simulator.report.test_report import words_of
 
 SKIN = SkinShift(4.0, 7, 0.5)
 UTC = "2024-05-17T09:30:00Z"

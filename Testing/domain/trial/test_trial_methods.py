@@ -10,7 +10,6 @@ from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.report.report import methods_note, with_one_method
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.study_data import StudyData, TrialRow
 from rastrainer.study.tidy_csv import trials_csv
@@ -18,6 +17,7 @@ from rastrainer.trial.score_reference import score_reference
 from rastrainer.trial.scoring import ScoreMeasures, score_trial
 from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.report.report import methods_note, with_one_method
 from Testing.simulator.landmarked import LANDMARKS, OVER_THE_FACE, on_skin, with_landmarks
 
 SURFACE = RegistrationMethod.SURFACE

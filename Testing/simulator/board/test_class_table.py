@@ -12,7 +12,6 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_to_json
-from rastrainer.report.trainees import curricula
 from rastrainer.study.curriculum.curriculum import read_curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.database.database import LockWait, StudyBusyError
@@ -20,6 +19,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.board.class_table import ClassReader, class_table
 from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.report.trainees import curricula
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from Testing.simulator.board.class_study import SHIPPED, as_in_narrow_columns, play_class
 from Testing.simulator.net.igtl.servers import PATIENCE_S

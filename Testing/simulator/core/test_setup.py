@@ -52,6 +52,15 @@ def test_a_simulator_starts_without_the_packages_that_read_meshes():
     assert found.stdout.strip() == "[]", found.stderr
 
 
+def test_a_simulator_starts_without_what_only_reports_need():
+    script = (
+        "import sys, rastrainer_simulator.cli.simulator, rastrainer_simulator.server.server; "
+        "print([name for name in ('scipy', 'matplotlib', 'jinja2') if name in sys.modules])"
+    )
+    found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert found.stdout.strip() == "[]", found.stderr
+
+
 @pytest.mark.parametrize("changed", ["iiwa7.urdf", "meshes/collision/link_3.stl"])
 def test_the_prepared_robot_is_not_used_once_a_file_has_changed(copied, changed):
     assert read_prepared(copied) is not None

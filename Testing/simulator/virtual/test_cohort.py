@@ -10,11 +10,11 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import FIDUCIAL_COUNT
-from rastrainer.report.report import report_html
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.report.report import report_html
 from rastrainer_simulator.virtual.cohort import DATABASE, RECORDS, TRUTH, run_jobs, simulate_cohort
 from rastrainer_simulator.virtual.play import PlaySettings, play_job
 from rastrainer_simulator.virtual.population import trial_jobs

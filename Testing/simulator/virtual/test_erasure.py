@@ -5,7 +5,6 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import erase_journals, journals
 from rastrainer.journal.journal_file import read_journal
-from rastrainer.report.report import report_html
 from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
 from rastrainer.study.trainee_data import erase_trainee
@@ -13,6 +12,7 @@ from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.flow.session.trainee_history import FinishedTutorials
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_context import TutorialOutcome
+from rastrainer_simulator.report.report import report_html
 from rastrainer_simulator.virtual.cohort import DATABASE, RECORDS
 
 

@@ -5,10 +5,10 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import FIDUCIAL_COUNT
-from rastrainer.report.comparisons import compare_modes
-from rastrainer.statistics.intervals import paired_power
-from rastrainer.statistics.trend import TrendVerdict, falling_trend, fit_learning_curve
 from rastrainer.study.outcomes import MAIN_OUTCOMES
+from rastrainer_simulator.report.comparisons import compare_modes
+from rastrainer_simulator.statistics.intervals import paired_power
+from rastrainer_simulator.statistics.trend import TrendVerdict, falling_trend, fit_learning_curve
 from rastrainer_simulator.virtual.outcome_model import (
     DOF,
     OutcomeModel,

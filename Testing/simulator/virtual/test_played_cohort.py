@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from rastrainer.report.comparisons import compare_modes
 from rastrainer.study.outcomes import MAIN_OUTCOMES
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.study_data import read_study_data
+from rastrainer_simulator.report.comparisons import compare_modes
 from rastrainer_simulator.virtual.cohort import DATABASE, simulate_cohort
 from rastrainer_simulator.virtual.play import PlaySettings, play_job
 from rastrainer_simulator.virtual.population import FIRST_DAY, ModeEffect, Population, TrialJob

@@ -11,10 +11,10 @@ from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.procedure.plan import read_procedure_meshes
 from rastrainer.procedure.record import ProcedureRecord, UsedRegistration
-from rastrainer.report.procedures import procedures
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.report.procedures import procedures
 from rastrainer_simulator.virtual.cohort import simulate_cohort
 from rastrainer_simulator.virtual.play import PlaySettings
 from rastrainer_simulator.virtual.scripted_trainee import Skill

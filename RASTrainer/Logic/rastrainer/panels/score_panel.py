@@ -21,7 +21,6 @@ from rastrainer.panels.widgets import (
     setText,
     setUsable,
 )
-from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.scene.score_tables import (
     GroupComparison,
@@ -34,7 +33,6 @@ from rastrainer.slicer.scene.score_tables import (
     standings,
 )
 from rastrainer.slicer.translation import _
-from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.outcomes import short_mode_title, task_title
 from rastrainer.trial.analysis import TrialAnalysis
@@ -99,20 +97,25 @@ class ScorePanel(Panel):
                     self._showMessage(text.format(count=written[0], path=path, leftOut=written[1]))
 
     def writeReport(self) -> None:
-        """Write the report of the whole study into a folder, and open it."""
-        caption = _("Folder for the report")
-        folder = qt.QFileDialog.getExistingDirectory(slicer.util.mainWindow(), caption)
-        if folder:
-            with showErrors(_("The report was not written.")):
-                study = self._session.studyPlace
-                page = self._work.run(
-                    lambda report: inBackground(
-                        lambda _report: _reportOn(study, Path(folder)), report
+        """Have the simulator write the report of the study into a folder, and open it."""
+        simulator = self._session.simulator
+        with showErrors(_("The report was not written.")):
+            if simulator.needsSetup:
+                raise InputError(
+                    _(
+                        "The simulator writes it, and is not set up yet: in the section "
+                        "Simulator, press Set up."
                     )
                 )
-                if page is not None:
-                    self._showMessage(_("The report is {path}.").format(path=page))
-                    qt.QDesktopServices.openUrl(qt.QUrl.fromLocalFile(str(page)))
+            caption = _("Folder for the report")
+            folder = qt.QFileDialog.getExistingDirectory(slicer.util.mainWindow(), caption)
+            if not folder:
+                return
+            command = ["report", str(self._session.studyPlace), "-o", folder]
+            if self._work.run(lambda report: simulator.run(command, report)) is not None:
+                page = str(Path(folder, "report.html"))
+                self._showMessage(_("The report is {path}.").format(path=page))
+                qt.QDesktopServices.openUrl(qt.QUrl.fromLocalFile(page))
 
     def replay(self) -> None:
         """Show the trial again in the 3D view."""
@@ -267,13 +270,6 @@ class ScorePanel(Panel):
 
     def _standings(self, trial: StoredTrial) -> list[GroupComparison]:
         return standings(self._trainees.study, trial, self._session.cohort)
-
-
-def _reportOn(study: StudyPlace, folder: Path) -> Path:
-    from rastrainer.report.report import write_report
-    from rastrainer.study.study_data import read_study_data
-
-    return write_report(read_study_data(study), folder).page
 
 
 def _entry(number: int, trial: StoredTrial) -> str:

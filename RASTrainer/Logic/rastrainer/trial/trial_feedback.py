@@ -13,9 +13,9 @@ from rastrainer.number_text import fixed
 from rastrainer.protocol import PROCEDURE_PHASES, RegistrationMethod
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import CommonBias
-from rastrainer.statistics.competence import LcCusum, lc_cusum, lc_cusum_limit
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.advice import Advice, TouchFinding, advise, touch_findings
+from rastrainer.trial.lc_cusum import LcCusum, lc_cusum, lc_cusum_limit
 from rastrainer.trial.procedure_outcome import ProcedureScore
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import (

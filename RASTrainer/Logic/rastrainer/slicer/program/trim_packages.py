@@ -5,7 +5,8 @@
 Wheels bring C++ headers, manuals and tests, and VTK and Pinocchio a hundred libraries that the
 simulator does not use. What it uses is not guessed: every package that its sources import is
 imported, and a library that the loader has not opened then is one that nobody needs. Where
-something cannot be imported, or the system does not say what is loaded, the libraries stay.
+something cannot be imported, or the system does not say what is loaded, the libraries stay. On
+Linux, a fourth of what they hold are names for debuggers, which no loader reads.
 
 Prints one line and writes the sizes beside the packages, into SIZES.
 """
@@ -18,6 +19,7 @@ import importlib.util
 import json
 import os
 import shutil
+import struct
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -38,6 +40,8 @@ NEVER_OPENED = (
     "vtkmodules/test",
     "vtk.data",
 )
+TESTS = "tests"
+"""Folders of this name below any package."""
 BUILDING_ONLY = ("*.a", "*.lib", "*.pyi", "*.pxd", "*.pyx")
 MANY_LIBRARIES = ("vtkmodules", "cmeel.prefix/lib")
 MAPPED = Path("/proc/self/maps")
@@ -49,6 +53,8 @@ def trim(folder: Path) -> tuple[int, int]:
     before = size(folder)
     for name in NEVER_OPENED:
         shutil.rmtree(folder / name, ignore_errors=True)
+    for tests in [path for path in folder.rglob(TESTS) if path.is_dir()]:
+        shutil.rmtree(tests, ignore_errors=True)
     for pattern in BUILDING_ONLY:
         for path in list(folder.rglob(pattern)):
             path.unlink()
@@ -57,6 +63,8 @@ def trim(folder: Path) -> tuple[int, int]:
         for path in _libraries(folder):
             if path.name not in loaded:
                 path.unlink()
+    for path in [path for path in folder.rglob("*") if _is_library(path)]:
+        drop_symbols(path)
     after = size(folder)
     return after, before - after
 
@@ -112,8 +120,41 @@ def _imported(path: Path) -> Iterator[str]:
 def _libraries(folder: Path) -> Iterator[Path]:
     for name in MANY_LIBRARIES:
         for path in list((folder / name).rglob("*")):
-            if path.is_file() and (path.suffix == ".so" or ".so." in path.name):
+            if _is_library(path):
                 yield path
+
+
+def _is_library(path: Path) -> bool:
+    return (path.suffix == ".so" or ".so." in path.name) and path.is_file()
+
+
+ELF_64_LITTLE = b"\x7fELF\x02\x01"
+ELF_HEADER = struct.Struct("<16s2HI3QI6H")
+"""Identification, type, machine, version, entry, offsets of segments and of sections, flags, sizes
+of this header and of a segment's, number of segments, size of a section's header, number of
+sections, number of the section with their names (System V ABI, chapter 4)."""
+SEGMENT = struct.Struct("<2I6Q")
+"""Type, flags, offset, two addresses, bytes in the file, bytes in memory, alignment."""
+
+
+def drop_symbols(library: Path) -> None:
+    """Cut off what lies behind the last segment: symbols and sections, which only debuggers read.
+
+    Other than 64-bit libraries of Linux stay as they are.
+    """
+    content = library.read_bytes()
+    if not content.startswith(ELF_64_LITTLE):
+        return
+    header = list(ELF_HEADER.unpack_from(content))
+    first, size, count = header[5], header[9], header[10]
+    segments = [SEGMENT.unpack_from(content, first + place * size) for place in range(count)]
+    end = max(first + count * size, *(segment[2] + segment[5] for segment in segments))
+    header[6] = header[12] = header[13] = 0
+    shorter = library.with_name(f"{library.name}.shorter")
+    # Not in place: the library may be loaded, or linked to from elsewhere.
+    shorter.write_bytes(ELF_HEADER.pack(*header) + content[ELF_HEADER.size : end])
+    shutil.copymode(library, shorter)
+    shorter.replace(library)
 
 
 def main() -> None:

@@ -1,1 +1,0 @@
-"""Paired tests, learning and clusters, without any knowledge of trials."""

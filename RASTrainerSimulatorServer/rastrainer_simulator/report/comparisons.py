@@ -1,0 +1,174 @@
+"""The comparison of modes on the means of trainees who did both.
+
+If the orders allow it, the effects of the modes are separated from the effect of their order.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import RegistrationMethod
+from rastrainer.study.outcomes import Outcome
+from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer_simulator.statistics.paired import PairedComparison, compare_paired, holm
+
+SCORE = "score"
+
+
+def compared_method(data: StudyData) -> str:
+    counts = Counter(trial.method for trial in data.trials)
+    fiducials = RegistrationMethod.FIDUCIALS.value
+    return fiducials if fiducials in counts or not counts else counts.most_common(1)[0][0]
+
+
+CONFIRMATORY = ("completion_time_s", "rmse_mm", "score")
+"""Corrected together for multiple testing; the others are only described."""
+UNTESTED = {
+    "ctps": "not tested: CTPS compares with the best trial of each mode, and chance in this one "
+    "trial moves the mode's mean for all trainees alike"
+}
+"""A paired test finds a difference between equal modes in half of the studies of twelve."""
+
+
+@dataclass(frozen=True)
+class ModeComparison:
+    """One outcome in two modes.
+
+    Attributes:
+        first: Mode that is subtracted.
+        second: Mode that it is subtracted from.
+        order: By how many periods each trainee did the second mode later than the first, (n,)
+            float; None if unknown.
+        adjusted_p: p of the t-test, adjusted by Holm's method; None if only described.
+    """
+
+    outcome: Outcome
+    first: str
+    second: str
+    trainees: tuple[str, ...]
+    first_means: np.ndarray
+    second_means: np.ndarray
+    order: np.ndarray | None
+    result: PairedComparison | None
+    adjusted_p: float | None
+    reason: str = ""
+
+
+def compare_modes(
+    data: StudyData,
+    outcomes: Sequence[Outcome],
+    first: str,
+    second: str,
+    confirmatory: Sequence[str] = CONFIRMATORY,
+) -> tuple[ModeComparison, ...]:
+    """Compare two modes on every outcome that trials of both have.
+
+    A trainee's mean is over the tasks done in both modes, so a missing trial does not make a mode
+    look easier. With different orders of the modes, the effect of the period is removed. Only
+    the `confirmatory` outcomes have an adjusted p.
+    """
+    found = []
+    delays = mode_delays(data, first, second) if data.has_order else None
+    for outcome in outcomes:
+        means = paired_means(data, outcome.name, first, second)
+        if means:
+            order = None if delays is None else np.array([delays[trainee] for trainee in means])
+            found.append(_compared(outcome, first, second, means, order))
+    return with_adjusted_p(found, confirmatory)
+
+
+def with_adjusted_p(
+    comparisons: Iterable[ModeComparison], confirmatory: Sequence[str]
+) -> tuple[ModeComparison, ...]:
+    """Return comparisons with the p of the `confirmatory` outcomes adjusted together (Holm)."""
+    found = list(comparisons)
+    p_values = {
+        index: comparison.result.p
+        for index, comparison in enumerate(found)
+        if comparison.result is not None and comparison.outcome.name in confirmatory
+    }
+    adjusted = holm(np.array([*p_values.values()]))
+    for index, p in zip(p_values, adjusted, strict=True):
+        found[index] = replace(found[index], adjusted_p=float(p))
+    return tuple(found)
+
+
+def tested(comparisons: Sequence[ModeComparison]) -> list[tuple[ModeComparison, PairedComparison]]:
+    return [(one, one.result) for one in comparisons if one.result is not None]
+
+
+def paired_means(
+    data: StudyData, name: str, first: str, second: str
+) -> dict[str, tuple[float, float]]:
+    """Return for each trainee the means in both modes over the tasks done in both."""
+    of_first = _task_means(data.of_mode(first), name)
+    of_second = _task_means(data.of_mode(second), name)
+    means = {}
+    for trainee in data.trainees:
+        mine, others = of_first.get(trainee, {}), of_second.get(trainee, {})
+        common = sorted(set(mine) & set(others))
+        if common:
+            pair = [float(np.mean([values[task] for task in common])) for values in (mine, others)]
+            means[trainee] = (pair[0], pair[1])
+    return means
+
+
+def mode_delays(data: StudyData, first: str, second: str) -> dict[str, float]:
+    """Return by how many periods each trainee did the second mode later than the first.
+
+    A period is a run of trials in one mode: 1 if all of the first mode came before the second, -1
+    for the opposite; for alternating modes, the difference of the mean periods.
+    """
+    periods: dict[str, dict[str, list[int]]] = {}
+    latest: dict[str, tuple[str, int]] = {}
+    for trial in data.trials:
+        if trial.mode not in (first, second):
+            continue
+        mode, period = latest.get(trial.trainee, ("", 0))
+        period += trial.mode != mode
+        latest[trial.trainee] = trial.mode, period
+        own = periods.setdefault(trial.trainee, {first: [], second: []})
+        own[trial.mode].append(period)
+    return {
+        trainee: float(np.mean(own[second]) - np.mean(own[first]))
+        for trainee, own in periods.items()
+        if own[first] and own[second]
+    }
+
+
+def _task_means(trials: Sequence[TrialRow], name: str) -> dict[str, dict[str, float]]:
+    """Return trainee → task → mean over the trainee's trials of that task."""
+    values: dict[str, dict[str, list[float]]] = {}
+    for trial in trials:
+        if name in trial.values:
+            of_trainee = values.setdefault(trial.trainee, {})
+            of_trainee.setdefault(trial.task, []).append(trial.values[name])
+    return {
+        trainee: {task: float(np.mean(found)) for task, found in tasks.items()}
+        for trainee, tasks in values.items()
+    }
+
+
+def _compared(
+    outcome: Outcome,
+    first: str,
+    second: str,
+    means: Mapping[str, tuple[float, float]],
+    order: np.ndarray | None,
+) -> ModeComparison:
+    both = np.array(list(means.values()))
+    result, reason = None, UNTESTED.get(outcome.name, "")
+    if not reason:
+        try:
+            result = compare_paired(both[:, 0], both[:, 1], order)
+        except InputError as error:
+            reason = str(error)
+    columns = both[:, 0], both[:, 1]
+    return ModeComparison(
+        outcome, first, second, tuple(means), *columns, order, result, None, reason
+    )

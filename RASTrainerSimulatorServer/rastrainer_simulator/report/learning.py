@@ -1,0 +1,102 @@
+"""How trainees changed from trial to trial, as curves, and whether that is significant."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+import numpy as np
+from markupsafe import Markup
+
+from rastrainer.study.outcomes import MAIN_OUTCOMES, Outcome, short_mode_title
+from rastrainer.study.study_data import StudyData, values_of
+from rastrainer_simulator.report import charts
+from rastrainer_simulator.report.page import render
+from rastrainer_simulator.statistics.trend import (
+    ALPHA,
+    MIN_FIT_TRIALS,
+    STEADY,
+    CohortTrend,
+    LearningCurve,
+    TrendVerdict,
+    cohort_trends,
+    fit_learning_curve,
+)
+
+SHOWN = ("completion_time_s", "rmse_mm", "score")
+MIN_CURVE_TRIALS = 8
+"""The plateau of fewer trials is too uncertain to report."""
+Points = dict[str, list[tuple[float, float]]]
+
+
+def learning(data: StudyData) -> Markup:
+    """Return the curves of each mode over the trials, or over the tasks if the order is unknown."""
+    trends = learning_trends(data)
+    pictures, rows, fits = [], [], []
+    for (outcome, mode), own in _all_points(data).items():
+        trend = trends.get((outcome, mode))
+        curve = _curve(trend, outcome)
+        fitted = []
+        if curve is not None:
+            last = max(map(len, own.values()))
+            fitted = [(x, curve.at(x)) for x in np.linspace(1, last, 60)]
+        values = values_of(data.trials, outcome.name)
+        pictures.append(
+            charts.learning_curves(
+                f"{short_mode_title(mode)}: {outcome.heading}",
+                charts.mode_color(mode, data.modes.index(mode)),
+                own,
+                "trial" if data.has_order else "task",
+                fitted,
+                (min(values), max(values)),
+            )
+        )
+        rows.append((outcome, mode, trend, len(own)))
+        if curve is not None and trend is not None and len(trend.means) >= MIN_CURVE_TRIALS:
+            fits.append((outcome, mode, curve))
+    return render(
+        "learning",
+        data=data,
+        charts=pictures,
+        rows=rows if data.has_order else [],
+        fits=fits,
+        verdicts=list(TrendVerdict),
+        alpha=ALPHA,
+        steady=STEADY,
+    )
+
+
+def learning_trends(data: StudyData) -> dict[tuple[Outcome, str], CohortTrend | None]:
+    """Return how trainees changed, by outcome and mode; nothing if the order is unknown."""
+    if not data.has_order:
+        return {}
+    points = _all_points(data)
+    tested = [
+        ([[value for _, value in own] for own in of_mode.values()], outcome.better)
+        for (outcome, _mode), of_mode in points.items()
+    ]
+    return dict(zip(points, cohort_trends(tested), strict=True))
+
+
+def _all_points(data: StudyData) -> dict[tuple[Outcome, str], Points]:
+    shown = [outcome for outcome in MAIN_OUTCOMES if outcome.name in SHOWN]
+    found = {
+        (outcome, mode): _points(data, mode, outcome) for outcome in shown for mode in data.modes
+    }
+    return {key: points for key, points in found.items() if points}
+
+
+def _points(data: StudyData, mode: str, outcome: Outcome) -> Points:
+    points: Points = defaultdict(list)
+    tasks = {task: number for number, task in enumerate(data.tasks, start=1)}
+    for trial in data.of_mode(mode):
+        if outcome.name in trial.values:
+            number = trial.number if data.has_order else tasks[trial.task]
+            points[trial.trainee].append((float(number), trial.values[outcome.name]))
+    return {trainee: sorted(own) for trainee, own in points.items()}
+
+
+def _curve(trend: CohortTrend | None, outcome: Outcome) -> LearningCurve | None:
+    """Return the curve of the means if they fall significantly."""
+    if trend is None or not trend.is_shown or outcome.better > 0:
+        return None
+    return fit_learning_curve(trend.means) if len(trend.means) >= MIN_FIT_TRIALS else None

@@ -1,0 +1,158 @@
+"""The methods of registration side by side: residual, expected and true target error.
+
+It also shows the effect of a shift of the skin: the true errors with and without it.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from markupsafe import Markup
+
+from rastrainer.number_text import fixed
+from rastrainer.protocol import RegistrationMethod
+from rastrainer.study.outcomes import Outcome
+from rastrainer.study.study_data import StudyData, TrialRow, values_of
+from rastrainer_simulator.report import charts
+from rastrainer_simulator.report.comparisons import (
+    ModeComparison,
+    compare_modes,
+    tested,
+    with_adjusted_p,
+)
+from rastrainer_simulator.report.page import interval_text, render
+from rastrainer_simulator.report.paired_statistics import what_it_shows
+from rastrainer_simulator.statistics.intervals import mean
+
+TITLES = {
+    RegistrationMethod.FIDUCIALS.value: "Fiducials",
+    RegistrationMethod.LANDMARKS.value: "Landmarks",
+    RegistrationMethod.SURFACE.value: "Trace",
+    RegistrationMethod.LANDMARKS_SURFACE.value: "Landmarks and trace",
+}
+RESIDUAL = Outcome("rmse_mm", "Residual", unit="mm")
+EXPECTED = Outcome("expected_tre_mm", "Expected target error", unit="mm", better=-1)
+TRUE = Outcome("true_tre_mm", "True target error", unit="mm", better=-1)
+COLORS = {RESIDUAL: "#6b7785", EXPECTED: "#0b6fa4", TRUE: "#d1661b"}
+
+
+def method_comparison(data: StudyData) -> Markup:
+    """Return the section; "" where all trials were registered by one method."""
+    by_method = as_conditions(data)
+    methods = [name for name in TITLES if name in by_method.modes]
+    if len(methods) < 2:
+        return Markup()
+    series = [
+        charts.Series(
+            outcome.title,
+            color,
+            tuple(tuple(values_of(by_method.of_mode(name), outcome.name)) for name in methods),
+        )
+        for outcome, color in COLORS.items()
+    ]
+    names = [TITLES[method] for method in methods]
+    pairs = compare_methods(by_method)
+    return render(
+        "methods_of_registration",
+        titles=TITLES,
+        rows=[_row(by_method, method) for method in methods],
+        chart=charts.grouped_bars("Residual and target error, mm", names, series, "method"),
+        pairs=pairs,
+        findings=method_findings(pairs),
+    )
+
+
+def method_findings(pairs: Sequence[ModeComparison]) -> list[str]:
+    """Return a sentence on the true errors of each two methods that are tested."""
+    return [
+        what_it_shows(
+            f"{TRUE.title} ({TITLES[one.first].lower()} and {TITLES[one.second].lower()})",
+            TRUE.unit,
+            TITLES[one.first].lower(),
+            TITLES[one.second].lower(),
+            result,
+            one.adjusted_p,
+            TRUE.digits,
+            "pairs of methods",
+        )
+        for one, result in tested(pairs)
+        if one.adjusted_p is not None
+    ]
+
+
+def as_conditions(data: StudyData) -> StudyData:
+    trials = tuple(replace(each, mode=each.method, task=each.mode) for each in data.trials)
+    return replace(data, trials=trials)
+
+
+def compare_methods(by_method: StudyData) -> tuple[ModeComparison, ...]:
+    """Compare each two methods on residual, expected and true error.
+
+    The p of the true errors are adjusted together (Holm); the others are only described.
+
+    Args:
+        by_method: As from `as_conditions`.
+    """
+    names = [name for name in TITLES if name in by_method.modes]
+    found = [
+        comparison
+        for first, second in itertools.combinations(names, 2)
+        for comparison in compare_modes(by_method, tuple(COLORS), first, second, confirmatory=())
+    ]
+    return with_adjusted_p(found, (TRUE.name,))
+
+
+def _row(by_method: StudyData, method: str) -> list[str]:
+    trials = by_method.of_mode(method)
+    held = [
+        values["tre_low_mm"] <= values["true_tre_mm"] <= values["tre_high_mm"]
+        for values in (trial.values for trial in trials)
+        if {"tre_low_mm", "true_tre_mm"} <= set(values)
+    ]
+    return [
+        TITLES[method],
+        str(len({trial.trainee for trial in trials})),
+        str(len(trials)),
+        *(_mean_text(trials, outcome) for outcome in COLORS),
+        f"{sum(held)} of {len(held)}" if held else "–",
+    ]
+
+
+def _mean_text(trials: Sequence[TrialRow], outcome: Outcome) -> str:
+    """Return the mean of the trainees' means with its interval."""
+    own: dict[str, list[float]] = defaultdict(list)
+    for trial in trials:
+        if outcome.name in trial.values:
+            own[trial.trainee].append(trial.values[outcome.name])
+    means = np.array([float(np.mean(values)) for values in own.values()])
+    if len(means) < 2:
+        return outcome.text(means[0]) if len(means) else "–"
+    estimate = mean(means)
+    return interval_text(estimate.value, estimate.interval, outcome.digits)
+
+
+def shifted_skin(data: StudyData) -> Markup:
+    """Return the section; "" where the skin lay as in the images in all trials."""
+    groups: dict[tuple[float, float, str], list[TrialRow]] = defaultdict(list)
+    for trial in data.trials:
+        if "skin_shift_mm" in trial.values:
+            amounts = trial.values["skin_shift_mm"], trial.values["skin_indentation_mm"]
+            groups[(*amounts, trial.method)].append(trial)
+    if not groups:
+        return Markup()
+    names = ("rmse_mm", "expected_tre_mm", "true_tre_mm", "unshifted_tre_mm")
+    rows = [
+        [
+            *(fixed(shift, 1), fixed(indentation, 1), TITLES.get(method, method), str(len(trials))),
+            *(
+                fixed(float(np.mean(values)), 2) if (values := values_of(trials, name)) else "–"
+                for name in names
+            ),
+        ]
+        for (shift, indentation, method), trials in sorted(groups.items())
+    ]
+    return render("shifted_skin", rows=rows)

@@ -1,0 +1,85 @@
+"""The modes side by side: by task (the paper's Fig. 8), as distributions, and by motion metric."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from markupsafe import Markup
+
+from rastrainer.number_text import fixed
+from rastrainer.study.outcomes import (
+    MAIN_OUTCOMES,
+    MOTION_OUTCOMES,
+    Outcome,
+    mode_title,
+    short_mode_title,
+    task_title,
+)
+from rastrainer.study.study_data import StudyData, values_of
+from rastrainer_simulator.report import charts
+from rastrainer_simulator.report.comparisons import ModeComparison, tested
+from rastrainer_simulator.report.page import render
+
+SHOWN = ("completion_time_s", "rmse_mm", "ctps", "score")
+
+
+def mode_comparison(data: StudyData) -> Markup:
+    """Return one chart per outcome, with the modes side by side for every task."""
+    found = {name for trial in data.trials for name in trial.values}
+    outcomes = [each for each in MAIN_OUTCOMES if each.name in SHOWN and each.name in found]
+    return render("task_by_task", charts=[_chart(data, outcome) for outcome in outcomes])
+
+
+def _chart(data: StudyData, outcome: Outcome) -> Markup:
+    series = [
+        charts.Series(
+            mode_title(mode),
+            charts.mode_color(mode, index),
+            tuple(
+                tuple(values_of((t for t in data.of_mode(mode) if t.task == task), outcome.name))
+                for task in data.tasks
+            ),
+        )
+        for index, mode in enumerate(data.modes)
+    ]
+    return charts.grouped_bars(outcome.heading, [task_title(task) for task in data.tasks], series)
+
+
+def distributions(data: StudyData) -> Markup:
+    """Return one chart per outcome, with a lane for each mode."""
+    pictures = []
+    for outcome in MAIN_OUTCOMES:
+        lanes = [
+            (short_mode_title(mode), charts.mode_color(mode, index), values)
+            for index, mode in enumerate(data.modes)
+            if (values := values_of(data.of_mode(mode), outcome.name))
+        ]
+        if lanes:
+            pictures.append(charts.distribution(outcome.heading, lanes))
+    return render("distributions", charts=pictures)
+
+
+def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> Markup:
+    """Return the table; "" if no trial was recorded."""
+    found = {name for trial in data.trials for name in trial.values}
+    outcomes = [outcome for outcome in MOTION_OUTCOMES if outcome.name in found]
+    if not outcomes:
+        return Markup()
+    compared = {c.outcome.name: result for c, result in tested(comparisons)}
+    rows = []
+    for outcome in outcomes:
+        values = [values_of(data.of_mode(mode), outcome.name) for mode in data.modes]
+        means = [mean_and_sd(own, outcome.digits) for own in values]
+        rows.append((outcome, means, [len(own) for own in values], compared.get(outcome.name)))
+    return render("motion", modes=data.modes, rows=rows)
+
+
+def mean_and_sd(values: Sequence[float], digits: int) -> str:
+    """Return `12.3 ± 0.4`: the sample's standard deviation, of two values or more."""
+    if not values:
+        return "–"
+    text = fixed(float(np.mean(values)), digits)
+    if len(values) > 1:
+        text += f" ± {fixed(float(np.std(values, ddof=1)), digits)}"
+    return text

@@ -1,0 +1,78 @@
+"""The templates of a report, and what they write numbers and names with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from rastrainer.number_text import counted, fixed, p_phrase, p_text, percent, significant
+from rastrainer.study.outcomes import mode_name, mode_title, short_mode_title, task_title
+from rastrainer.study.tre_calibration import share_text
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A cell of a table; `kind` is its class."""
+
+    text: str
+    span: int = 1
+    color: str = ""
+    kind: str = ""
+
+
+def cell(content: Any, span: int = 1, color: str = "", kind: str = "") -> Cell:
+    return content if isinstance(content, Cell) else Cell(str(content), span, color, kind)
+
+
+def left(words: str) -> Cell:
+    """Return a cell that is aligned to the left, and may take several lines."""
+    return Cell(words, kind="text")
+
+
+def interval_text(value: float, interval: tuple[float, float], digits: int) -> str:
+    low, high = interval
+    return f"{fixed(value, digits)} [{fixed(low, digits)}, {fixed(high, digits)}]"
+
+
+def or_dash(value: float | None, digits: int) -> str:
+    return "–" if value is None else fixed(value, digits)
+
+
+def p_or_dash(p: float | None) -> str:
+    return "–" if p is None else p_text(p)
+
+
+WRITERS = (
+    *(cell, left, interval_text, or_dash, p_or_dash, share_text),
+    *(counted, fixed, p_phrase, p_text, percent, significant),
+    *(mode_name, mode_title, short_mode_title, task_title),
+)
+"""What templates call."""
+
+
+def _templates() -> Environment:
+    made = Environment(
+        loader=FileSystemLoader(Path(__file__).with_name("templates")),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    writers = {each.__name__: each for each in WRITERS}
+    made.globals.update(writers)
+    made.filters.update(writers)
+    elements = made.get_template("elements.html").module
+    made.globals.update({name: getattr(elements, name) for name in ("table", "row", "figure")})
+    return made
+
+
+_TEMPLATES = _templates()
+
+
+def render(template: str, **values: Any) -> Markup:
+    """Return a template with values, which are escaped unless they are HTML already."""
+    return Markup(_TEMPLATES.get_template(f"{template}.html").render(values))

@@ -1,0 +1,221 @@
+"""Estimates with their intervals, and the power of paired tests."""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+
+from rastrainer.errors import InputError
+
+CONFIDENCE = 0.95
+TAIL = (1 - CONFIDENCE) / 2
+
+
+def small_sample_factor(dof: float) -> float | None:
+    """Return Hedges' J, by which a standardized difference of few subjects is too large.
+
+    None for one degree of freedom: no estimate is unbiased there.
+    """
+    if dof <= 1:
+        return None
+    log = math.lgamma(dof / 2) - math.lgamma((dof - 1) / 2)
+    return math.exp(log) / math.sqrt(dof / 2)
+
+
+def noncentrality_interval(t: float, dof: float) -> tuple[float, float]:
+    """Return the noncentralities between which an observed t is not surprising.
+
+    (Steiger and Fouladi 1997: at each end, t is the quantile of its tail.) Divided by √n they are
+    the limits of the population's effect size itself. They are not multiplied by Hedges' J, which
+    corrects the estimate: with it they would cover too rarely.
+    """
+    return _noncentrality(t, dof, 1 - TAIL), _noncentrality(t, dof, TAIL)
+
+
+def _noncentrality(t: float, dof: float, probability: float) -> float:
+    """Return the noncentrality at which so much of the distribution lies below t."""
+    below = scipy.stats.nct.cdf
+
+    def excess(noncentrality: float) -> float:
+        share = float(below(t, dof, noncentrality))
+        # Far out in a tail, scipy gives no number.
+        share = float(noncentrality < t) if math.isnan(share) else share
+        return share - probability
+
+    low, high, step = t - 1.0, t + 1.0, 2.0
+    while excess(low) < 0:
+        low, step = low - step, 2 * step
+    while excess(high) > 0:
+        high, step = high + step, 2 * step
+    return float(scipy.optimize.brentq(excess, low, high, xtol=1e-12))
+
+
+ALPHA = 0.05
+TARGET_POWER = 0.8
+MAX_SUBJECTS = 10_000
+
+
+def paired_power(effect_dz: float, n: int, with_period: bool = False) -> float:
+    """Return the probability that n subjects show an effect (two-sided paired t-test, 5 %).
+
+    Args:
+        effect_dz: True mean difference over the true standard deviation of the differences (of
+            subjects with the same order, where the period is separated).
+        n: Subjects, at least 2; 3 with the period.
+        with_period: Whether the effect of the period is separated, which takes a degree of
+            freedom; the orders are taken as balanced.
+    """
+    dof = n - 1 - with_period
+    critical, shift = scipy.stats.t.ppf(1 - ALPHA / 2, dof), effect_dz * math.sqrt(n)
+    if shift == 0:
+        return ALPHA
+    noncentral = scipy.stats.nct(dof, abs(shift))
+    above, below = noncentral.sf(critical), noncentral.cdf(-critical)
+    # Far out in a tail, scipy gives no number: there, all or nothing lies beyond.
+    return float(np.nan_to_num(above, nan=1.0) + np.nan_to_num(below, nan=0.0))
+
+
+def subjects_needed(effect_dz: float, with_period: bool = False) -> int:
+    """Return the least number of subjects with `TARGET_POWER`; arguments as of `paired_power`."""
+    low = 1 + with_period
+    high = low + 1
+    while paired_power(effect_dz, high, with_period) < TARGET_POWER:
+        low, high = high, 2 * high
+        if high > MAX_SUBJECTS:
+            raise InputError(
+                f"An effect of {effect_dz:g} standard deviations would need more than "
+                f"{MAX_SUBJECTS} subjects."
+            )
+    while high - low > 1:
+        middle = (low + high) // 2
+        if paired_power(effect_dz, middle, with_period) < TARGET_POWER:
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+def detectable_effect(n: int, with_period: bool = False) -> float:
+    """Return the effect d_z that n subjects show with `TARGET_POWER`; as of `paired_power`."""
+
+    def missing(effect: float) -> float:
+        return paired_power(effect, n, with_period) - TARGET_POWER
+
+    high = 1.0
+    while missing(high) < 0:
+        high *= 2
+    return float(scipy.optimize.brentq(missing, 0.0, high))
+
+
+@dataclass(frozen=True)
+class Correlation:
+    """Pearson's r of n pairs, its two-sided p and its 95 % interval (Fisher's z)."""
+
+    n: int
+    r: float
+    p: float
+    interval: tuple[float, float] | None
+
+
+def correlation(x: np.ndarray, y: np.ndarray) -> Correlation:
+    """Return the correlation of (n,) float pairs; of three pairs the interval is None."""
+    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    if len(x) < 3 or np.ptp(x) == 0 or np.ptp(y) == 0:
+        raise InputError("A correlation needs three pairs of values that vary.")
+    found = scipy.stats.pearsonr(x, y)
+    interval = None
+    if len(x) > 3 and abs(found.statistic) < 1:
+        limits = found.confidence_interval(0.95)
+        interval = (float(limits.low), float(limits.high))
+    return Correlation(len(x), float(found.statistic), float(found.pvalue), interval)
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A value and its 95 % interval."""
+
+    value: float
+    interval: tuple[float, float]
+
+    def __neg__(self) -> Estimate:
+        low, high = self.interval
+        return Estimate(-self.value, (-high, -low))
+
+    def holds(self, truth: float) -> bool:
+        return self.interval[0] <= truth <= self.interval[1]
+
+
+@dataclass(frozen=True)
+class MeanSquare:
+    """A mean square σ²·χ²/dof and its degrees of freedom."""
+
+    value: float
+    dof: float
+
+
+def coefficient(value: float, error: float, dof: float) -> Estimate:
+    """Return a normal estimate whose standard error has so many degrees of freedom."""
+    reach = t_quantile(dof) * error
+    return Estimate(value, (value - reach, value + reach))
+
+
+def mean(values: np.ndarray) -> Estimate:
+    """Return the mean of (n,) float independent values, n ≥ 2."""
+    error = float(values.std(ddof=1)) / math.sqrt(len(values))
+    return coefficient(float(values.mean()), error, len(values) - 1)
+
+
+def variance(square: MeanSquare) -> Estimate:
+    low, high = (chi2_ratio(tail, square.dof) for tail in (TAIL, 1 - TAIL))
+    return Estimate(square.value, (square.value / high, square.value / low))
+
+
+def difference(first: MeanSquare, second: MeanSquare) -> Estimate:
+    """Return the difference of the variances that two independent mean squares estimate.
+
+    Ting et al. (1990) give the limits, the modified large-sample interval of Burdick and Graybill
+    (1992). They may be below 0.
+    """
+    one, other = first.value, second.value
+    difference_ = one - other
+    products = np.array([one**2, other**2, one * other])
+    low, high = (
+        products @ factors
+        for factors in (
+            _factors(TAIL, first.dof, second.dof),
+            _factors(1 - TAIL, first.dof, second.dof),
+        )
+    )
+    return Estimate(
+        difference_,
+        (difference_ - math.sqrt(max(low, 0.0)), difference_ + math.sqrt(max(high, 0.0))),
+    )
+
+
+@functools.lru_cache(maxsize=256)
+def _factors(tail: float, dof: float, other_dof: float) -> np.ndarray:
+    """Return the factors of both squares and of their product in the square of one reach.
+
+    Args:
+        tail: Probability above the quantile of the first mean square: small for the lower limit.
+    """
+    own = 1 - 1 / chi2_ratio(1 - tail, dof)
+    others = 1 - 1 / chi2_ratio(tail, other_dof)
+    ratio = float(scipy.stats.f.isf(tail, dof, other_dof))
+    product = ((ratio - 1) ** 2 - (own * ratio) ** 2 - others**2) / ratio
+    return np.array([own**2, others**2, product])
+
+
+@functools.lru_cache(maxsize=256)
+def t_quantile(dof: float) -> float:
+    """Return by how many standard errors a 95 % interval reaches to either side."""
+    return float(scipy.stats.t.isf(TAIL, dof))
+
+
+@functools.lru_cache(maxsize=256)
+def chi2_ratio(probability: float, dof: float) -> float:
+    return float(scipy.stats.chi2.ppf(probability, dof)) / dof

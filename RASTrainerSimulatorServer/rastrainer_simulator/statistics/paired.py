@@ -1,0 +1,313 @@
+"""Two conditions on the same subjects: difference, interval, effect size and tests.
+
+A subject has more practice, or is more tired, in the later condition. With balanced orders half of
+the subjects gain by this in one condition and half in the other: the mean difference is right, but
+the differences scatter by twice the effect of the period, so a paired test finds little. The
+regression here removes it (for two sequences AB and BA it is the usual analysis of a crossover:
+Hills and Armitage 1979; Senn 2002, chapter 3).
+
+Wilcoxon's signed-rank and rank-sum tests are exact for any number of ties.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+
+from rastrainer.errors import InputError
+from rastrainer_simulator.statistics.intervals import (
+    CONFIDENCE,
+    coefficient,
+    noncentrality_interval,
+    small_sample_factor,
+)
+
+MIN_SUBJECTS = 4
+"""Difference and period take two; one degree of freedom for the variance is not enough."""
+
+
+@dataclass(frozen=True)
+class DifferenceFit:
+    """The mean of differences, and the effect of the period if separated.
+
+    Arrays have the shape of the data without its last axis.
+
+    Attributes:
+        mean: Difference for subjects unaffected by the order.
+    """
+
+    mean: np.ndarray
+    standard_error: np.ndarray
+    sd: np.ndarray
+    dof: int
+    later: np.ndarray | None = None
+    later_error: np.ndarray | None = None
+
+
+def is_separable(order: np.ndarray | None) -> bool:
+    """Return whether the effect of the period can be separated from that of the conditions.
+
+    Args:
+        order: (n,) float, by how many periods each subject did the second condition later than the
+            first: 1 for AB, -1 for BA; None if that is unknown.
+    """
+    if order is None or len(order) < MIN_SUBJECTS:
+        return False
+    return bool(np.ptp(order) > 0 and np.min(order) <= 0 <= np.max(order))
+
+
+def fit_differences(differences: np.ndarray, order: np.ndarray | None = None) -> DifferenceFit:
+    """Return the mean of (…, n) float differences, second condition minus first.
+
+    Args:
+        differences: A study in the last axis.
+        order: As for `is_separable`; where it is not separable, the plain mean is returned.
+    """
+    n = differences.shape[-1]
+    means = differences.mean(axis=-1)
+    centered = differences - means[..., None]
+    if order is None or not is_separable(order):
+        sd = np.sqrt((centered**2).sum(axis=-1) / (n - 1))
+        return DifferenceFit(means, sd / np.sqrt(n), sd, n - 1)
+    offsets = order - order.mean()
+    squares = float(offsets @ offsets)
+    later = centered @ offsets / squares
+    residuals = centered - later[..., None] * offsets
+    sd = np.sqrt((residuals**2).sum(axis=-1) / (n - 2))
+    return DifferenceFit(
+        mean=means - later * order.mean(),
+        standard_error=sd * np.sqrt(1 / n + order.mean() ** 2 / squares),
+        sd=sd,
+        dof=n - 2,
+        later=later,
+        later_error=sd / np.sqrt(squares),
+    )
+
+
+MIN_SEQUENCE_SIZE = 2
+"""Subjects of a sequence, to estimate how much they scatter."""
+
+
+@dataclass(frozen=True)
+class Sequences:
+    """Subjects by the condition that they did first.
+
+    Attributes:
+        between: Mean over both conditions of those who did the second one first, minus that of the
+            others; None with fewer than two subjects in a sequence. Without carry-over it is 0 but
+            for chance.
+    """
+
+    first_first: int
+    second_first: int
+    later: float
+    later_interval: tuple[float, float]
+    between: float | None
+    between_interval: tuple[float, float] | None
+
+
+def compare_sequences(
+    first: np.ndarray, second: np.ndarray, order: np.ndarray, fit: DifferenceFit
+) -> Sequences:
+    """Return the effects of the order on (n,) float values of both conditions.
+
+    `order` is that of `is_separable`, and `fit` that of the differences, with the period.
+    """
+    if fit.later is None or fit.later_error is None:
+        raise ValueError("The effect of the period is not separated.")
+    later = coefficient(float(fit.later), float(fit.later_error), fit.dof)
+    means = (first + second) / 2
+    groups = means[order < 0], means[order > 0]
+    between, between_interval = None, None
+    if min(map(len, groups)) >= MIN_SEQUENCE_SIZE and np.ptp(means) > 0:
+        between = float(groups[0].mean() - groups[1].mean())
+        limits = scipy.stats.ttest_ind(*groups).confidence_interval(CONFIDENCE)
+        between_interval = (float(limits.low), float(limits.high))
+    return Sequences(
+        first_first=len(groups[1]),
+        second_first=len(groups[0]),
+        later=later.value,
+        later_interval=later.interval,
+        between=between,
+        between_interval=between_interval,
+    )
+
+
+@dataclass(frozen=True)
+class PairedComparison:
+    """Two conditions, compared on the subjects who did both.
+
+    Attributes:
+        mean_difference: Mean of second minus first; free of the effect of the period where
+            `sequences` is not None.
+        hedges_gz: Mean difference over its standard deviation, corrected for few subjects; None
+            with one degree of freedom.
+        gz_interval: 95 % interval of the population's own (noncentral t); None likewise.
+        ranks: Wilcoxon's signed ranks, or his rank sums where periods are separated; None if
+            neither can be computed.
+        sequences: What the order did; None if it is unknown, or the same for all.
+    """
+
+    n: int
+    mean_difference: float
+    standard_error: float
+    dof: int
+    interval: tuple[float, float]
+    t: float
+    p: float
+    hedges_gz: float | None
+    gz_interval: tuple[float, float] | None
+    ranks: RankTest | None
+    sequences: Sequences | None = None
+
+
+def compare_paired(
+    first: np.ndarray, second: np.ndarray, order: np.ndarray | None = None
+) -> PairedComparison:
+    """Compare two conditions, (n,) float each, of the same subjects in the same order.
+
+    The t-test is Student's (1908), with the period as a covariate where the order allows it. The
+    effect size is Cohen's d_z with Hedges' exact correction (1981).
+
+    `order` is that of `is_separable`.
+    """
+    first, second = np.asarray(first, dtype=float), np.asarray(second, dtype=float)
+    differences, n = second - first, len(first)
+    if n < 2:
+        raise InputError("A paired comparison needs at least two subjects who did both.")
+    order = np.asarray(order, dtype=float) if is_separable(order) else None
+    fit = fit_differences(differences, order)
+    mean, sd = float(fit.mean), float(fit.sd)
+    if sd <= 1e-12 * max(1.0, float(np.abs(differences).max())):
+        raise InputError("All subjects differ by the same amount: no test can be computed.")
+    error = float(fit.standard_error)
+    t, dof = mean / error, fit.dof
+    gz, gz_interval, factor = None, None, small_sample_factor(dof)
+    if factor is not None:
+        low, high = noncentrality_interval(t, dof)
+        gz, gz_interval = factor * mean / sd, (low * error / sd, high * error / sd)
+    return PairedComparison(
+        n=n,
+        mean_difference=mean,
+        standard_error=error,
+        dof=dof,
+        interval=coefficient(mean, error, dof).interval,
+        t=t,
+        p=float(2 * scipy.stats.t.sf(abs(t), dof)),
+        hedges_gz=gz,
+        gz_interval=gz_interval,
+        ranks=rank_test(differences, order),
+        sequences=None if order is None else compare_sequences(first, second, order, fit),
+    )
+
+
+def equivalence_margin(comparison: PairedComparison) -> float:
+    """Return the least margin within which the difference is shown to lie, in its unit.
+
+    For every margin above it two one-sided tests at 5 % both reject (Schuirmann 1987). Whether so
+    small a difference may be neglected must be decided before the study.
+    """
+    quantile = float(scipy.stats.t.ppf(CONFIDENCE, comparison.dof))
+    return abs(comparison.mean_difference) + quantile * comparison.standard_error
+
+
+def holm(p_values: np.ndarray) -> np.ndarray:
+    """Return p-values adjusted for multiple testing (Holm 1979), in order along the last axis."""
+    p_values = np.asarray(p_values, dtype=float)
+    order = np.argsort(p_values, axis=-1)
+    weights = np.arange(p_values.shape[-1], 0, -1)
+    ranked = np.take_along_axis(p_values, order, axis=-1) * weights
+    adjusted = np.empty(p_values.shape)
+    ranked = np.minimum(np.maximum.accumulate(ranked, axis=-1), 1.0)
+    np.put_along_axis(adjusted, order, ranked, axis=-1)
+    return adjusted
+
+
+def rank_test(differences: np.ndarray, order: np.ndarray | None) -> RankTest | None:
+    """Return the rank test of (n,) differences: with the period, where it is separated."""
+    if order is None:
+        return signed_rank_test(differences) if np.any(differences) else None
+    size = np.abs(order).max()
+    if not np.all(np.abs(order) == size):
+        # Ranks know no regression: only two sequences that mirror each other can be compared.
+        return None
+    later_minus_earlier = differences * np.sign(order)
+    return rank_sum_test(later_minus_earlier[order > 0], later_minus_earlier[order < 0])
+
+
+@dataclass(frozen=True)
+class RankTest:
+    """A test on ranks.
+
+    Attributes:
+        p: Two-sided; exact, or by the normal approximation for more than 100 values of two groups.
+        smallest_p: Smallest possible p for these ranks; 0 if p is approximate.
+    """
+
+    p: float
+    smallest_p: float
+
+
+MAX_SIGNED = 400
+
+
+def signed_rank_test(differences: np.ndarray) -> RankTest:
+    """Test whether (n,) float differences scatter about 0.
+
+    Zeros are left out (Wilcoxon 1945); tied sizes share their mean rank. All 2ⁿ signs of the
+    observed ranks make the distribution.
+    """
+    values = np.asarray(differences, dtype=float)
+    values = values[values != 0]
+    if not 0 < len(values) <= MAX_SIGNED:
+        raise InputError(
+            f"The signed-rank test needs 1 to {MAX_SIGNED} differences that are not 0."
+        )
+    doubled = _doubled(scipy.stats.rankdata(np.abs(values)))
+    chances = np.zeros(int(doubled.sum()) + 1)
+    chances[0] = 1.0
+    for rank in doubled:
+        chances[rank:] += chances[: len(chances) - rank].copy()
+        chances /= 2
+    return _exact_test(chances, int(doubled[values > 0].sum()))
+
+
+MAX_EXACT_SUMS = 100
+
+
+def rank_sum_test(one: np.ndarray, other: np.ndarray) -> RankTest | None:
+    """Test whether (n,) and (m,) float values have equal location; None if a group is empty.
+
+    All draws of n of the observed ranks make the distribution; tied values share their mean
+    rank, which scipy's exact test does not support.
+    """
+    drawn = len(one)
+    if not drawn or not len(other):
+        return None
+    ranks = scipy.stats.rankdata(np.concatenate([one, other]))
+    if len(ranks) > MAX_EXACT_SUMS:
+        return RankTest(
+            float(scipy.stats.mannwhitneyu(one, other, method="asymptotic").pvalue), 0.0
+        )
+    doubled = _doubled(ranks)
+    counts = np.zeros((drawn + 1, int(doubled.sum()) + 1))
+    counts[0, 0] = 1.0
+    for rank in doubled:
+        counts[1:, rank:] += counts[:-1, : counts.shape[1] - rank].copy()
+    chances = counts[drawn] / math.comb(len(doubled), drawn)
+    return _exact_test(chances, int(doubled[:drawn].sum()))
+
+
+def _doubled(ranks: np.ndarray) -> np.ndarray:
+    """Return twice the ranks, since tied ones are halves: whole numbers can be counted."""
+    return np.rint(2 * ranks).astype(int)
+
+
+def _exact_test(chances: np.ndarray, observed: int) -> RankTest:
+    lower, upper = chances[: observed + 1].sum(), chances[observed:].sum()
+    possible = np.flatnonzero(chances)
+    smallest = min(chances[possible[0]], chances[possible[-1]])
+    return RankTest(float(min(1.0, 2 * min(lower, upper))), float(min(1.0, 2 * smallest)))

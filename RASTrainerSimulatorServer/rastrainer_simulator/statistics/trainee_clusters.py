@@ -1,0 +1,251 @@
+"""Clusters of trainees by performance: the paper's future work, with the proof or a refusal."""
+
+from __future__ import annotations
+
+import functools
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+
+from rastrainer.errors import RASTrainerError
+from rastrainer.number_text import p_phrase
+
+MIN_TRAINEES = 12
+TRAINEES_A_CLUSTER = 5
+MAX_CLUSTERS = 5
+STABLE = 0.75
+"""Hennig 2007: below it, a cluster should not be trusted."""
+ALPHA = 0.05
+STABILITY_ROUNDS = 100
+
+
+class NoClustersError(RASTrainerError):
+    """No groups can be reported; the message says why."""
+
+
+@dataclass(frozen=True)
+class TraineeClusters:
+    """Groups of trainees.
+
+    Attributes:
+        members: Pseudonyms of each cluster, the largest cluster first.
+        centers: Mean of each cluster in the metrics' own units.
+        dip_p: How often a population with a single peak looks at least as parted as this.
+        stability: Mean Jaccard similarity of each cluster under resampling, 0 to 1.
+    """
+
+    metrics: tuple[str, ...]
+    members: tuple[tuple[str, ...], ...]
+    centers: tuple[tuple[float, ...], ...]
+    silhouette: float
+    dip_p: float
+    stability: tuple[float, ...]
+
+
+def cluster_trainees(
+    trainees: Mapping[str, Mapping[str, float]], metrics: Sequence[str], seed: int = 0
+) -> TraineeClusters:
+    """Group trainees by z-scored metrics with k-means.
+
+    Any population can be cut, and a skewed one is cut better than a normal one. So groups are
+    reported only if there is more than one peak: Hartigans' dip test on the first principal
+    component, which is chosen without looking for groups, at 5 % for every population with a single
+    peak. The number of clusters is the one with the best mean silhouette, and every cluster must
+    come back when trainees are resampled.
+
+    Args:
+        trainees: Pseudonym → metric → mean of the trainee.
+
+    Raises:
+        NoClustersError: too few trainees, metrics that do not vary, or no groups are shown.
+    """
+    names = sorted(name for name, values in trainees.items() if set(metrics) <= set(values))
+    if len(names) < MIN_TRAINEES:
+        raise NoClustersError(
+            f"Groups of trainees are not reported for fewer than {MIN_TRAINEES} trainees "
+            f"with all metrics; there are {len(names)}."
+        )
+    values = np.array([[trainees[name][metric] for metric in metrics] for name in names])
+    spread = values.std(axis=0, ddof=1)
+    if not metrics or not np.all(spread > 0):
+        raise NoClustersError("Groups of trainees need metrics that vary between trainees.")
+    points = (values - values.mean(axis=0)) / spread
+    random = np.random.default_rng(seed)
+    p = one_peak_p(points)
+    if p > ALPHA:
+        raise NoClustersError(
+            f"No groups are shown: {len(names)} trainees of one group would often look as clearly "
+            f"divided as these (dip test, {p_phrase(p)}). That is not evidence that there are none."
+        )
+    labels, silhouette = _best(points, random)
+    stable = stability(points, labels, random, STABILITY_ROUNDS)
+    if stable.min() < STABLE:
+        raise NoClustersError(
+            f"The groups are not stable: with other trainees, one of them comes back with a "
+            f"similarity of {stable.min():.2f} only ({STABLE} is needed)."
+        )
+    order = np.argsort([-(labels == c).sum() for c in np.unique(labels)], kind="stable")
+    return TraineeClusters(
+        metrics=tuple(metrics),
+        members=tuple(tuple(np.array(names)[labels == c].tolist()) for c in order),
+        centers=tuple(tuple(values[labels == c].mean(axis=0).tolist()) for c in order),
+        silhouette=silhouette,
+        dip_p=p,
+        stability=tuple(stable[order].tolist()),
+    )
+
+
+def one_peak_p(points: np.ndarray) -> float:
+    """Return how often a population with a single peak looks as parted as (n, m) z-scores.
+
+    The points are looked at along the direction in which they vary most.
+    """
+    return dip_p(points @ np.linalg.svd(points, full_matrices=False)[2][0])
+
+
+def _best(points: np.ndarray, random: np.random.Generator) -> tuple[np.ndarray, float]:
+    """Return the labels, from 0 without gaps, and the mean silhouette of the best number."""
+    most = min(MAX_CLUSTERS, len(points) // TRAINEES_A_CLUSTER)
+    found = []
+    for count in range(2, max(2, most) + 1):
+        labels = np.unique(k_means(points, count, random), return_inverse=True)[1]
+        found.append((labels, float(silhouettes(points, labels).mean())))
+    return max(found, key=lambda one: one[1])
+
+
+REFERENCE_SAMPLES = 2000
+
+
+def dip(values: np.ndarray) -> float:
+    """Return the largest distance of the empirical distribution of (n,) values from its nearest
+    unimodal one.
+
+    The peak is enclosed from both sides: left of it a unimodal distribution function is convex,
+    right of it concave. Where the greatest convex minorant and the least concave majorant of what
+    is still open are farthest apart, the next, shorter interval begins and ends.
+    """
+    x, counts = np.unique(np.asarray(values, dtype=float), return_counts=True)
+    n = len(values)
+    above = np.cumsum(counts) / n
+    below = above - counts / n
+    low, high, widest = 0, len(x) - 1, 1 / n
+    while True:
+        convex = low + _hull(x[low : high + 1], below[low : high + 1], 1)
+        concave = low + _hull(x[low : high + 1], above[low : high + 1], -1)
+        over_convex = above[concave] - np.interp(x[concave], x[convex], below[convex])
+        under_concave = np.interp(x[convex], x[concave], above[concave]) - below[convex]
+        if over_convex.max() > under_concave.max():
+            apart, right = over_convex.max(), concave[over_convex.argmax()]
+            left = convex[convex <= right].max()
+        else:
+            apart, left = under_concave.max(), convex[under_concave.argmax()]
+            right = concave[concave >= left].min()
+        if apart <= widest:
+            return float(widest / 2)
+        # But for its ends: many equal values may well be the peak.
+        rising = np.interp(x[low:left], x[convex], below[convex])
+        falling = np.interp(x[right + 1 : high + 1], x[concave], above[concave])
+        widest = max(
+            widest,
+            (above[low:left] - rising).max(initial=0.0),
+            (falling - below[right + 1 : high + 1]).max(initial=0.0),
+        )
+        if (left, right) == (low, high):
+            return float(widest / 2)
+        low, high = left, right
+
+
+def dip_p(values: np.ndarray) -> float:
+    """Return how often (n,) values of a uniform distribution have so large a dip.
+
+    Of all distributions with a single peak the uniform one has the largest dips, so that this p is
+    too large for every other one, whether skewed or heavy-tailed, and never too small.
+    """
+    reference = _uniform_dips(len(values))
+    larger = len(reference) - np.searchsorted(reference, dip(values) - 1e-12)
+    return float((larger + 1) / (len(reference) + 1))
+
+
+@functools.lru_cache(maxsize=64)
+def _uniform_dips(n: int) -> np.ndarray:
+    random = np.random.default_rng(n)
+    return np.sort([dip(row) for row in random.random((REFERENCE_SAMPLES, n))])
+
+
+def _hull(x: np.ndarray, y: np.ndarray, side: int) -> np.ndarray:
+    """Return the rows of the corners of the lower (side 1) or upper (-1) hull of sorted points."""
+    corners: list[int] = []
+    for row in range(len(x)):
+        while len(corners) > 1:
+            a, b = corners[-2:]
+            turn = (y[b] - y[a]) * (x[row] - x[a]) - (y[row] - y[a]) * (x[b] - x[a])
+            if side * turn < 0:
+                break
+            corners.pop()
+        corners.append(row)
+    return np.array(corners)
+
+
+STARTS, STARTS_OF_SAMPLE = 10, 3
+MAX_ROUNDS = 30
+
+
+def k_means(
+    points: np.ndarray, count: int, random: np.random.Generator, starts: int = STARTS
+) -> np.ndarray:
+    """Return the cluster of each of (n, m) points, (n,) int: the best of several starts (scipy)."""
+    found = [_once(points, count, random) for _ in range(starts)]
+    return min(found, key=lambda one: one[0])[1]
+
+
+def silhouettes(points: np.ndarray, labels: np.ndarray) -> np.ndarray:
+    """Return how well each point sits in its cluster, (n,) float, -1 to 1 (Rousseeuw 1987)."""
+    distances = np.linalg.norm(points[:, None] - points[None], axis=2)
+    clusters = np.unique(labels)
+    sizes = np.array([(labels == c).sum() for c in clusters])
+    sums = np.stack([distances[:, labels == c].sum(axis=1) for c in clusters], axis=1)
+    own = np.searchsorted(clusters, labels)
+    rows = np.arange(len(points))
+    within = sums[rows, own] / np.maximum(sizes[own] - 1, 1)
+    means = sums / sizes
+    means[rows, own] = np.inf
+    nearest = means.min(axis=1)
+    values = (nearest - within) / np.maximum(within, nearest)
+    return np.where(sizes[own] == 1, 0.0, values)
+
+
+def stability(
+    points: np.ndarray, labels: np.ndarray, random: np.random.Generator, rounds: int
+) -> np.ndarray:
+    """Return the mean Jaccard similarity of each cluster under resampling (Hennig 2007).
+
+    Each bootstrap sample is clustered; the cluster most like the original one counts.
+    """
+    clusters = np.unique(labels)
+    found = np.zeros((rounds, len(clusters)))
+    for row in range(rounds):
+        chosen = np.unique(random.integers(0, len(points), len(points)))
+        if len(chosen) <= len(clusters):
+            continue
+        again = k_means(points[chosen], len(clusters), random, STARTS_OF_SAMPLE)
+        for column, cluster in enumerate(clusters):
+            is_old = labels[chosen] == cluster
+            found[row, column] = max(
+                (is_old & (again == new)).sum() / max(1, (is_old | (again == new)).sum())
+                for new in np.unique(again)
+            )
+    return found.mean(axis=0)
+
+
+def _once(points: np.ndarray, count: int, random: np.random.Generator) -> tuple[float, np.ndarray]:
+    """Return the sum of squares and the labels of one start (k-means++)."""
+    with warnings.catch_warnings():
+        # A start that loses a cluster is not the best one.
+        warnings.simplefilter("ignore", UserWarning)
+        centers, labels = scipy.cluster.vq.kmeans2(
+            points, count, iter=MAX_ROUNDS, minit="++", seed=random
+        )
+    return float(((points - centers[labels]) ** 2).sum()), labels

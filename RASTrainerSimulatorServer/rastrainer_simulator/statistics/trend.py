@@ -1,0 +1,258 @@
+"""Do times or errors fall from trial to trial? A test that five trials are enough for.
+
+A curve with a free rate and plateau has as many parameters as the published protocol has trials
+to spare, and no criterion can prefer it. Two things are known beforehand, and make a test out of
+five trials: practice does not make slower or worse, so the test is one-sided; and what it gains is
+most at first, so the trials are set against the logarithm of their number. The p-value is the share
+of all orders of the same values that would fall as steeply: exact for every distribution of values
+that do not depend on each other, and skewed or heavy-tailed ones, too. Where they fall, a power law
+describes how.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+import scipy
+
+from rastrainer.errors import InputError
+from rastrainer_simulator.statistics.intervals import mean
+from rastrainer_simulator.statistics.paired import holm
+
+ALPHA = 0.05
+MIN_TRIALS = 4
+"""Three trials have six orders: their smallest p is 1/6."""
+STEADY = 0.1
+"""A fall by less than this share of the mean is called none; our own convention."""
+MAX_ORDERS = 9999
+"""Up to seven trials, all orders are used; beyond, this many random ones."""
+
+
+class TrendVerdict(Enum):
+    """The result of a series of trials."""
+
+    FALLS = "falls"
+    STEADY = "steady"
+    UNDECIDED = "undecided"
+
+
+@dataclass(frozen=True)
+class Trend:
+    """How a trainee's values change.
+
+    Attributes:
+        change: From the first to the last trial on the fitted line over ln(trial); in the unit.
+        interval: 90 % interval of it (Student's t): both ends are one-sided limits at 5 %.
+        verdict: Falls where p is at most .05 (6 of the 120 orders of five trials); steady where
+            not, and the interval holds neither a fall nor a rise by a tenth of the mean; undecided
+            where it may be either.
+    """
+
+    trials: int
+    change: float
+    interval: tuple[float, float]
+    p: float
+    verdict: TrendVerdict
+
+
+def falling_trend(values: Sequence[float] | np.ndarray) -> Trend:
+    """Test whether (n,) times or errors of consecutive trials fall."""
+    y = np.asarray(values, dtype=float)
+    if len(y) < MIN_TRIALS or not np.isfinite(y).all():
+        raise InputError(
+            f"Whether trials improve can be tested from {MIN_TRIALS} finite values on."
+        )
+    x, weights = np.log(np.arange(1, len(y) + 1)), change_weights(len(y))
+    change = float(weights @ y)
+    residuals = y - y.mean() - change * (x - x.mean()) / x[-1]
+    error = float(np.sqrt(residuals @ residuals / (len(y) - 2) * (weights @ weights)))
+    reach = float(scipy.stats.t.ppf(1 - ALPHA, len(y) - 2)) * error
+    p = _permuted_p(y, weights)
+    interval = (change - reach, change + reach)
+    return Trend(len(y), change, interval, p, _verdict(p, interval, float(np.abs(y).mean())))
+
+
+def change_weights(trials: int) -> np.ndarray:
+    """Return the (n,) float weights whose sum over the values of n trials is the change.
+
+    It is that of the least-squares line over ln(trial), from the first trial to the last.
+    """
+    x = np.log(np.arange(1, trials + 1))
+    offsets = x - x.mean()
+    return offsets * (x[-1] - x[0]) / (offsets @ offsets)
+
+
+def cohort_trend_p(rows: np.ndarray) -> float:
+    """Return the one-sided p that (m, n) values of m trainees fall over their n trials.
+
+    It is Page's test (1963), each trainee a block: only the ranks within trainees count, so that
+    slow and quick ones count alike.
+    """
+    values = np.asarray(rows, dtype=float)
+    if values.ndim != 2 or values.shape[0] < 2 or values.shape[1] < 3:
+        raise InputError("Page's test needs at least two trainees with three trials each.")
+    falling = np.arange(values.shape[1], 0, -1)
+    return float(scipy.stats.page_trend_test(values, predicted_ranks=falling).pvalue)
+
+
+def _permuted_p(y: np.ndarray, weights: np.ndarray) -> float:
+    """Return the share of the orders of y whose change is as far below 0."""
+
+    def change(ordered: np.ndarray, axis: int = -1) -> np.ndarray:
+        return (np.moveaxis(ordered, axis, -1) * weights).sum(axis=-1)
+
+    found = scipy.stats.permutation_test(
+        (y,),
+        change,
+        permutation_type="pairings",
+        alternative="less",
+        vectorized=True,
+        n_resamples=MAX_ORDERS,
+        random_state=np.random.default_rng(0),
+    )
+    return float(found.pvalue)
+
+
+def _verdict(p: float, interval: tuple[float, float], mean: float) -> TrendVerdict:
+    if p <= ALPHA + 1e-12:
+        return TrendVerdict.FALLS
+    if max(-interval[0], interval[1]) < STEADY * mean:
+        return TrendVerdict.STEADY
+    return TrendVerdict.UNDECIDED
+
+
+@dataclass(frozen=True)
+class CohortTrend:
+    """How one outcome of several trainees changes.
+
+    Attributes:
+        trainees: Those with four trials or more.
+        means: Of them at each trial, as far as all have come.
+        change: Mean over the trainees of the change from the first of these trials to the last;
+            None of a single one.
+    """
+
+    trainees: int
+    means: tuple[float, ...]
+    change: float | None
+    interval: tuple[float, float] | None
+    p: float | None
+    adjusted_p: float | None
+    verdicts: Counter[TrendVerdict]
+
+    @property
+    def is_shown(self) -> bool:
+        """Whether getting better is more than chance."""
+        if self.adjusted_p is None:
+            return self.verdicts[TrendVerdict.FALLS] > 0
+        return self.adjusted_p < ALPHA
+
+
+Series = Sequence[Sequence[float]]
+
+
+def cohort_trends(tested: Sequence[tuple[Series, int]]) -> list[CohortTrend | None]:
+    """Return the trend of several trainees in each of some outcomes, with p adjusted (Holm).
+
+    There is none where no trainee has four trials.
+
+    Args:
+        tested: Of each outcome, the values of all trials of each trainee, in their order; and -1
+            where less is better, 1 where more is.
+    """
+    found = [_cohort_trend(*each) for each in tested]
+    p_values = {
+        place: each.p for place, each in enumerate(found) if each is not None and each.p is not None
+    }
+    adjusted = dict(zip(p_values, holm(np.array([*p_values.values()])).tolist(), strict=True))
+    return [
+        each and replace(each, adjusted_p=adjusted.get(place)) for place, each in enumerate(found)
+    ]
+
+
+def _cohort_trend(series: Series, better: int) -> CohortTrend | None:
+    long = [np.asarray(own, dtype=float) for own in series if len(own) >= MIN_TRIALS]
+    if not long:
+        return None
+    common = min(map(len, long))
+    rows = np.array([own[:common] for own in long])
+    toward = -better
+    verdicts = Counter(falling_trend(toward * own).verdict for own in long)
+    change = interval = p = None
+    if len(rows) > 1:
+        changes = mean(rows @ change_weights(common))
+        change, interval = changes.value, changes.interval
+        p = cohort_trend_p(toward * rows)
+    means = tuple(rows.mean(axis=0).tolist())
+    return CohortTrend(len(rows), means, change, interval, p, p, verdicts)
+
+
+MIN_FIT_TRIALS = 5
+RATES = np.geomspace(0.02, 4.0, 200)
+
+
+@dataclass(frozen=True)
+class LearningCurve:
+    """The power law of practice y = a·n^−b + c over the trials n = 1, 2, …, fitted.
+
+    It describes (Newell and Rosenbloom 1981), in the unit of what was measured; whether there is
+    learning at all is for the test. The plateau of few trials is a guess: it lies beyond them.
+
+    Attributes:
+        gain: a, how much the first trial is above the plateau.
+        rate: b, how fast it falls.
+        plateau: c, where it leads.
+        r_squared: Share of the variance that the curve explains.
+    """
+
+    gain: float
+    rate: float
+    plateau: float
+    r_squared: float
+
+    def at(self, trial: float) -> float:
+        return self.gain * trial**-self.rate + self.plateau
+
+
+def fit_learning_curve(values: Sequence[float]) -> LearningCurve:
+    """Fit the power law to (n,) values of consecutive trials by least squares.
+
+    Gain and plateau are not below 0: times and errors fall with practice and stay above 0.
+    """
+    y = np.asarray(values, dtype=float)
+    if len(y) < MIN_FIT_TRIALS:
+        raise InputError(f"A learning curve needs at least {MIN_FIT_TRIALS} trials.")
+    if not np.all(np.isfinite(y) & (y >= 0)):
+        raise InputError("A learning curve needs times or errors that are finite and not below 0.")
+    trials = np.arange(1, len(y) + 1)
+    gains, plateaus, all_squares = _linear_fits(trials ** -RATES[:, None], y)
+    best = int(np.argmin(all_squares))
+    rate, gain = float(RATES[best]), float(gains[best])
+    plateau, squares = float(plateaus[best]), float(all_squares[best])
+    total = float(((y - y.mean()) ** 2).sum())
+    return LearningCurve(
+        gain=gain,
+        rate=rate,
+        plateau=plateau,
+        r_squared=1 - squares / total if total > 0 else 0.0,
+    )
+
+
+def _linear_fits(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return gain, plateau, both at least 0, and sum of squares of y = gain·x + plateau.
+
+    `x` is (k, n), a row a fit; the results are (k,).
+    """
+    centered = x - x.mean(axis=1, keepdims=True)
+    gain = centered @ (y - y.mean()) / (centered**2).sum(axis=1)
+    gain = np.maximum(gain, 0.0)
+    plateau = y.mean() - gain * x.mean(axis=1)
+    without = plateau < 0
+    gain = np.where(without, x @ y / (x**2).sum(axis=1), gain)
+    plateau = np.where(without, 0.0, plateau)
+    squares = ((y - gain[:, None] * x - plateau[:, None]) ** 2).sum(axis=1)
+    return gain, plateau, squares

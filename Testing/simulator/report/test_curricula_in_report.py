@@ -1,0 +1,48 @@
+"""The report says where trainees who agreed stand in their curricula."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+from rastrainer.study.curriculum.curriculum import Curriculum, read_curriculum
+from rastrainer.study.curriculum.curriculum_store import CurriculumStore
+from rastrainer.study.database.study import Study
+from rastrainer.study.study_data import read_study_data
+from rastrainer_simulator.report.report import report_html
+from rastrainer_simulator.report.trainees import curricula
+from Testing.domain.study.played_study import study_with_trials
+
+SHIPPED = Path(__file__).parents[3] / "assets" / "studies" / "example-curriculum.json"
+
+
+def text_of(html):
+    return " ".join(re.sub(r"<[^>]+>", " ", html).split())
+
+
+def test_each_trainee_has_a_row_and_each_goal_a_sentence(tmp_path):
+    path = tmp_path / "study.db"
+    study_with_trials(path, consent=False)
+    assert curricula(read_study_data(path)) == ""
+    with Study.open(path) as study:
+        CurriculumStore(study).choose(read_curriculum(SHIPPED))
+    page = report_html(read_study_data(path))
+    (found,) = re.findall(r"<section><h2>Curriculum</h2>.*?</section>", page, re.DOTALL)
+    words = text_of(found)
+    assert words.startswith("Curriculum First steps trainee trials (n) reached first-points")
+    assert " B 1 0 of 6 0 of 2 locked locked locked locked locked " in words
+    assert " A " not in words
+    assert (
+        "by-surface: Task 3 by a trace over the skin, 2 trials in a row at 60 or more; after "
+        in words
+    )
+    assert "competent: Task 4, competence (LC-CUSUM), a trial passes at 70 or more; after" in words
+
+
+def test_a_trial_that_counts_for_two_assignments_is_one_trial(tmp_path):
+    path = tmp_path / "study.db"
+    study_with_trials(path, consent=False)
+    first = read_curriculum(SHIPPED).assignments[0]
+    twice = (first, replace(first, name="again", mark=50.0))
+    with Study.open(path) as study:
+        CurriculumStore(study).choose(Curriculum("c", "C", twice))
+    assert " B 1 0 of 2 " in text_of(curricula(read_study_data(path)))

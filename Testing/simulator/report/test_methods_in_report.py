@@ -1,0 +1,152 @@
+"""The report compares methods of registration as it compares modes, where there are several."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer_simulator.report.method_comparison import (
+    TITLES,
+    as_conditions,
+    compare_methods,
+    method_comparison,
+)
+from rastrainer_simulator.report.report import report_html
+from rastrainer_simulator.statistics.intervals import mean
+from rastrainer_simulator.statistics.paired import compare_paired
+from Testing.error_rates.compared_methods import decisions, drawn_errors, study_of
+from Testing.simulator.report.test_report import cohort, words_of
+
+TRUE_MM = {"fiducials": 0.8, "landmarks": 2.4, "surface": 0.8}
+
+
+def played(trainees=12, methods=tuple(TRUE_MM), modes=("desktop",), seed=3):
+    """Return a study in which each trainee played each method once in each mode."""
+    rng = np.random.default_rng(seed)
+    rows = []
+    for trainee in range(trainees):
+        for mode in modes:
+            for number, method in enumerate(rng.permutation(methods), 1):
+                true = TRUE_MM[str(method)] * (1 + rng.normal(0, 0.2))
+                values = {
+                    "completion_time_s": 90.0,
+                    "rmse_mm": 0.5 if method == "surface" else 1.5,
+                    "expected_tre_mm": true * 1.1,
+                    "tre_low_mm": 0.4 * true,
+                    "tre_high_mm": 1.8 * true,
+                    "true_tre_mm": true,
+                    "score": 50.0,
+                }
+                name = f"T{trainee:03d}"
+                row = TrialRow(name, mode, f"task-{number}", number, values)
+                rows.append(replace(row, method=str(method)))
+    return StudyData("Methods", tuple(rows), has_order=True)
+
+
+def pair_of(data, first, second, outcome):
+    """Return one comparison."""
+    found = compare_methods(as_conditions(data))
+    key = (first, second, outcome)
+    return next(one for one in found if (one.first, one.second, one.outcome.name) == key)
+
+
+def test_a_study_with_one_method_has_no_such_section():
+    assert method_comparison(cohort(5)) == ""
+    assert "Methods of registration" not in report_html(cohort(5), "today")
+
+
+def test_each_method_has_n_residual_expected_and_true_error_with_intervals():
+    data = played()
+    words = words_of(method_comparison(data))
+    for method, title in TITLES.items():
+        if method not in TRUE_MM:
+            assert f"{title} 12 12" not in words
+            continue
+        true = np.array([t.values["true_tre_mm"] for t in data.trials if t.method == method])
+        low, high = mean(true).interval
+        text = f"{true.mean():.2f} [{low:.2f}, {high:.2f}]"
+        residual = 0.5 if method == "surface" else 1.5
+        assert f"{title} 12 12 {residual:.2f} [{residual:.2f}, {residual:.2f}]" in words
+        assert f"{text} 12 of 12" in words
+    assert "a small residual does not mean a small error" in words
+    assert method_comparison(data).count("<svg") == 1
+
+
+def test_the_differences_are_those_of_the_shared_analysis_corrected_over_the_pairs():
+    data = played()
+    own = {
+        method: {t.trainee: t.values["true_tre_mm"] for t in data.trials if t.method == method}
+        for method in TRUE_MM
+    }
+    places = {(t.trainee, t.method): t.number for t in data.trials}
+    trainees = [f"T{index:03d}" for index in range(12)]
+    first, second = (np.array([own[m][t] for t in trainees]) for m in ("fiducials", "landmarks"))
+    order = np.array(
+        [np.sign(places[t, "landmarks"] - places[t, "fiducials"]) for t in trainees], dtype=float
+    )
+    expected = compare_paired(first, second, order)
+    pair = pair_of(data, "fiducials", "landmarks", "true_tre_mm")
+    assert pair.result.mean_difference == pytest.approx(expected.mean_difference)
+    assert pair.result.p == pytest.approx(expected.p)
+    assert expected.p < pair.adjusted_p < 0.001
+    assert pair_of(data, "fiducials", "surface", "true_tre_mm").adjusted_p > 0.05
+    assert pair_of(data, "fiducials", "surface", "rmse_mm").adjusted_p is None
+    words = words_of(method_comparison(data))
+    assert f"(fiducials and landmarks) was {expected.mean_difference:.2f} mm higher" in words
+    assert "higher with landmarks than with fiducials" in words
+    assert "correction for testing several pairs of methods" in words
+    assert "(fiducials and trace): no difference is shown" in words
+
+
+def test_methods_are_paired_within_a_mode():
+    data = played(modes=("desktop", "hmd"))
+    lacking = tuple(t for t in data.trials if (t.mode, t.method) != ("hmd", "surface"))
+    pair = pair_of(replace(data, trials=lacking), "fiducials", "surface", "true_tre_mm")
+    of_desktop = [
+        t.values["true_tre_mm"]
+        for t in data.trials
+        if (t.mode, t.method) == ("desktop", "fiducials")
+    ]
+    assert pair.first_means.tolist() == pytest.approx(of_desktop)
+
+
+def test_nothing_is_tested_if_nobody_played_two_methods():
+    data = played(methods=("fiducials", "landmarks"))
+    by_half = tuple(
+        t for t in data.trials if (int(t.trainee[1:]) % 2 == 0) == (t.method == "fiducials")
+    )
+    words = words_of(method_comparison(replace(data, trials=by_half)))
+    assert "Fiducials 6 6" in words
+    assert "No trainee played two methods in one mode: nothing is tested." in words
+
+
+def test_without_true_errors_nothing_is_tested_but_what_is_known_is_reported():
+    data = played()
+    unknown = tuple(
+        replace(t, values={k: v for k, v in t.values.items() if k != "true_tre_mm"})
+        for t in data.trials
+    )
+    words = words_of(method_comparison(replace(data, trials=unknown)))
+    assert "nothing is tested" in words
+    assert "Residual, mm Fiducials Landmarks 12" in words
+
+
+def test_the_report_has_the_section_and_otherwise_covers_the_fiducial_trials():
+    words = words_of(report_html(played(), "today"))
+    assert "leaves out 12 trials by landmarks and 12 trials by surface" in words
+    assert "Differences between methods" in words
+    assert "1 task" in words or "tasks" in words
+
+
+def test_the_published_error_rates_apply_to_the_decision_of_the_report():
+    random = np.random.default_rng(1)
+    for factors in ((1.0, 1.0, 1.0), (1.0, 2.2, 1.0)):
+        errors, places = drawn_errors(factors, 10, 5, random)
+        found = decisions(errors, places)
+        for index, own in enumerate(errors):
+            pairs = compare_methods(as_conditions(study_of(own, places)))
+            entries = [p.adjusted_p < 0.05 for p in pairs if p.adjusted_p is not None]
+            assert entries == found.adjusted[index].tolist()

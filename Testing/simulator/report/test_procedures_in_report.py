@@ -1,0 +1,78 @@
+"""The report tells what of the target point error the registration and the hands caused."""
+
+import re
+
+import pytest
+
+from rastrainer_simulator.report.procedures import procedures
+from rastrainer_simulator.report.report import report_html
+from Testing.simulator.report.studied_procedures import TOO_DEEP_MM, with_procedures
+from Testing.simulator.report.test_report import cohort
+
+
+def words_with(**options):
+    text = re.sub(r"<[^>]+>", " ", procedures(with_procedures(cohort(4), **options)))
+    return " ".join(text.replace("\N{NO-BREAK SPACE}", " ").split())
+
+
+@pytest.fixture(scope="module")
+def words():
+    return words_with()
+
+
+def test_the_split_is_reported_over_all_kinds_and_for_each(words):
+    assert "24 of 24 trials continued with a procedure: 48 lines in all, by 4 trainees." in words
+    assert f"48 lines were aligned by hand: there the hands caused {TOO_DEEP_MM:.2f} mm." in words
+    assert "by the robot: there" not in words
+    # Shifts of 0.5, 1.0, 1.5 and 2.0 mm in turn: RMS 1.37 mm.
+    assert "the part that the registration caused was 1.37 mm" in words
+    for kind in ("Biopsy 8 16 4", "DBS 8 16 4", "SEEG 8 16 4", "all 24 48 4"):
+        assert kind in words
+
+
+def test_whether_registration_or_hands_caused_more_is_stated_with_its_interval(words):
+    assert re.search(r"registration minus hands, as RMS of each trainee, was −?\d\.\d\d mm", words)
+    assert re.search(r"\[95 %: −?\d\.\d\d, −?\d\.\d\d\]", words)
+
+
+def test_what_the_robot_aligned_is_not_counted_as_done_by_hand(words):
+    mixed = words_with(by_robot=True)
+    assert f"24 lines were aligned by hand: there the hands caused {TOO_DEEP_MM:.2f} mm." in mixed
+    assert "24 lines were aligned by the robot: there robot and hands caused 2.40 mm" in mixed
+    assert "all 24 48 (24) 4" in mixed
+    assert comparison(mixed) == comparison(words)
+
+
+def comparison(words):
+    """What the hands of each trainee caused, compared with the registration."""
+    return re.search(r"registration minus hands, .*?\]", words)[0]
+
+
+def test_a_study_that_only_the_robot_aligned_says_nothing_about_hands():
+    data = with_procedures(cohort(4))
+    for trial in data.trials:
+        for line in trial.procedure.trajectories:
+            line["selfAligned"] = True
+    html = procedures(data)
+    assert "48 lines were aligned by the robot" in html.replace("\N{NO-BREAK SPACE}", " ")
+    assert "registration minus hands" not in html
+    assert "by the hand (mm)" not in html
+
+
+def test_the_error_over_trainees_has_an_interval_and_the_limits_are_stated(words):
+    found = re.search(r"own RMS was (\d\.\d\d) mm on average \[95 %: (\S+), (\S+)\]", words)
+    value, low, high = (float(number) for number in found.groups())
+    assert low < value < high
+    assert "no entry is off by more than 3 mm, no target by more than 3 mm" in words
+    assert "least distance kept (mm)" in words
+
+
+def test_published_figures_are_for_orientation_with_their_sources(words):
+    assert "phantoms: RONNA G3, ROSA, Leksell 0.43, 0.53, 0.72 doi:10.3389/fnbot.2022" in words
+    assert "patients, DBS 1.91 doi:10.1093/neuros/nyaa428" in words
+    assert "They are no pass marks" in words
+
+
+def test_a_study_with_touches_only_has_no_such_section():
+    assert procedures(cohort(2)) == ""
+    assert "from the registration to the target" not in report_html(cohort(2), "today")

@@ -1,0 +1,466 @@
+"""The report of a study: the paper's tables, self-contained, escaped and complete."""
+
+import csv
+import re
+import subprocess
+import sys
+import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+from scipy.stats import pearsonr
+
+from rastrainer.errors import InputError
+from rastrainer.study.database.study import Study
+from rastrainer.study.outcomes import MAIN_OUTCOMES
+from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.study.study_data import StudyData, TrialRow, read_study_data
+from rastrainer.trial.scoring import LONG_PAUSE_S
+from rastrainer.trial.trial_feedback import competence_of
+from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.report.comparisons import compare_modes, mode_delays, paired_means
+from rastrainer_simulator.report.published_tables import (
+    cohort_scores,
+    complexity_correlation,
+    performance_color,
+    with_ctps,
+)
+from rastrainer_simulator.report.report import report_html, write_report
+from rastrainer_simulator.virtual.outcome_model import OutcomeModel
+from Testing.domain.study.played_study import STUDIES, study_with_trials
+from Testing.domain.trial.trial_records import make_record
+from Testing.drawn_study import draw_study
+
+PUBLISHED = STUDIES / "published.csv"
+VOID = {"meta", "br", "img", "hr", "link", "input"}
+
+
+class Balanced(HTMLParser):
+    """Fails on unbalanced tags."""
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.texts = [], []
+
+    def handle_starttag(self, tag, _attributes):
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, _tag, _attributes):
+        pass
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.texts.append(data)
+
+
+def words_of(html):
+    parser = Balanced()
+    parser.feed(html)
+    assert parser.open == []
+    return re.sub(r"\s+", " ", " ".join(parser.texts))
+
+
+@pytest.fixture(scope="module")
+def published():
+    return read_study_data(PUBLISHED)
+
+
+@pytest.fixture(scope="module")
+def page(published):
+    return report_html(published, "today")
+
+
+def cohort(trainees, tasks=3, seed=0, learning=0.0):
+    rng = np.random.default_rng(seed)
+    rows = []
+    for index in range(trainees):
+        for mode, shift in (("desktop", 0.0), ("hmd", 0.4)):
+            for number in range(1, tasks + 1):
+                time = 80 + 60 * number**-learning + rng.normal(0, 3)
+                values = {
+                    "completion_time_s": time,
+                    "rmse_mm": 1.5 + shift + rng.normal(0, 0.2),
+                    "score": 60.0 + rng.normal(0, 5),
+                    "sparc": -3 + rng.normal(0, 0.3),
+                }
+                rows.append(TrialRow(f"T{index:03d}", mode, f"task-{number}", number, values))
+    return StudyData("A cohort", tuple(rows), has_order=True)
+
+
+def test_both_tables_are_the_papers_to_the_printed_digit(page):
+    words = words_of(page)
+    for row in (
+        "Task 1 114.30 1.10 101.40 1.16 102.00 1.15 105.20 1.17 79.70",
+        "Task 5 127.00 2.31 133.40 1.48 156.50 1.50 144.00 1.51 56.59",
+        "User Perf. 63.76 66.31 65.12 64.09",
+        "Task 2 147.70 1.15 114.80 1.13 132.80 1.15 125.10 1.18 86.42",
+        "User Perf. 81.72 58.83 68.37 60.22 67.29",
+    ):
+        assert row in words
+    assert "67.29 ± 25.96" in words
+    assert "25.47 divided by n" in words
+    assert "r = 0.963, r² = 0.928" in words
+
+
+def test_the_marginals_are_colored_from_red_to_green():
+    values = [37.1, 56.6, 79.7]
+    assert performance_color(37.1, values) == "#f4a59e"
+    assert performance_color(79.7, values) == "#abdba5"
+    assert performance_color(5.0, [5.0, 5.0]) == "#fceaaa"
+
+
+def test_the_paired_tests_on_subject_means_are_those_of_the_shared_analysis(published):
+    results = {
+        c.outcome.name: c
+        for c in compare_modes(with_ctps(published), MAIN_OUTCOMES, "desktop", "hmd")
+    }
+    rmse = results["rmse_mm"]
+    assert len(rmse.trainees) == 4
+    assert rmse.result.mean_difference == pytest.approx(0.147, abs=6e-4)
+    assert rmse.result.p == pytest.approx(0.005, abs=5e-4)
+    assert rmse.adjusted_p == pytest.approx(2 * rmse.result.p)
+    assert rmse.result.ranks.p == 0.125
+    assert results["completion_time_s"].result.p > 0.5
+    assert results["ctps"].result is None
+
+
+def test_the_report_says_what_four_subjects_cannot_show(page):
+    words = words_of(page)
+    assert "0.147 mm higher with the headset than with the desktop screen" in words
+    assert "95 % interval from +0.085 to +0.208 mm" in words
+    assert "compatible with anything from −20.46 to +13.94 s" in words
+    assert "its smallest possible p is .125" in words
+    assert "not evidence that there is none" in words
+    assert "None are reported. Groups of trainees are not reported for fewer than 12" in words
+
+
+def test_the_papers_inconsistencies_are_reported_with_its_numbers(page):
+    words = words_of(page)
+    for sentence in (
+        "Equation 3 divides that by 2",
+        "64.81: cut off",
+        "speaks of five participants",
+    ):
+        assert sentence in words
+    assert '"R²" of task number and completion time, HMD 5 task means 0.96 0.9633' in words
+    assert "Overall CTPS, HMD 20 trials 64.81 64.818" in words
+    assert "± of the overall CTPS, desktop 20 trials 25.96 25.963" in words
+
+
+def test_the_page_is_self_contained_and_has_no_scripts(page):
+    assert "<script" not in page
+    assert not re.findall(r'(?:src|href)="(?!#)', page)
+    links = set(re.findall(r"https?://[^\s\"'<]+", page))
+    assert links == {"http://www.w3.org/2000/svg"}
+    assert "@page { size: A4;" in page
+
+
+def test_every_table_header_has_a_scope(page):
+    heads = re.findall(r"<th[ >][^>]*>?", page)
+    assert len(heads) > 70
+    assert all(re.search(' scope="(col|colgroup|row)"', head) for head in heads)
+    for body in re.findall("<tbody>(.*?)</tbody>", page, re.DOTALL):
+        for row in re.findall("<tr>(.*?)</tr>", body, re.DOTALL):
+            assert row.startswith("<th")
+            assert row.count('scope="row"') == row.count("<th") == 1
+    assert "<th></th>" not in page
+    assert 'colspan="2" class="group" scope="colgroup"' in page
+
+
+def test_negative_numbers_have_a_minus_sign_not_a_hyphen(page):
+    words = words_of(re.sub("<style>.*</style>", "", page, flags=re.DOTALL))
+    assert "−3.26 [−20.46, 13.94]" in words
+    assert not re.search(r"(?<![\w.–-])-\d", words)
+    assert "−0.00" not in words
+
+
+def mean_ctps_of_tasks(mode):
+    """Return the CTPS of each task from the printed tables."""
+    with PUBLISHED.open() as file:
+        rows = [row for row in csv.DictReader(file) if row["mode"] == mode]
+    times, errors = (np.array([float(row[name]) for row in rows]) for name in ("ct", "rmse"))
+    mean = 129.42 if mode == "desktop" else times.mean()
+    scores = 100 * (times / mean - (errors - errors.min()) / errors.min())
+    tasks = np.array([int(row["task"]) for row in rows])
+    return [scores[tasks == task].mean() for task in range(1, 6)]
+
+
+def test_the_claim_that_ctps_falls_with_complexity_is_checked(published, page):
+    words = words_of(page)
+    found = []
+    for mode in ("hmd", "desktop"):
+        scores = cohort_scores(published, mode)
+        one = complexity_correlation(scores.tasks.items())
+        expected = pearsonr(range(1, 6), mean_ctps_of_tasks(mode))
+        assert (one.r, one.p) == pytest.approx((expected.statistic, expected.pvalue), abs=1e-9)
+        limits = expected.confidence_interval(0.95)
+        assert one.interval == pytest.approx((limits.low, limits.high), abs=1e-9)
+        found.append((round(one.r, 2), round(one.p, 2)))
+        assert one.interval[0] < 0 < one.interval[1]
+    assert found == [(-0.75, 0.15), (-0.61, 0.27)]
+    assert "r = −.75 (HMD, p = .15) and −.61 (desktop, p = .27)" in words
+    assert "CTPS r = −0.75 [−0.982, 0.396], p = .146" in words
+    assert "time r = 0.96 [0.540, 0.998], p = .008" in words
+    assert "time r = 0.92 [0.196, 0.995], p = .027" in words
+    assert "over the 20 trials: time r = 0.69" in words
+    assert "over the 20 trials: time r = 0.47" in words
+
+
+def test_the_unknown_order_of_modes_is_stated(published, page):
+    words = words_of(page)
+    assert "Which mode came first is not in the data" in words.split("Performance as")[0]
+    assert (
+        "the signed-rank test gives p = .125, the smallest two-sided p that four subjects allow"
+        in words
+    )
+    (rmse,) = (
+        c
+        for c in compare_modes(published, MAIN_OUTCOMES, "desktop", "hmd")
+        if c.outcome.name == "rmse_mm"
+    )
+    assert (rmse.order, rmse.result.sequences) == (None, None)
+    assert rmse.result.ranks.p == rmse.result.ranks.smallest_p == 0.125
+
+
+def test_a_balanced_order_of_modes_separates_the_period_and_is_tabulated():
+    model = OutcomeModel([120.0] * 5, [1.5] * 5, learning=0.3, carries_practice=True)
+    modes = ("desktop", "hmd")
+    orders = [modes[:: -1 if place % 2 else 1] for place in range(14)]
+    study = draw_study(model, 14, modes, np.random.default_rng(1), orders)
+    assert mode_delays(study, *modes) == {
+        f"V{place + 1:04d}": -1.0 if place % 2 else 1.0 for place in range(14)
+    }
+    words = words_of(report_html(study, "today"))
+    assert "What the order of the modes did" in words
+    assert "Completion time, s 7 7 −" in words
+    assert "carry-over would be in the difference of the modes, too" in words
+    fixed_order = draw_study(model, 14, modes, np.random.default_rng(1))
+    words = words_of(report_html(fixed_order, "today"))
+    assert "What the order of the modes did" not in words
+    assert "does not allow the effect of the period" in words.split("Performance")[0]
+
+
+def test_alternating_modes_are_counted_as_periods():
+    modes = ("desktop", "hmd", "desktop", "hmd")
+    rows = [TrialRow("a", mode, "1", 1, {"completion_time_s": 10.0}) for mode in modes]
+    assert mode_delays(StudyData("x", tuple(rows)), "desktop", "hmd") == {"a": 1.0}
+    rows = [*rows[:2], rows[1], rows[0]]
+    assert mode_delays(StudyData("x", tuple(rows)), "desktop", "hmd") == {"a": 0.0}
+
+
+def test_registering_and_scoring_import_no_scipy():
+    modules = "rastrainer.trial.analysis, rastrainer.trial.trial_feedback, rastrainer.trial.ctps"
+    script = (
+        f"import sys; sys.modules['scipy'] = None; import {modules}; "
+        "from rastrainer_simulator.cli.main import main; "
+        f"sys.exit(main(['score', {str(PUBLISHED)!r}]))"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+def test_every_chart_is_well_formed_and_has_a_description(page):
+    charts = re.findall(r"<svg.*?</svg>", page, re.DOTALL)
+    assert len(charts) >= 10
+    for chart in charts:
+        root = ElementTree.fromstring(chart)
+        assert root.get("aria-label")
+        width, height = map(float, root.get("viewBox").split()[2:])
+        for element in root:
+            for name, limit in (("x", width), ("cx", width), ("y", height), ("cy", height)):
+                if element.get(name) is not None:
+                    assert -1 <= float(element.get(name)) <= limit + 1
+
+
+def test_the_same_study_gives_the_same_page(published, page):
+    assert report_html(published, "today") == page
+
+
+def test_the_command_writes_the_page_and_the_numbers(tmp_path, capsys):
+    assert main(["report", str(PUBLISHED), "-o", str(tmp_path / "new" / "folder")]) == 0
+    folder = tmp_path / "new" / "folder"
+    assert "40 trials" in capsys.readouterr().out
+    assert (folder / "report.html").read_text().startswith("<!DOCTYPE html>")
+    lines = (folder / "trials.csv").read_text().splitlines()
+    assert lines[0].startswith("trainee,mode,task,number,trial_id,started_utc,")
+    assert lines[0].endswith(",completion_time_s,rmse_mm")
+    assert len(lines) == 41
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["missing.db"], "There is no file missing.db"),
+        ([str(PUBLISHED), "--mean-ct", "vr=1"], "names the mode 'vr'"),
+        ([str(STUDIES / "README.md")], "is not a study database"),
+    ],
+)
+def test_an_unreadable_study_raises_a_one_sentence_error(words, sentence, tmp_path, capsys):
+    assert main(["report", *words, "-o", str(tmp_path)]) == 2
+    printed = capsys.readouterr().err
+    assert sentence in printed
+    assert printed.count("\n") == 1
+
+
+def test_a_large_cohort_gets_tables_curves_and_a_methods_paragraph():
+    page = report_html(cohort(30, tasks=12, learning=0.7), "today")
+    words = words_of(page)
+    assert "30 users:" in words
+    assert "the means follow a·n^−b + c" in words
+    assert "Completion time, s Desktop 30 12 140.2 90.4 −46.2 [" in words
+    assert "< .001 < .001 30 / 0 / 0" in words
+    assert "Motion metrics" in words
+    assert "Smoothness, SPARC" in words
+    assert "30 trainees did 720 trials" in words
+    assert len(page) < 2_000_000
+
+
+def test_a_single_mode_is_described_and_not_tested():
+    one = StudyData("One", tuple(t for t in cohort(3).trials if t.mode == "hmd"))
+    words = words_of(report_html(one))
+    assert "nothing is tested" in words
+    assert "No trainee did two modes" in words
+
+
+def test_trainees_are_compared_on_the_tasks_done_in_both_modes():
+    def row(mode, task, time):
+        return TrialRow("a", mode, task, 1, {"completion_time_s": time})
+
+    rows = [row("desktop", "1", 10.0), row("desktop", "2", 90.0), row("hmd", "1", 12.0)]
+    data = StudyData("x", tuple(rows))
+    assert paired_means(data, "completion_time_s", "desktop", "hmd") == {"a": (10.0, 12.0)}
+    assert "Trials are missing: Task 2, Headset (HMD), of 1 of 1 trainee." in words_of(
+        report_html(data)
+    )
+
+
+def test_trials_with_long_pauses_are_reported_as_a_limitation():
+    def row(number, paused):
+        values = {"completion_time_s": 10.0, "pause_time_s": paused}
+        return TrialRow("a", "desktop", "1", number, values)
+
+    once = StudyData("x", (row(1, LONG_PAUSE_S), row(2, LONG_PAUSE_S + 1.0)))
+    assert "1 of 2 trials were paused for more than 30 s in all" in words_of(report_html(once))
+    never = StudyData("x", (row(1, 0.0),))
+    assert "were paused" not in words_of(report_html(never))
+
+
+def test_passed_trials_and_competent_trainees_are_counted():
+    rows = []
+    for trainee, score, acceptable in (("A", 70.0, True), ("B", 69.9, True), ("C", 90.0, False)):
+        for number in range(1, 31):
+            rows.append(scored(trainee, number, score, acceptable=acceptable))
+    protocol = replace(read_study_protocol(STUDIES / "published-protocol.json"), pass_mark=70.0)
+    words = words_of(report_html(StudyData("One mode", tuple(rows), protocol=protocol)))
+    assert "passes with 70 of 100 points (set by the protocol)" in words
+    assert "Fewer than 11 trials in a mode cannot show it" in words
+    assert (
+        "10 passed trials would be reached by chance, within 30 trials, by 5.8 % of those" in words
+    )
+    shown_at = competence_of([False] * 30).competent_at
+    assert 1 < shown_at < 30
+    assert f"90 30 (33 %) 1 of 3 {shown_at} " in words
+
+
+def scored(trainee, number, score, method="fiducials", acceptable=True):
+    values = {"completion_time_s": 90.0, "rmse_mm": 1.0, "score": score}
+    return TrialRow(trainee, "hmd", "task-1", number, values, method=method, acceptable=acceptable)
+
+
+def test_a_report_explains_the_score_of_its_method():
+    def words(method):
+        return words_of(report_html(StudyData("One", (scored("A", 1, 80.0, method),))))
+
+    by_fiducials, by_surface = words("fiducials"), words("surface")
+    assert (
+        "and within the limits of the score: a true target error in the brain within that of its "
+        "task, unintended contact of at most 8 s and 160 mm, and a pressing depth of at most "
+        "1.5 mm; one that was aborted after a touch, or has no score, is not passed." in by_surface
+    )
+    bias = "a bias common to all touches of at most 1.5 mm, unintended contact of at most 8 s"
+    assert bias in by_fiducials
+    assert "trueness (ISO 5725-1) of the touches, 1/(1 + (b/1 mm)^4)" in by_fiducials
+    assert "common bias" not in by_surface
+    for each in (by_fiducials, by_surface):
+        assert "Accuracy is the true target error of the rigid registration" in each
+        assert "localization errors along the skin, of 1.5 mm, to the same region" in each
+        assert "Harrington 1965, The desirability function" in each
+
+
+def test_a_pass_mark_of_fiducials_passes_no_trial_of_another_method_and_the_report_says_so():
+    published = read_study_protocol(STUDIES / "published-protocol.json")
+    protocol = replace(published, pass_mark=65.0)
+    rows = tuple(scored("A", number, 80.0, "surface") for number in range(1, 31))
+    words = words_of(report_html(StudyData("One", rows, protocol=protocol)))
+    assert "pass mark of 65 points is for trials registered by fiducials" in words
+    assert "these were registered by surface. Their scores do not compare" in words
+    assert "30 (100 %)" not in words
+    assert "LC-CUSUM of every trainee" not in words
+
+
+@pytest.mark.parametrize("has_protocol", [True, False], ids=["silent protocol", "no protocol"])
+def test_a_pass_mark_without_protocol_is_called_the_default(has_protocol):
+    published = read_study_protocol(STUDIES / "published-protocol.json")
+    values = {"completion_time_s": 90.0, "rmse_mm": 1.0, "score": 80.0}
+    rows = (TrialRow("A", "hmd", "task-1", 1, values, acceptable=True),)
+    words = words_of(
+        report_html(StudyData("One", rows, protocol=published if has_protocol else None))
+    )
+    assert "70 of 100 points (the default, since the study sets no mark; no data" in words
+
+
+def test_hostile_pseudonyms_and_titles_are_escaped():
+    evil = '<script>alert("x")</script>'
+    rows = [
+        TrialRow(evil, mode, "task-1", 1, {"completion_time_s": 10.0 + i, "rmse_mm": 1.0 + i})
+        for i, mode in enumerate(("desktop", "hmd"))
+    ]
+    page = report_html(StudyData(evil, tuple(rows)))
+    assert "<script" not in page
+    assert "&lt;script&gt;" in page
+
+
+def test_a_report_of_a_database_has_scores_motion_questionnaires_and_skipped_steps(tmp_path):
+    study_with_trials(tmp_path / "study.db")
+    data = read_study_data(tmp_path / "study.db")
+    assert data.trials[0].values["sparc"] == -2.5
+    words = words_of(report_html(data))
+    assert "Simulator sickness (SSQ) before Headset (HMD) 1 78.5" in words
+    assert "B, desktop/trial-run: knows the tasks from a pilot" in words
+    assert "The order of modes was balanced" in words
+    assert "simulator 0.1.0" in words
+    assert [(trial.trainee, trial.mode) for trial in data.trials] == [
+        ("A", "hmd"),
+        ("A", "desktop"),
+        ("B", "desktop"),
+    ]
+    assert "Left out: 1 trial that the protocol had not asked for." in words
+
+
+def test_trainees_without_consent_are_left_out_and_counted(tmp_path):
+    study_with_trials(tmp_path / "study.db", consent=False)
+    data = read_study_data(tmp_path / "study.db")
+    assert data.trainees == ("B",)
+    assert data.answers == ()
+    assert "Left out: 1 trainee who did not consent" in words_of(report_html(data))
+
+
+def test_a_study_without_any_consent_is_refused(tmp_path):
+    with Study.open(tmp_path / "study.db") as study:
+        study.add_trial(make_record())
+    with pytest.raises(InputError, match=r"1 did not\): note in 3D Slicer, Trainees"):
+        write_report(read_study_data(tmp_path / "study.db"), tmp_path)
+
+
+def test_no_line_ends_between_a_number_and_its_unit():
+    rows = tuple(scored("A", number, 80.0) for number in range(1, 3))
+    page = report_html(StudyData("At most 8 s and 160 mm", rows), "today")
+    assert "<h1>At most 8\xa0s and 160\xa0mm</h1>" in page
+    assert "equivalent within" not in page
+    assert "of at most 8\xa0s and 160\xa0mm, and a" in page
+    assert not re.search(r"\d (mm|%)", page)

@@ -1,0 +1,116 @@
+"""Learning curves and pass marks, against published values and simulation."""
+
+import itertools
+
+import numpy as np
+import pytest
+import scipy.optimize
+import scipy.stats
+
+from rastrainer.errors import InputError
+from rastrainer_simulator.statistics.pass_marks import pass_mark
+from rastrainer_simulator.statistics.trend import (
+    TrendVerdict,
+    cohort_trend_p,
+    falling_trend,
+    fit_learning_curve,
+)
+
+
+def test_a_learning_curve_recovers_its_parameters():
+    n = np.arange(1, 31)
+    curve = fit_learning_curve(120 * n**-0.6 + 40)
+    assert (curve.gain, curve.rate, curve.plateau) == (
+        pytest.approx(120, rel=0.02),
+        pytest.approx(0.6, rel=0.02),
+        pytest.approx(40, rel=0.03),
+    )
+    assert curve.at(10) == pytest.approx(120 * 10**-0.6 + 40, rel=1e-3)
+
+
+def test_a_learning_curve_is_scipys_least_squares():
+    rng = np.random.default_rng(5)
+    n = np.arange(1, 21)
+    y = 80 * n**-0.8 + 60 + rng.normal(0, 4, 20)
+    expected, _ = scipy.optimize.curve_fit(lambda x, a, b, c: a * x**-b + c, n, y, [50, 0.5, 50])
+    curve = fit_learning_curve(y)
+    np.testing.assert_allclose(curve.at(n), expected[0] * n ** -expected[1] + expected[2], atol=0.2)
+
+
+def test_too_few_or_invalid_values_have_no_curve():
+    with pytest.raises(InputError, match="at least 5 trials"):
+        fit_learning_curve([1.0, 2.0])
+    with pytest.raises(InputError, match="not below 0"):
+        fit_learning_curve([1.0, 2.0, -1.0, 2.0, 3.0])
+
+
+def test_five_noiseless_trials_that_fall_from_140_to_107_s_are_learning():
+    times = 140 * np.arange(1, 6) ** (np.log(107 / 140) / np.log(5))
+    trend = falling_trend(times)
+    assert (trend.verdict, trend.p) == (TrendVerdict.FALLS, pytest.approx(1 / 120))
+    assert trend.change == pytest.approx(107 - 140, abs=1.0)
+
+
+def test_the_trend_is_tested_by_all_orders_of_the_values():
+    values = np.array([131.0, 119.0, 125.0, 118.0, 112.0, 115.0])
+    x = np.log(np.arange(1, 7))
+    slopes = np.array([x @ np.array(order) for order in itertools.permutations(values)])
+    trend = falling_trend(values)
+    assert trend.p == pytest.approx(np.mean(slopes <= x @ values + 1e-9), rel=1e-9)
+    line = scipy.stats.linregress(x, values)
+    assert trend.change == pytest.approx(line.slope * x[-1], rel=1e-9)
+    reach = scipy.stats.t.ppf(0.95, 4) * line.stderr * x[-1]
+    np.testing.assert_allclose(trend.interval, (trend.change - reach, trend.change + reach))
+
+
+def test_inconclusive_trials_are_undecided_and_constant_ones_steady():
+    assert falling_trend([120.0, 119.0, 121.0, 120.5, 119.5]).verdict is TrendVerdict.STEADY
+    assert falling_trend([120.0] * 5).verdict is TrendVerdict.STEADY
+    assert falling_trend([140.0, 100.0, 150.0, 95.0, 125.0]).verdict is TrendVerdict.UNDECIDED
+    assert falling_trend([100.0, 110.0, 120.0, 130.0, 140.0]).verdict is TrendVerdict.UNDECIDED
+    with pytest.raises(InputError, match="from 4 finite values on"):
+        falling_trend([3.0, 2.0, 1.0])
+
+
+def test_the_trend_of_all_trainees_is_pages():
+    """Page 1963: L of his ordered hypothesis; here against scipy on the reversed columns."""
+    rows = np.random.default_rng(4).normal(0, 1, (6, 5)) - 0.4 * np.arange(5)
+    expected = scipy.stats.page_trend_test(rows[:, ::-1]).pvalue
+    assert cohort_trend_p(rows) == pytest.approx(expected, rel=1e-9)
+    with pytest.raises(InputError, match="at least two trainees"):
+        cohort_trend_p(rows[:1])
+
+
+def test_the_pass_mark_of_groups_with_equal_spreads_is_midway():
+    rng = np.random.default_rng(0)
+    spread = rng.normal(0, 1, 40)
+    spread = (spread - spread.mean()) / spread.std(ddof=1)
+    mark = pass_mark(40 + 6 * spread, 70 + 6 * spread)
+    assert mark.score == pytest.approx(55.0, abs=1e-6)
+    assert mark.passing_novices == pytest.approx(0.0062, abs=1e-4)
+    assert mark.failing_experts == pytest.approx(mark.passing_novices)
+
+
+def test_the_pass_mark_leans_toward_the_narrower_group():
+    spread = np.linspace(-1, 1, 21)
+    mark = pass_mark(40 + 3 * spread, 70 + 15 * spread)
+    assert 40 < mark.score < 50
+    below, above = np.std(40 + 3 * spread, ddof=1), np.std(70 + 15 * spread, ddof=1)
+    densities = [
+        np.exp(-(((mark.score - mean) / sd) ** 2) / 2) / sd
+        for mean, sd in [(40, below), (70, above)]
+    ]
+    assert densities[0] == pytest.approx(densities[1], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("novices", "experts", "words"),
+    [
+        ([1, 2, 3], [5, 6, 7, 8, 9], "at least 5 novices"),
+        ([1] * 5, [5, 6, 7, 8, 9], "differ within each group"),
+        ([5, 6, 7, 8, 9], [1, 2, 3, 4, 5], "experts who score higher"),
+    ],
+)
+def test_a_pass_mark_without_two_contrasting_groups_is_refused(novices, experts, words):
+    with pytest.raises(InputError, match=words):
+        pass_mark(novices, experts)
