@@ -199,7 +199,7 @@ def test_vtk_and_slicer_compute_the_same_errors_from_the_exported_files(
         procedure, fiducials, stored = carried_out(seed)
         write_slicer_files(stored, tmp_path)
         exported = json.loads(json.dumps(record_to_json(stored.record)))
-        truth = np.reshape(stored.head_to_world, (4, 4))
+        truth = np.reshape(stored.truth.head_to_world, (4, 4))
         ours = analyze_procedure(stored.record.procedure, procedure, meshes, truth)
         targets = []
         for number, errors in enumerate(ours.trajectories, start=1):

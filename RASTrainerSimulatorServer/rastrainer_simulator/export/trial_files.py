@@ -249,8 +249,8 @@ def _write_lines(trial: StoredTrial, folder: Path) -> list[Path]:
     for number, one in enumerate(procedure.instruments if procedure else (), start=1):
         planned = np.array([one.entry_ras, one.target_ras])
         lines = {"planned": planned}
-        if trial.head_to_world is not None and procedure is not None:
-            to_ras = transforms.inverse(np.reshape(trial.head_to_world, (4, 4)))
+        if trial.truth is not None and procedure is not None:
+            to_ras = transforms.inverse(trial.truth.matrix)
             to_world = transforms.inverse(procedure.accepted.world_to_head)
             placed = [one.guide_tip_mm, one.at_depth(one.instrument_depth_mm)]
             lines["shown"] = transforms.apply(to_ras @ to_world, planned)

@@ -20,8 +20,7 @@ from rastrainer.statistics.competence import (
     fewest_trials,
     lc_cusum_limit,
 )
-from rastrainer.study.database.aborted_trials import StoredAbortedTrial
-from rastrainer.study.database.values import moment
+from rastrainer.study.database.values import StoredAbortedTrial, moment
 from rastrainer.study.outcomes import mode_title, short_mode_title, task_title
 from rastrainer.study.protocol.study_protocol import pass_mark_of
 from rastrainer.study.study_data import StudyData, TrialRow

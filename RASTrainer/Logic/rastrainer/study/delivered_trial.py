@@ -19,7 +19,6 @@ from rastrainer.json_records import record_from_json
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.journal_check import check_journal
 from rastrainer.study.protocol.study_progress import StudyProgress
@@ -67,7 +66,7 @@ def store_delivered(
     """
     record = record_from_json(TrialRecord, value)
     is_new = study.check_trial(record)
-    if not is_new and (is_being_scored or study.is_revealed(record.trial_id)):
+    if not is_new and (is_being_scored or study.has("truths", record.trial_id)):
         return DeliveredTrial(record)
     try:
         analysis = analyze(record)
@@ -128,7 +127,7 @@ def with_progress(analysis: TrialAnalysis, study: Study) -> TrialAnalysis:
     if record.task == TRIAL_RUN or score is None:
         return analysis
     pass_mark = pass_mark_of(StudyProgress(study).protocol(), record.method)
-    return with_progress_among(analysis, AbortedTrials(study).attempts(record.trainee), pass_mark)
+    return with_progress_among(analysis, study.attempts(record.trainee), pass_mark)
 
 
 def with_progress_among(

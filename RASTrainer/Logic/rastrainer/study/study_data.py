@@ -13,11 +13,10 @@ from rastrainer.protocol import TRIAL_RUN, RegistrationMethod
 from rastrainer.registration.fits import RIGID
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import CurriculumStanding
-from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAbortedTrial
 from rastrainer.study.database.cohort_store import CohortStore, IncompleteStudyError
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import StoredProcedure, StoredTrial
+from rastrainer.study.database.values import StoredAbortedTrial, StoredProcedure, StoredTrial
 from rastrainer.study.protocol.steps import objections_to
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers, StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
@@ -215,9 +214,7 @@ def _from_database(place: StudyPlace) -> StudyData:
             versions={name: tuple(sorted(found)) for name, found in sorted(versions.items())},
             has_order=True,
             gap="" if cohort is None else cohort.gap,
-            aborted=tuple(
-                stored for name in sorted(consenting) for stored in AbortedTrials(study).of(name)
-            ),
+            aborted=tuple(stored for name in sorted(consenting) for stored in study.aborted(name)),
             undelivered=study.undelivered(),
             standings={
                 name: standing
@@ -261,7 +258,7 @@ def _trial_row(stored: StoredTrial, number: int) -> TrialRow:
         "completion_time_s": record.completion_time_s,
         "refused_touches": record.rejected_touches,
         "undone_touches": record.undone_touches,
-        **stored.motion,
+        **record.motion,
     }
     if rigid is not None:
         values["rmse_mm"] = rigid.fre_mm

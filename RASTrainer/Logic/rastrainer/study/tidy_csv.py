@@ -11,9 +11,8 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.files.writing import write_text
 from rastrainer.registration.fits import RIGID
-from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAbortedTrial
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import StoredProcedure, StoredTrial
+from rastrainer.study.database.values import StoredAbortedTrial, StoredProcedure, StoredTrial
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers
 from rastrainer.study.study_data import StudyData, TrialRow, trial_rows
@@ -58,7 +57,7 @@ def write_history(study: Study, pseudonyms: Iterable[str], path: Path | str) -> 
     pseudonyms = tuple(pseudonyms)
     rows = [row for pseudonym in pseudonyms for row in trial_rows(study.history(pseudonym))]
     write_text(path, trials_csv(rows))
-    aborted = [stored for name in pseudonyms for stored in AbortedTrials(study).of(name)]
+    aborted = [stored for name in pseudonyms for stored in study.aborted(name)]
     if aborted:
         path = Path(path)
         write_text(path.with_name(f"{path.stem}-aborted{path.suffix}"), aborted_csv(aborted))

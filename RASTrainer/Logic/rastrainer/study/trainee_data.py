@@ -10,7 +10,6 @@ from rastrainer.files.writing import write_json
 from rastrainer.journal.folder import SUFFIX, erase_journals
 from rastrainer.json_records import record_to_json
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
-from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.protocol.study_progress import StudyProgress
@@ -33,7 +32,7 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
                 "step": stored.step,
                 "repeat_reason": stored.repeat_reason,
             }
-            for stored in AbortedTrials(study).of(pseudonym)
+            for stored in study.aborted(pseudonym)
         ],
         "curricula": [
             {
@@ -66,8 +65,8 @@ def _trial_json(trial: StoredTrial) -> dict[str, Any]:
         "registrations": {kind: record_to_json(fit) for kind, fit in trial.registrations.items()},
         "score": None if trial.score is None else record_to_json(trial.score, with_defaults=True),
         "true_tre_mm": trial.true_tre_mm,
-        "head_to_world": trial.head_to_world,
-        "motion": trial.motion,
+        "head_to_world": None if trial.truth is None else trial.truth.head_to_world,
+        "motion": trial.record.motion,
         "procedure": None if trial.procedure is None else trial.procedure.to_json(),
     }
 
@@ -116,7 +115,7 @@ def erase_trainee(study: Study, pseudonym: str, records: Path | None) -> Erasure
         records: The simulator's folder of journals; None if they are elsewhere.
     """
     ids = [trial.record.trial_id for trial in study.history(pseudonym)]
-    ids += [aborted.record.trial_id for aborted in AbortedTrials(study).of(pseudonym)]
+    ids += [aborted.record.trial_id for aborted in study.aborted(pseudonym)]
     erased, unreadable = ((), ()) if records is None else erase_journals(records, pseudonym, ids)
     names = [path.name for path in erased if path.suffix == SUFFIX]
     missing = [one for one in ids if not any(name.endswith(f"_{one}{SUFFIX}") for name in names)]

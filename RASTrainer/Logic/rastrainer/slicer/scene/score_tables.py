@@ -84,7 +84,7 @@ def scoreRows(trial: StoredTrial) -> list[Row]:
     rows = []
     if score is not None:
         rows += _parts(score)
-    paused = trial.motion.get("pause_time_s", 0.0)
+    paused = trial.record.motion.get("pause_time_s", 0.0)
     note = _("{s:.0f} s of pauses are left out").format(s=paused) if paused else ""
     rows.append(Row(_("Completion time"), trial.record.completion_time_s, "s", note))
     if rigid is not None:
@@ -196,9 +196,9 @@ def ctpsRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:
 def motionRows(trial: StoredTrial) -> list[Row]:
     """Return the motion metrics of a trial, each with its definition."""
     return [
-        Row(metric.title, trial.motion[name], metric.unit, metric.definition)
+        Row(metric.title, trial.record.motion[name], metric.unit, metric.definition)
         for name, metric in MOTION_METRICS.items()
-        if name in trial.motion
+        if name in trial.record.motion
     ]
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from datetime import datetime, timezone
+from functools import partial
 from typing import Annotated, Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -16,6 +17,7 @@ from rastrainer.json_checks import decode_finite_json, number, numbers, plain_ob
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
+from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.procedure_outcome import ProcedureOutcome, ProcedureScore
 from rastrainer.trial.record import TrialRecord
@@ -39,7 +41,6 @@ def moment(utc: str) -> datetime:
     return datetime.fromisoformat(utc.replace("Z", "+00:00"))
 
 
-RECORD_LIMIT_BYTES = 2**20
 _NULL = re.compile(r"(?<!\\)(?:\\\\)*\\u0000")
 
 
@@ -63,20 +64,16 @@ def json_text(value: object) -> str:
     return written
 
 
-def record_text(record: Mapping[str, Any]) -> str:
-    """Return a record as ASCII JSON; raise `InputError` if that is impossible or above 1 MiB."""
-    written = json_text(record)
-    if len(written) > RECORD_LIMIT_BYTES:
-        raise InputError("The trial record is larger than 1 MiB, the most that is stored.")
-    return written
-
-
 def decoded(written: str, read: Callable[[Any], Value]) -> Value:
     """Return decoded stored JSON; raise `InputError` if it is invalid."""
     try:
         return read(decode_finite_json(written))
     except (TypeError, ValueError, KeyError, AttributeError):
         raise InputError("The study contains a value that RASTrainer did not write.") from None
+
+
+def decoded_record(kind: type[Value], written: str) -> Value:
+    return decoded(written, partial(record_from_json, kind))
 
 
 @dataclass(frozen=True)
@@ -189,26 +186,28 @@ class StoredProcedure:
 
 @dataclass(frozen=True)
 class StoredTrial:
-    """A trial with its latest results, as far as they are known.
-
-    Attributes:
-        registrations: By kind.
-        true_tre_mm: True error at the target.
-        head_to_world: 16 numbers row by row, RAS to `World`, mm.
-        motion: Motion metrics by name, with units.
-    """
+    """A trial with its latest results, as far as they are known; registrations by kind."""
 
     record: TrialRecord
     registrations: dict[str, StoredRegistration]
-    score: TrialScore | None
-    true_tre_mm: float | None
-    head_to_world: tuple[float, ...] | None
-    motion: dict[str, float] = field(default_factory=dict)
+    score: TrialScore | None = None
+    truth: RevealedTruth | None = None
     procedure: StoredProcedure | None = None
 
     @property
-    def truth(self) -> RevealedTruth | None:
-        """What the simulator revealed; None until then."""
-        if self.head_to_world is None or self.true_tre_mm is None:
-            return None
-        return RevealedTruth(self.head_to_world, self.true_tre_mm)
+    def true_tre_mm(self) -> float | None:
+        """True error at the target; None until it is revealed."""
+        return None if self.truth is None else self.truth.true_tre_mm
+
+
+@dataclass(frozen=True)
+class StoredAbortedTrial:
+    """An aborted trial, and why it was repeated.
+
+    Attributes:
+        step: The study's step that was repeated because of it; "" if none.
+    """
+
+    record: AbortedTrial
+    step: str = ""
+    repeat_reason: str = ""
