@@ -249,7 +249,7 @@ def test_the_score_of_a_procedure_is_shown_beside_that_of_the_touches(logic, add
     assert rows["Score of the procedure"].value == dbs.score.score
     assert rows["Score of the procedure"].note == "Version procedure-1"
     assert rows["… target point error"].note == "registration 0.50 mm, hand 1.20 mm"
-    assert rows["… target point error"].value == dbs.analysis.target_rms_mm
+    assert rows["… target point error"].value == dbs.analysis.target_point_error_rms_mm
 
 
 def test_a_trial_is_compared_with_the_trainees_own_others_and_a_reference_group(logic, add_trial):

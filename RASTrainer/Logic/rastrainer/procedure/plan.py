@@ -250,7 +250,6 @@ def read_procedure_meshes(procedure: Procedure, skull: Path) -> ProcedureMeshes:
 
 
 def read_no_go_mesh(path: Path) -> HeadMesh:
-    """Read the surface of a no-go structure."""
     mesh = read_head_mesh(path)
     check_no_go_mesh(mesh, str(path))
     return mesh
@@ -278,6 +277,5 @@ def check_no_go_size(triangles: int, name: str) -> None:
 
 
 def read_all_no_go(procedures: Iterable[Procedure]) -> dict[str, HeadMesh]:
-    """Return the surfaces of all no-go structures of some procedures, by file name."""
     paths = {structure.file for procedure in procedures for structure in procedure.no_go}
     return {path.name: read_no_go_mesh(path) for path in sorted(paths)}

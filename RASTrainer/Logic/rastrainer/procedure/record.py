@@ -44,7 +44,7 @@ WorldPoint = Annotated[tuple[float, float, float], numbers(3, WORLD_LIMIT_MM, "m
 _RasPoint = Annotated[tuple[float, float, float], numbers(3, RAS_LIMIT_MM, "mm")]
 _Length = Annotated[float, number(0, 1e6, "mm")]
 _Depth = Annotated[float, number(0, DEPTH_LIMIT_MM, "mm")]
-_PhaseTimes = Annotated[
+PhaseTimes = Annotated[
     Mapping[str, Seconds],
     object_of(check_name=one_of(*(each.value for each in (Phase.RUNNING, *PROCEDURE_PHASES)))),
 ]
@@ -156,7 +156,7 @@ class PlacedInstrument:
     drill_depth_mm: _Depth
     instrument_depth_mm: _Depth
     self_aligned: bool = False
-    times_s: _PhaseTimes = field(default_factory=dict)
+    times_s: PhaseTimes = field(default_factory=dict)
     feed: Annotated[Mapping[str, Annotated[float, number(0, 1e9)]], object_of(MAX_FEED_METRICS)] = (
         field(default_factory=dict)
     )
@@ -187,7 +187,7 @@ class ProcedureRecord:
     instruments: Annotated[
         tuple[PlacedInstrument, ...], list_of(1, MAX_TRAJECTORIES, "instruments")
     ]
-    phase_times_s: _PhaseTimes = field(default_factory=dict)
+    phase_times_s: PhaseTimes = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if self.attempts[-1].registration is None:

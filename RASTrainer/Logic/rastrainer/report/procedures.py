@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from rastrainer.number_text import counted, fixed, percent
+from rastrainer.procedure.errors import TrajectoryErrors
 from rastrainer.report import page, svg
 from rastrainer.statistics.intervals import Estimate, mean
 from rastrainer.study.study_data import StudyData, TrialRow
@@ -65,11 +65,11 @@ class _Group:
 
     Attributes:
         trials: Those that continued with a procedure.
-        lines: The errors of all their trajectories, as `TrajectoryErrors.to_json`.
+        lines: The errors of all their trajectories.
     """
 
     trials: tuple[TrialRow, ...]
-    lines: tuple[Mapping[str, Any], ...]
+    lines: tuple[TrajectoryErrors, ...]
 
     @classmethod
     def of(cls, trials: Sequence[TrialRow], name: str = "", kind: str = "") -> _Group:
@@ -79,14 +79,14 @@ class _Group:
             for trial in trials
             if trial.procedure
             and name in ("", trial.trainee)
-            and kind in ("", trial.procedure.kind)
+            and kind in ("", trial.procedure.analysis.kind)
         ]
-        lines = tuple(line for _trial, found in done for line in found.trajectories)
+        lines = tuple(line for _trial, found in done for line in found.analysis.trajectories)
         return cls(tuple(trial for trial, _found in done), lines)
 
     def lengths(self, error: str, part: str = "mm") -> np.ndarray:
         """Return lengths of an error, or of one of its parts, one per trajectory, mm."""
-        return np.array([line[error][part] for line in self.lines])
+        return np.array([getattr(getattr(line, error), part) for line in self.lines])
 
     def rms_text(self, error: str, part: str = "mm") -> str:
         return _rms_text(self.lengths(error, part)) if self.lines else "–"
@@ -103,7 +103,7 @@ class _Group:
     @property
     def kept_mm(self) -> list[float]:
         """Least distances of instruments from no-go structures; 0 or less is a hit."""
-        return [distance for line in self.lines for distance in line["keptMm"].values()]
+        return [distance for line in self.lines for distance in line.kept_mm.values()]
 
     @property
     def hits(self) -> int:
@@ -117,9 +117,7 @@ class _Group:
 
     def aligned_by(self, *, robot: bool) -> _Group:
         """Return the same with only the lines on which the robot, or a hand, aligned the guide."""
-        return replace(
-            self, lines=tuple(line for line in self.lines if line["selfAligned"] is robot)
-        )
+        return replace(self, lines=tuple(line for line in self.lines if line.self_aligned is robot))
 
 
 def procedures(data: StudyData) -> str:
@@ -162,8 +160,8 @@ def _sentences(group: _Group, trials: int) -> list[str]:
         f"{len(group.trials)} of {counted(trials, 'trial')} continued with a procedure: "
         f"{counted(len(group.lines), 'line')} in all, by "
         f"{counted(len(group.trainees), 'trainee')}. The target point error was "
-        f"{group.rms_text('targetPointError')} mm (RMS over all lines); the part that the "
-        f"registration caused was {group.rms_text('targetPointError', 'byRegistrationMm')} mm.",
+        f"{group.rms_text('target_point_error')} mm (RMS over all lines); the part that the "
+        f"registration caused was {group.rms_text('target_point_error', 'by_registration_mm')} mm.",
         *_after_registration(group),
         *_over_trainees(group),
         f"{group.acceptable} of {len(group.trials)} procedures were acceptable "
@@ -185,7 +183,7 @@ def _after_registration(group: _Group) -> list[str]:
     )
     return [
         f"{counted(len(own.lines), 'line')} {'was' if len(own.lines) == 1 else 'were'} aligned "
-        f"{words} {own.rms_text('targetPointError', 'byHandMm')} {rest}"
+        f"{words} {own.rms_text('target_point_error', 'by_hand_mm')} {rest}"
         for robot, words, rest in said
         if (own := group.aligned_by(robot=robot)).lines
     ]
@@ -206,8 +204,8 @@ def _over_trainees(group: _Group) -> list[str]:
     if len(trainees) < LEAST_TRAINEES:
         return []
     whole, registration, hand = (
-        np.array([_rms(one.lengths("targetPointError", part)) for one in trainees])
-        for part in ("mm", "byRegistrationMm", "byHandMm")
+        np.array([_rms(one.lengths("target_point_error", part)) for one in trainees])
+        for part in ("mm", "by_registration_mm", "by_hand_mm")
     )
     spread, difference = mean(whole), mean(registration - hand)
     verdict = "it cannot be said which of both caused more"
@@ -228,8 +226,8 @@ def _on_average(found: Estimate) -> str:
 
 
 def _row(title: str, group: _Group) -> list[str]:
-    angles = np.array([line["angularDeviationDeg"] for line in group.lines])
-    plunge_mm = max((line["plungeMm"] or 0.0 for line in group.lines), default=0.0)
+    angles = np.array([line.angular_deviation_deg for line in group.lines])
+    plunge_mm = max((line.plunge_mm or 0.0 for line in group.lines), default=0.0)
     kept = f"{fixed(min(group.kept_mm), 1)} ({group.hits})" if group.kept_mm else "–"
     return [
         title,
@@ -237,7 +235,7 @@ def _row(title: str, group: _Group) -> list[str]:
         _lines_cell(group),
         str(len(group.trainees)),
         *_target_errors(group),
-        group.rms_text("entryPointError"),
+        group.rms_text("entry_point_error"),
         _rms_text(angles),
         fixed(plunge_mm, 1),
         kept,
@@ -249,22 +247,22 @@ def _target_errors(group: _Group) -> list[str]:
     """Return the RMS of target point errors: whole, by registration, by hand, by robot and hand."""
     own = (group.aligned_by(robot=robot) for robot in (False, True))
     return [
-        *(group.rms_text("targetPointError", part) for part in ("mm", "byRegistrationMm")),
-        *(each.rms_text("targetPointError", "byHandMm") for each in own),
+        *(group.rms_text("target_point_error", part) for part in ("mm", "by_registration_mm")),
+        *(each.rms_text("target_point_error", "by_hand_mm") for each in own),
     ]
 
 
 def _time_row(title: str, group: _Group) -> list[str]:
     analyses = [trial.procedure.analysis for trial in group.trials if trial.procedure]
     means = [
-        float(np.mean([analysis["phaseTimesS"].get(phase, 0.0) for analysis in analyses]))
+        float(np.mean([analysis.phase_times_s.get(phase, 0.0) for analysis in analyses]))
         for phase in PHASES
     ]
-    alignments = sum(analysis["alignments"] for analysis in analyses) / len(group.lines)
+    alignments = sum(analysis.alignments for analysis in analyses) / len(group.lines)
     return [
         title,
         str(len(group.trials)),
-        fixed(float(np.mean([analysis["durationS"] for analysis in analyses])), 0),
+        fixed(float(np.mean([analysis.duration_s for analysis in analyses])), 0),
         *(fixed(value, 0) for value in means),
         fixed(alignments, 2),
     ]
@@ -298,8 +296,8 @@ def split_chart(kinds: Mapping[str, _Group]) -> str:
     """Return the chart of both parts of the target point errors; both axes start at 0."""
     points = {
         kind: (
-            group.lengths("targetPointError", "byRegistrationMm"),
-            group.lengths("targetPointError", "byHandMm"),
+            group.lengths("target_point_error", "by_registration_mm"),
+            group.lengths("target_point_error", "by_hand_mm"),
         )
         for kind, group in kinds.items()
     }

@@ -84,7 +84,6 @@ def score_references(study: Study) -> Mapping[str, ScoreReference] | None:
 
 
 def checks_journals(study: Study) -> bool:
-    """Return whether the protocol of a study asks for trials with their journals."""
     protocol = StudyProgress(study).protocol()
     return protocol is not None and protocol.check_journals
 

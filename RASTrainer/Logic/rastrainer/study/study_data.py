@@ -16,13 +16,14 @@ from rastrainer.study.curriculum.standing import CurriculumStanding
 from rastrainer.study.database.cohort_store import CohortStore, IncompleteStudyError
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import StoredAbortedTrial, StoredProcedure, StoredTrial
+from rastrainer.study.database.values import StoredAbortedTrial, StoredTrial
 from rastrainer.study.protocol.steps import objections_to
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers, StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.ratings import Rating, RatingStore
 from rastrainer.study_messages import StudyStep
 from rastrainer.trial.ctps import StudyNotes, Trial, read_notes, read_trials
+from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore
 
@@ -52,7 +53,7 @@ class TrialRow:
     score_version: str = ""
     acceptable: bool = False
     completed_utc: str = ""
-    procedure: StoredProcedure | None = None
+    procedure: ProcedureOutcome | None = None
     method: str = RegistrationMethod.FIDUCIALS.value
 
 
@@ -295,28 +296,26 @@ def _trial_row(stored: StoredTrial, number: int) -> TrialRow:
     )
 
 
-def _procedure_values(procedure: StoredProcedure) -> dict[str, float]:
+def _procedure_values(procedure: ProcedureOutcome) -> dict[str, float]:
     """Return the outcomes of a procedure; root mean squares are over its trajectories."""
     analysis, score = procedure.analysis, procedure.score
-    by_hand = [
-        one["targetPointError"]["byHandMm"]
-        for one in procedure.trajectories
-        if not one["selfAligned"]
-    ]
+    lines = analysis.trajectories
+    by_hand = [one.target_point_error.by_hand_mm for one in lines if not one.self_aligned]
     rms = math.sqrt(sum(length**2 for length in by_hand) / len(by_hand)) if by_hand else 0.0
+    by_registration = analysis.target_point_error_by_registration_rms_mm
     return {
         "procedure_score": score.score,
         "procedure_acceptable": float(score.acceptable),
-        "procedure_trajectories": float(len(procedure.trajectories)),
-        "procedure_duration_s": analysis["durationS"],
-        "procedure_target_rms_mm": analysis["targetPointErrorRmsMm"],
-        "procedure_target_by_registration_rms_mm": analysis["targetPointErrorByRegistrationRmsMm"],
+        "procedure_trajectories": float(len(lines)),
+        "procedure_duration_s": analysis.duration_s,
+        "procedure_target_rms_mm": analysis.target_point_error_rms_mm,
+        "procedure_target_by_registration_rms_mm": by_registration,
         **({"procedure_target_by_hand_rms_mm": rms} if by_hand else {}),
-        "procedure_self_aligned": float(procedure.self_aligned),
-        "procedure_entry_rms_mm": analysis["entryPointErrorRmsMm"],
-        "procedure_angle_rms_deg": analysis["angularDeviationRmsDeg"],
-        "procedure_alignments": float(analysis["alignments"]),
-        "procedure_attempts": float(analysis["attempts"]),
+        "procedure_self_aligned": float(analysis.self_aligned),
+        "procedure_entry_rms_mm": analysis.entry_point_error_rms_mm,
+        "procedure_angle_rms_deg": analysis.angular_deviation_rms_deg,
+        "procedure_alignments": float(analysis.alignments),
+        "procedure_attempts": float(analysis.attempts),
         "procedure_plunge_mm": score.measures.plunge_mm,
         "procedure_hits": float(score.measures.hits),
     }

@@ -11,7 +11,6 @@ from rastrainer.journal.folder import SUFFIX, erase_journals
 from rastrainer.json_records import record_to_json
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.ratings import RatingStore
 
@@ -25,7 +24,24 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
         "format": FORMAT,
         "trainee": asdict(trainee),
         "protocol": _protocol_json(StudyProgress(study), pseudonym),
-        "trials": [_trial_json(trial) for trial in trials],
+        "trials": [
+            {
+                "record": record_to_json(trial.record),
+                "registrations": {
+                    kind: record_to_json(fit) for kind, fit in trial.registrations.items()
+                },
+                "score": None
+                if trial.score is None
+                else record_to_json(trial.score, with_defaults=True),
+                "true_tre_mm": trial.true_tre_mm,
+                "head_to_world": None if trial.truth is None else trial.truth.head_to_world,
+                "motion": trial.record.motion,
+                "procedure": None
+                if trial.procedure is None
+                else record_to_json(trial.procedure, with_defaults=True),
+            }
+            for trial in trials
+        ],
         "aborted_trials": [
             {
                 "record": record_to_json(stored.record),
@@ -57,18 +73,6 @@ def _protocol_json(progress: StudyProgress, pseudonym: str) -> dict[str, Any] | 
     if place is None:
         return None
     return {"place": place, "steps": [asdict(e) for e in progress.progress(pseudonym).entries]}
-
-
-def _trial_json(trial: StoredTrial) -> dict[str, Any]:
-    return {
-        "record": record_to_json(trial.record),
-        "registrations": {kind: record_to_json(fit) for kind, fit in trial.registrations.items()},
-        "score": None if trial.score is None else record_to_json(trial.score, with_defaults=True),
-        "true_tre_mm": trial.true_tre_mm,
-        "head_to_world": None if trial.truth is None else trial.truth.head_to_world,
-        "motion": trial.record.motion,
-        "procedure": None if trial.procedure is None else trial.procedure.to_json(),
-    }
 
 
 @dataclass(frozen=True)

@@ -145,7 +145,11 @@ class PlayRecording:
         self._add_time(entry)
         kind = entry["kind"]
         if kind in ("header", "continued"):
-            self._add_session(entry["session"])
+            session = entry["session"]
+            speed = session["speed"] or 0.0
+            self._speed = max(self._speed, speed, key=lambda each: abs(each - 1.0))
+            if session["isSeeded"] and self._seed_source is SeedSource.DRAWN:
+                self._seed_source = SeedSource.SESSION
         elif kind == "command" and entry["name"] == CommandName.START_TASK:
             self._started_by = entry["sender"]
             if entry["arguments"].get("seed") is not None:
@@ -199,9 +203,3 @@ class PlayRecording:
     def _count(self, passed: tuple[float, float]) -> None:
         self._simulated_s += passed[0]
         self._clock_s += passed[1]
-
-    def _add_session(self, session: Mapping[str, Any]) -> None:
-        speed = session["speed"] or 0.0
-        self._speed = max(self._speed, speed, key=lambda each: abs(each - 1.0))
-        if session["isSeeded"] and self._seed_source is SeedSource.DRAWN:
-            self._seed_source = SeedSource.SESSION

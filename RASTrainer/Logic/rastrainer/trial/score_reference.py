@@ -130,7 +130,6 @@ class Region:
 
 
 def region_of(scenario: Scenario) -> Region:
-    """Return the region of a scenario: the head's target, the planned ones, and the grid."""
     targets = [scenario.target_position, *(target.position_ras for target in scenario.targets)]
     return Region(np.array(targets, dtype=float), computed_once(scenario, brain_grid))
 

@@ -47,10 +47,8 @@ class Curriculum:
 
 
 def read_curriculum(path: Path | str) -> Curriculum:
-    """Read a curriculum's file."""
     return read_plan(Curriculum, path, _VERSIONS)
 
 
 def curriculum_from_json(value: Any) -> Curriculum:
-    """Return the curriculum of a `to_json` object."""
     return plan_from_json(Curriculum, value, _VERSIONS, "The curriculum")

@@ -103,7 +103,6 @@ class CurriculumStore:
         return {name: tuple(numbers) for name, *numbers in rows}
 
     def standings(self) -> dict[str, CurriculumStanding]:
-        """Return the standing of each active trainee with a curriculum, by pseudonym."""
         names = [trainee.pseudonym for trainee in self._study.trainees()]
         return {name: each for name in names if (each := self.standing(name)) is not None}
 
@@ -118,7 +117,6 @@ def _read(text: str | None) -> Curriculum | None:
 
 
 def _as_counted(trial: PastTrial) -> PastTrial:
-    """Return a trial with the score of its procedure if it has one."""
     done = trial.procedure_score
     if done is None:
         return trial

@@ -109,7 +109,6 @@ def standing_in(
 
 
 def _counts_for(trial: PastTrial, assignment: Assignment) -> bool:
-    """Return whether a trial was played as an assignment asks."""
     procedure = trial.procedure
     if trial.is_aborted and (assignment.procedure or not trial.is_in_procedure):
         procedure = assignment.procedure
@@ -135,7 +134,7 @@ def _standing(
     reached_utc = ""
     if reaching is not None and not missing:
         gates = [reached[name] for name in assignment.after]
-        reached_utc = _reached_utc(reaching.started_utc, gates)
+        reached_utc = max(filter(None, (reaching.started_utc, *gates)), key=moment, default="")
     recent = own[-RECENT:]
     return AssignmentStanding(
         **{**vars(assignment), "mark": mark},
@@ -167,11 +166,6 @@ def _progress(
         if row == assignment.trials and reaching is None:
             reaching = trial
     return reaching, min(row, assignment.trials)
-
-
-def _reached_utc(time: str, gates: Sequence[str]) -> str:
-    """Return a time, or of the gates the last where that was later; "" if unknown."""
-    return max(filter(None, (time, *gates)), key=moment, default="")
 
 
 def _weakest(trials: Sequence[PastTrial]) -> str:

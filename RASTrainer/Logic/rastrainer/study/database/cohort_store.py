@@ -89,7 +89,6 @@ class CohortStore:
         return CohortState(row[0], stored, stuck, row[1] is not None)
 
     def has_played(self, trial_id: str) -> bool:
-        """Return whether a trial was played: stored, stuck, or deleted since."""
         with self._database.reading():
             is_known = any(self._study.has(each, trial_id) for each in ("stuck_trials", "trials"))
             return is_known or self._study.is_deleted(trial_id)

@@ -262,7 +262,6 @@ class StudyDatabase(ABC):
         )
 
     def change(self, sql: str, *parameters: Any) -> None:
-        """Execute a statement that changes the study."""
         with self.writing() as connection:
             connection.execute(sql, parameters)
 

@@ -33,7 +33,6 @@ from rastrainer.study.database.schema import TABLES, TRAINEE_ID
 from rastrainer.study.database.sqlite_database import ReadOnlySqliteDatabase, SqliteDatabase
 from rastrainer.study.database.values import (
     StoredAbortedTrial,
-    StoredProcedure,
     StoredRegistration,
     StoredTrial,
     Trainee,
@@ -165,7 +164,6 @@ class Study:
         return self.database.row(TRAINEE_ID, pseudonym) is not None
 
     def trainees(self, archived: bool = False) -> tuple[Trainee, ...]:
-        """Return active or archived trainees by pseudonym."""
         query = f"{_TRAINEES} WHERE archived = ? ORDER BY pseudonym"
         return tuple(_trainee(*row) for row in self.database.rows(query, int(archived)))
 
@@ -210,7 +208,6 @@ class Study:
         return len(finished)
 
     def is_deleted(self, trial_id: str) -> bool:
-        """Return whether a trial was deleted with its trainee."""
         query = "SELECT 1 FROM deleted_trials WHERE trial_sha256 = ?"
         return self.database.row(query, _sha256(trial_id)) is not None
 
@@ -287,7 +284,6 @@ class Study:
             return True
 
     def has(self, table: str, trial_id: str) -> bool:
-        """Return whether a table such as `trials` or `truths` has a row of a trial."""
         query = f"SELECT 1 FROM {table} WHERE trial_id = ?"
         return self.database.row(query, trial_id) is not None
 
@@ -314,7 +310,6 @@ class Study:
         record: AbortedTrial | TrialRecord,
         delivered: Mapping[str, Any] | None,
     ) -> None:
-        """Store a record, and in columns of their own those fields that the table has."""
         text = json_text(delivered or record_to_json(record))
         if len(text) > RECORD_LIMIT_BYTES:
             raise InputError("The trial record is larger than 1 MiB, the most that is stored.")
@@ -372,7 +367,7 @@ class Study:
                     trial_id=trial_id,
                     score=procedure.score.score,
                     version=procedure.score.version,
-                    outcome_json=json_text(StoredProcedure.of(procedure).to_json()),
+                    outcome_json=json_text(record_to_json(procedure, with_defaults=True)),
                 )
 
     def set_truth(self, trial_id: str, true_tre_mm: float, head_to_world: Sequence[float]) -> None:
@@ -424,7 +419,7 @@ class Study:
             {kind: decoded_record(StoredRegistration, text) for kind, text in registrations},
             decoded_record(TrialScore, scores[-1][0]) if scores else None,
             RevealedTruth(decoded(truths[0][0], tuple), truths[0][1]) if truths else None,
-            decoded(procedures[-1][0], StoredProcedure.from_json) if procedures else None,
+            decoded_record(ProcedureOutcome, procedures[-1][0]) if procedures else None,
         )
 
     def history(self, pseudonym: str) -> tuple[StoredTrial, ...]:
@@ -490,7 +485,6 @@ class Study:
         return tuple(sorted(trials, key=lambda trial: moment(trial.started_utc)))
 
     def unrevealed(self) -> tuple[TrialRecord, ...]:
-        """Return the records of trials without truth, oldest first."""
         return self._records("trial_id NOT IN (SELECT trial_id FROM truths)")
 
     def _records(self, condition: str, *parameters: Any) -> tuple[TrialRecord, ...]:
@@ -517,7 +511,6 @@ class Study:
 
 
 def _latest(table: str, column: str) -> str:
-    """Return the query for the latest result of a trial."""
     own = f"WHERE {table}.trial_id = trials.trial_id ORDER BY {table}.id DESC LIMIT 1"
     return f"SELECT {column} FROM {table} {own}"
 
@@ -534,14 +527,14 @@ def _past_trial(
     outcome_json: str | None,
 ) -> PastTrial:
     score = decoded_record(TrialScore, score_json)
-    done = None if outcome_json is None else decoded(outcome_json, StoredProcedure.from_json)
+    done = None if outcome_json is None else decoded_record(ProcedureOutcome, outcome_json)
     return PastTrial(
         *(trial_id, task, mode, seconds, score.score, score.acceptable),
         method=RegistrationMethod(method),
         scenario=scenario,
         started_utc=started_utc,
         parts=score.parts,
-        procedure="" if done is None else done.name,
+        procedure="" if done is None else done.analysis.procedure,
         procedure_score=None if done is None else done.score,
     )
 

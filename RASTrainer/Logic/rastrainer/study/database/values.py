@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from functools import partial
@@ -19,7 +19,7 @@ from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.analysis import RevealedTruth
-from rastrainer.trial.procedure_outcome import ProcedureOutcome, ProcedureScore
+from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore
 
@@ -144,47 +144,6 @@ class TrialOutcome(NamedTuple):
 
 
 @dataclass(frozen=True)
-class StoredProcedure:
-    """The stored outcome of a procedure; its errors are as of `ProcedureAnalysis.to_json`."""
-
-    analysis: Mapping[str, Any]
-    score: ProcedureScore
-
-    @property
-    def self_aligned(self) -> int:
-        """On how many trajectories the robot aligned the guide."""
-        return sum(bool(one["selfAligned"]) for one in self.trajectories)
-
-    @classmethod
-    def of(cls, outcome: ProcedureOutcome) -> StoredProcedure:
-        return cls(outcome.analysis.to_json(), outcome.score)
-
-    def to_json(self) -> dict[str, Any]:
-        return {
-            "analysis": dict(self.analysis),
-            "score": record_to_json(self.score, with_defaults=True),
-        }
-
-    @classmethod
-    def from_json(cls, value: Mapping[str, Any]) -> StoredProcedure:
-        """Return the outcome that `to_json` described."""
-        return cls(dict(value["analysis"]), record_from_json(ProcedureScore, value["score"]))
-
-    @property
-    def name(self) -> str:
-        return str(self.analysis["procedure"])
-
-    @property
-    def kind(self) -> str:
-        return str(self.analysis["kind"])
-
-    @property
-    def trajectories(self) -> tuple[Mapping[str, Any], ...]:
-        """The errors of each trajectory, as `TrajectoryErrors.to_json`."""
-        return tuple(self.analysis["trajectories"])
-
-
-@dataclass(frozen=True)
 class StoredTrial:
     """A trial with its latest results, as far as they are known; registrations by kind."""
 
@@ -192,7 +151,7 @@ class StoredTrial:
     registrations: dict[str, StoredRegistration]
     score: TrialScore | None = None
     truth: RevealedTruth | None = None
-    procedure: StoredProcedure | None = None
+    procedure: ProcedureOutcome | None = None
 
     @property
     def true_tre_mm(self) -> float | None:

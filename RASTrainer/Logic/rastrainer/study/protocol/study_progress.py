@@ -154,7 +154,6 @@ class StudyProgress:
             return self._store(pseudonym, step, DONE, checked)
 
     def skip(self, pseudonym: str, step: str, reason: str) -> StepProgress:
-        """Skip the next step for a reason and return the new progress."""
         with self._database.writing():
             checked = self.progress(pseudonym).check_skipped(step, reason)
             return self._store(pseudonym, step, SKIPPED, checked)

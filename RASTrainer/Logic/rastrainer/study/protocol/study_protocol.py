@@ -64,8 +64,6 @@ def _questionnaire(value: Any) -> str:
 
 
 def _by_task(key: str, check: Callable[[Any], Any]) -> Callable[[Any], dict[str, Any]]:
-    """Accept an object from tasks to values that a check accepts."""
-
     def read(value: Any) -> dict[str, Any]:
         if not isinstance(value, Mapping):
             raise ValueError("an object of tasks")
@@ -199,12 +197,10 @@ def pass_mark_of(
 
 
 def read_study_protocol(path: Path | str) -> StudyProtocol:
-    """Read a protocol file."""
     return read_plan(StudyProtocol, path, _VERSIONS)
 
 
 def study_protocol_from_json(value: Any) -> StudyProtocol:
-    """Return the protocol of a `to_json` object."""
     return plan_from_json(StudyProtocol, value, _VERSIONS, "The protocol")
 
 
