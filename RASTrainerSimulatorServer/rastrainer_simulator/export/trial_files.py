@@ -46,8 +46,6 @@ def write_motion_bids(data: StudyData, folder: Path, find_trajectory: FindTrajec
     """Write the dataset and return the number of trials in it.
 
     Args:
-        data: The study.
-        folder: Target; must be empty or missing.
         find_trajectory: Returns the trajectory of a trial's UUID, or None.
     """
     make_empty_folder(folder)

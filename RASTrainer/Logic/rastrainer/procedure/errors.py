@@ -107,9 +107,7 @@ class TrajectoryErrors:
             deeper; taken as thick) to each no-go structure, by name; 0 or less is a hit.
         guide_tip_ras: where the guide's tip truly was.
         tip_ras: where the tip of the instrument truly is.
-        alignments: how often the guide was locked.
         self_aligned: whether the robot brought the guide onto the line.
-        times_s: by phase.
     """
 
     trajectory: Annotated[str, text(60)]
@@ -140,7 +138,6 @@ class ProcedureAnalysis:
     Attributes:
         procedure: its name in the scenario.
         alignments: how often the guide was locked, over all trajectories.
-        attempts: number of them at registering.
         trajectories: their errors, in the order of the plan.
     """
 
@@ -187,9 +184,6 @@ def analyze_procedure(
     """Return the errors of a procedure against the truth.
 
     Args:
-        record: what was done, with the registration that was accepted.
-        procedure: what was planned.
-        meshes: of the procedure, RAS mm.
         head_to_world: (4, 4) float, rigid, mm: where the head really was.
     """
     _check_same(record, procedure)
@@ -273,7 +267,6 @@ class TrueLine(NamedTuple):
     """The line of one instrument in the head, from outside to inside: (2, 3) float each, RAS mm.
 
     Attributes:
-        trajectory: its name.
         planned: from entry to target.
         shown: where the plan, as it was shown, truly lay.
         placed: from the guide's tip to the instrument's.

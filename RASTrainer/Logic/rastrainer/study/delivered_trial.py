@@ -56,8 +56,6 @@ def store_delivered(
     """Store a trial with its registration, once; known trials are not scored again.
 
     Args:
-        value: the trial as delivered.
-        study: the study.
         analyze: registers a record; may raise `InputError`.
         is_being_scored: whether its registration or score is being sent to the simulator.
 
@@ -99,9 +97,6 @@ def scored_with_journal(
     """Score a registered trial, with the feedback of its journal.
 
     Args:
-        analysis: of the trial, as it was registered.
-        truth: what the simulator has revealed.
-        scenario: in which it was played.
         references: those of the trial's study, as `score_references` returns them.
         records: folder of journals; None, or one that is not there, explains less of the touches.
         pause: called again and again while the journal is read; a thread may wait in it.

@@ -36,7 +36,6 @@ class RatingForm:
     Attributes:
         domains: Those that a replay can show, in their order.
         left_out: Titles of the published domains that it cannot show, with the reason.
-        source: Publication of domains and scale.
     """
 
     name: str
@@ -130,10 +129,7 @@ class RatingStore:
         has already keeps its place.
 
         Args:
-            rater: Pseudonym.
-            trial_ids: Of the trials that can be shown.
             count: How many there shall be at least; fewer if there are no more.
-            chance: Draws and shuffles.
         """
         rater = accepted(pseudonym(), rater, "The name of a rater")
         with self._database.writing():
@@ -167,11 +163,6 @@ class RatingStore:
 
         Args:
             mark_id: UUID of this mark: the same one again changes nothing.
-            rater: Pseudonym.
-            trial_id: Of a trial that the rater was given.
-            form: Which form.
-            domain: Name of one of its domains.
-            mark: 1 to 5.
         """
         if domain not in {each.name for each in form.domains}:
             raise InputError(f"{form.title} has no domain {domain[:40]!r}.")

@@ -38,7 +38,6 @@ class TrialRow:
         number: Of the trainee's trials in this mode, from 1; 0 for a trial run.
         values: Measurements by name; see `rastrainer.study.outcomes`.
         acceptable: Whether it was within all limits of its score; False without a score.
-        completed_utc: Time of the last kept touch, ISO 8601.
         procedure: None of touches alone, or if it is not scored.
     """
 
@@ -64,14 +63,11 @@ class StudyData:
     Attributes:
         trials: Without trial runs; for trainees in a protocol, those of its steps.
         mean_ct_s: Mean completion times for CTPS instead of the trials' own, by mode.
-        notes: On a published study, or None.
         protocol: None if trainees practiced freely.
         skipped: Trainee, step and reason of each skipped step.
         outside_protocol: Number of trials outside the protocol, which are left out.
         objections: Trainee, trial and reasons of those of them that broke a rule of the protocol.
-        without_consent: Number of trainees left out without consent.
         versions: Of the programs that made the records, name → different versions.
-        has_order: Whether the order of the trials is known.
         gap: What is missing of an incomplete virtual cohort, as a sentence; else "".
         aborted: Aborted trials, including trial runs, by trainee in order.
         undelivered: First and last numbers of trials that never arrived, by their simulator's
@@ -130,10 +126,6 @@ def read_study_data(place: StudyPlace, allow_incomplete: bool = False) -> StudyD
     """Read a study's database, or a CSV file with the header `mode,subject,task,ct,rmse`.
 
     Notes beside a CSV file `NAME.csv` are read from `NAME.json`.
-
-    Args:
-        place: Path of the file, or the address of the database.
-        allow_incomplete: Accept an incomplete virtual cohort.
 
     Raises:
         IncompleteStudyError: the cohort is incomplete.

@@ -80,7 +80,6 @@ class Erasure:
     """What was deleted, and what may remain.
 
     Attributes:
-        trials: Number of finished trials deleted from the study.
         journals: Number of deleted journals, including those of unfinished trials.
         missing: UUIDs of deleted trials whose journals were not found.
         unreadable: Journals that name no trainee.
@@ -114,8 +113,6 @@ def erase_trainee(study: Study, pseudonym: str, records: Path | None) -> Erasure
     and the deletion can be repeated. Earlier exports must be deleted by the lab.
 
     Args:
-        study: The trainee's study.
-        pseudonym: The trainee.
         records: The simulator's folder of journals; None if they are elsewhere.
     """
     ids = [trial.record.trial_id for trial in study.history(pseudonym)]

@@ -64,9 +64,7 @@ class HowPlayed:
             resumed at another speed, the value farthest from 1.
         pace: Simulated seconds in a second by the clock, while the trial's own time runs: below
             `speed` if the simulator was held up, which no long wait hides.
-        pauses: How often it was paused.
         way_mm: Way of the tip by what moved it, a `MovedBy`.
-        feed_commands: Number of commands to feed drill or instrument.
         view_s: Time that each kind of view was looked at: `desktop`, `page`, `headset`.
     """
 
@@ -90,12 +88,7 @@ class HowPlayed:
         return self.way_mm.get(MovedBy.COMMANDS.value, 0.0) / way if way else 0.0
 
     def objections(self, mode: str, allows: Collection[str]) -> tuple[str, ...]:
-        """Return why the trial does not count for a step of a study, in words.
-
-        Args:
-            mode: Display mode of the step.
-            allows: The `Allowance`s of its protocol.
-        """
+        """Return why the trial does not count for a step of a study, in words."""
         return tuple(why for what, why in self._objections(mode) if what.value not in allows)
 
     def _objections(self, mode: str) -> Iterator[tuple[Allowance, str]]:

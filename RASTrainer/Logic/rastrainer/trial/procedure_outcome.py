@@ -137,13 +137,9 @@ class ProcedureScore:
     """The score of a procedure and its parts.
 
     Attributes:
-        score: above 0 up to 100.
         desirabilities: by measure: `time`, `target`, `entry`, `angle`, `plunge` and `distance`.
-        is_accurate: whether errors are within their limits.
         is_safe: whether no no-go structure is hit, and the drill stopped in time.
-        measures: what was scored.
         reference_s: duration of half the range of the time desirability.
-        version: of the formula and the references.
     """
 
     score: Annotated[float, number(0, 100)]
@@ -178,12 +174,7 @@ def reference_duration_s(touching_s: float, procedure: Procedure, self_aligned: 
 
 
 def score_procedure(measures: ProcedureMeasures, reference_s: float) -> ProcedureScore:
-    """Return the score of a procedure.
-
-    Args:
-        measures: what is scored of it.
-        reference_s: from `reference_duration_s`, above 0.
-    """
+    """Return the score of a procedure."""
     measures.check()
     desirabilities = {
         "time": of_time(measures.duration_s, reference_s),
@@ -264,8 +255,6 @@ def procedure_outcome(
     """Return the errors and the score of a trial's procedure; None for touches alone.
 
     Args:
-        record: the trial.
-        scenario: in which it was carried out.
         head_to_world: (4, 4) float, mm, the true pose.
         references: of the score of touches, by task, as a study's protocol sets them.
     """

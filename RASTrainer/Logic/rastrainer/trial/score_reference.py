@@ -186,10 +186,7 @@ def score_reference(
     protocol hold for fiducials.
 
     Args:
-        scenario: with the task.
-        task_name: of the task.
         of_protocol: references by task from a study's protocol, which take precedence.
-        method: by which the trial is registered.
     """
     is_by_fiducials = method is RegistrationMethod.FIDUCIALS
     if of_protocol and task_name in of_protocol and is_by_fiducials:

@@ -18,12 +18,7 @@ _VERSIONS = {"formatVersion": 1}
 
 @dataclass(frozen=True)
 class Curriculum:
-    """What a trainee should reach.
-
-    Attributes:
-        name: Short; `title` is for people.
-        assignments: In the order of listing; at least one.
-    """
+    """What a trainee should reach."""
 
     name: Annotated[str, identifier]
     title: Annotated[str, text(80)]

@@ -31,7 +31,6 @@ class CurriculumStanding:
     """A trainee's standing in a curriculum.
 
     Attributes:
-        standings: In the curriculum's order.
         played: Trials, each once however many assignments it counts for.
     """
 
@@ -89,7 +88,6 @@ def standing_in(
     """Return where a trainee stands.
 
     Args:
-        curriculum: That is meant.
         trials: Of the trainee, in order of starting; the score of one with a procedure is that of
             the procedure.
         pass_mark_of: The study's pass mark, for goals without their own mark.

@@ -37,10 +37,8 @@ class PostgresAddress:
 
     Attributes:
         host: name or number of its computer, or the folder of its socket on this one.
-        database: its name.
         user: the role; "" for the name of the system's user.
         port: None for 5432.
-        options: of libpq, such as `sslmode`.
     """
 
     host: str
@@ -208,12 +206,7 @@ class StudyUnreachableError(StudyBusyError):
 
 
 class StudyDatabase(ABC):
-    """A connection to a study; each process and thread may have one.
-
-    Attributes:
-        name: of the study, for reports.
-        place: where it is.
-    """
+    """A connection to a study; each process and thread may have one."""
 
     _connection: Any
     _open: tuple[Connection, bool] | None = None

@@ -101,7 +101,6 @@ class Study:
         """Open the study in a file or a database of PostgreSQL, or create one.
 
         Args:
-            place: Path of the file, or the database's address.
             lock_wait: For locks of others; half a minute by default.
             make_folder: Create a missing folder of the file, private to its user.
             must_exist: Refuse a place that holds no study yet.
@@ -226,9 +225,6 @@ class Study:
 
         Args:
             record: The trial, or its untrusted JSON object.
-            registrations: At most one of each kind.
-            target_errors: By kind of registration.
-            score: Our score of the trial.
             delivered: The original object, whose unknown keys are stored too.
 
         Raises:
@@ -374,8 +370,6 @@ class Study:
         """Store the truth that the simulator revealed; only the first one counts.
 
         Args:
-            trial_id: UUID of a stored trial.
-            true_tre_mm: True error at the scenario's target.
             head_to_world: 16 numbers row by row, RAS to `World`, mm.
         """
         what = "What the simulator reveals"

@@ -95,13 +95,8 @@ class StoredRegistration:
     """A stored registration of a trial.
 
     Attributes:
-        labels: Of the points in the fit.
         matrix: Row by row, `World` to RAS, mm.
-        residuals_mm: One for each label.
-        warnings: Each with `code`, `points` and `message`.
         target_mm: Target in RAS; None with the next two if the fit gives no target error.
-        expected_tre_mm: Expected error there.
-        tre_interval_mm: Its 95 % interval.
         common_bias_sd_mm: Standard deviation on each axis of the common offset included in both.
     """
 

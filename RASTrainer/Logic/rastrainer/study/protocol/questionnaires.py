@@ -38,9 +38,6 @@ class Questionnaire:
 
     Attributes:
         name: For files and protocols, such as "sus".
-        lowest, highest: Answers.
-        anchors: Their meaning, except for items with their own.
-        source: Publication of items and scoring.
         formula: From the checked answers to a score for each scale.
         marks_apart: Distance of the marks in a form; answers between them are valid too.
     """

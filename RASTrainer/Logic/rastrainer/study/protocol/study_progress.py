@@ -140,8 +140,6 @@ class StudyProgress:
         """Store that the next step was done and return the new progress.
 
         Args:
-            pseudonym: Of an enrolled trainee.
-            step: Name of the next step.
             details: `trialId` of a stored trial, `answers` of a questionnaire, or `minutes` of a
                 trial run or break.
         """

@@ -101,14 +101,11 @@ class StudyProtocol:
     """What every trainee of a study does.
 
     Attributes:
-        name: Short; `title` is for people.
-        modes: Conditions.
         mode_order, task_order: As listed, or balanced over the trainees.
         repetitions: How often each task is done in each mode, round by round.
         trial_run_min: Length of the trial run at the start of each mode; 0 for none.
         break_between_modes_min, break_between_tasks_min: At least so long; 0 for none.
         references: Of the score, by task; by default, the scenario's.
-        pass_mark: Score that passes; None for the default.
         guidance: To the next point; "" leaves it to the simulator's setting.
         ghost: For the trials; "" for none, even if the simulator's setting has one.
         tutorial: "" leaves it to the simulator's setting.
