@@ -180,7 +180,7 @@ def results_json(analysis: TrialAnalysis) -> dict[str, Any]:
         if procedure is None
         else {
             "score": record_to_json(procedure.score, with_defaults=True),
-            "trajectories": [each.to_json() for each in procedure.analysis.trajectories],
+            "trajectories": record_to_json(procedure.analysis)["trajectories"],
         },
         "feedback": list(analysis.feedback.sentences),
         "ctps": None

@@ -18,7 +18,6 @@ from rastrainer.json_records import record_from_json
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic.delivery_queue import AbortedTrialLogic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
-from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer_simulator.core.setup import load_setup
@@ -191,7 +190,7 @@ def test_trials_arrive_exactly_once_through_faults_and_restarts_on_both_sides(
         proxy.close()
         server.close()
     with Study.open(study) as opened:
-        stored = AbortedTrials(opened).of("T-001")
+        stored = opened.aborted("T-001")
     assert sorted(len(each.record.points) for each in stored) == list(range(1, TRIALS + 1))
     assert TrialArchive(records).unacknowledged() == ()
     assert find_unacknowledged(records) == []

@@ -146,7 +146,7 @@ def led(tmp_path_factory):
             procedure.command(CommandName.RELEASE_INSTRUMENT)
             leader.until(lambda: procedure.outcome is not None)
             seen["after"] = leader.slices()
-        seen["outcome"] = procedure.outcome
+        seen["outcome"], seen["true lines"] = procedure.outcome, procedure.lines
         seen["scene"] = session._scene
         seen["lines"] = {
             role: len(nodesOf(session._scene, LINE, role))
@@ -171,9 +171,9 @@ def test_the_procedure_is_registered_guided_and_scored_by_slicer(led):
     assert [answer for answer in led["answers"] if answer] == []
     assert record.procedure.procedure == PROCEDURE
     (errors,) = outcome.analysis.trajectories
-    assert errors.target.length_mm > 0.0
-    assert errors.entry.hand_mm < 0.1
-    assert errors.instrument.self_aligned
+    assert errors.target_point_error.mm > 0.0
+    assert errors.entry_point_error.by_hand_mm < 0.1
+    assert errors.self_aligned
     assert outcome.score.version == "procedure-1"
     assert led["lines"] == dict.fromkeys(led["lines"], 1)
 
@@ -197,14 +197,15 @@ def test_a_stored_trial_is_shown_again_with_its_lines(led):
     assert led["cleared"] == 0
     assert led["lines again"] == 1
     again, first = led["shown again"].analysis, led["outcome"].analysis
-    assert again.target_rms_mm == pytest.approx(first.target_rms_mm)
+    assert again.target_point_error_rms_mm == pytest.approx(first.target_point_error_rms_mm)
 
 
 def test_the_slices_follow_the_instrument_and_are_then_restored(led):
-    (errors,) = led["outcome"].analysis.trajectories
+    (line,) = led["true lines"]
+    shown = (line.shown[1] - line.shown[0]) / np.linalg.norm(line.shown[1] - line.shown[0])
     across = led["along"]["Red"][:3, 2]
-    assert abs(across @ errors.shown_direction) > 0.9999
+    assert abs(across @ shown) > 0.9999
     for name in ("Green", "Yellow"):
-        assert abs(led["along"][name][:3, 2] @ errors.shown_direction) < 0.01
+        assert abs(led["along"][name][:3, 2] @ shown) < 0.01
     for name, matrix in led["axial"].items():
         assert np.array_equal(led["after"][name][:3, :3], matrix[:3, :3])

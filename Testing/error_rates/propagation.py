@@ -157,11 +157,9 @@ class Bench:
             analysis = analyze_procedure(done, self.procedure, self.meshes, truth)
             known = stated_error(np.full(len(self.fiducials), fle_mm))
             expected += expected_tre(registration, aims, known, 0.0).tolist()
-            for errors in analysis.trajectories:
-                true.append(errors.target.length_mm)
-                interval = target_error(
-                    registration, errors.trajectory.target_ras, common_bias_sd_mm=0.0
-                ).interval_mm
+            for errors, aim in zip(analysis.trajectories, aims, strict=True):
+                true.append(errors.target_point_error.mm)
+                interval = target_error(registration, aim, common_bias_sd_mm=0.0).interval_mm
                 inside.append(interval[0] <= true[-1] <= interval[1])
             fre.append(registration.fre_mm)
             checks += shown.tolist()

@@ -13,7 +13,6 @@ from rastrainer.journal.journal_file import NO_LINE, encode_line, read_journal
 from rastrainer.json_records import record_from_json
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic.trial_logic import TrialLogic
-from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.journal_check import check_journal
 from rastrainer.study.protocol.study_progress import StudyProgress
@@ -72,7 +71,7 @@ def received(folder, port, scenario, **protocol):
     with Study.open(path) as study:
         ((name,),) = [[each.pseudonym for each in study.trainees()]]
         (trial,) = study.history(name)
-        (attempt,) = AbortedTrials(study).attempts(name)
+        (attempt,) = study.attempts(name)
     assert attempt.is_aborted == (trial.score is None)
     return trial.score, problems
 

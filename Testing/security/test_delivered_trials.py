@@ -11,7 +11,6 @@ from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic.delivery_queue import AbortedTrialLogic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
-from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from Testing.end_to_end.faulty_proxy import SlicerSide
 from Testing.end_to_end.finished_trials import COLIN, write_finished_trials
@@ -59,7 +58,7 @@ def stored(folder, trainee="T-001"):
     with Study.open(folder / "study.db") as study:
         if trainee not in {each.pseudonym for each in study.trainees()}:
             return set()
-        return {each.record.trial_id for each in AbortedTrials(study).of(trainee)}
+        return {each.record.trial_id for each in study.aborted(trainee)}
 
 
 @pytest.mark.parametrize("hello", [None, HELLO], ids=["without Hello", "as a client that scores"])

@@ -6,7 +6,6 @@ from rastrainer.errors import InputError
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.delivery_queue import MAX_WAITING, AbortedTrialLogic
-from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer_headless.connector import headlessKit
 from Testing.domain.trial.trial_records import make_aborted
@@ -66,7 +65,7 @@ def test_an_aborted_trial_is_stored_before_it_is_acknowledged(lab):
     lab.offer(make_aborted())
     lab.run_until(lambda: lab.acknowledged() == [TRIAL])
     with Study.open(lab.path) as study:
-        (stored,) = AbortedTrials(study).of("T-001")
+        (stored,) = study.aborted("T-001")
     assert stored.record == lab.kept[0]
 
 
@@ -75,7 +74,7 @@ def test_delivering_twice_stores_once(lab):
         lab.offer(make_aborted())
         lab.run_until(lambda count=count: len(lab.acknowledged()) == count)
     with Study.open(lab.path) as study:
-        assert len(AbortedTrials(study).of("T-001")) == 1
+        assert len(study.aborted("T-001")) == 1
 
 
 def test_an_unstorable_aborted_trial_is_reported_once_and_not_acknowledged(lab):
@@ -97,7 +96,7 @@ def test_aborted_trials_are_stored_before_anything_that_arrives_later(lab):
 
     def stored():
         with Study.open(lab.path) as study:
-            return len(AbortedTrials(study).of("T-001"))
+            return len(study.aborted("T-001"))
 
     found = []
     lab.work.do(stored, found.append)
@@ -141,4 +140,4 @@ def test_aborted_trials_beyond_the_queue_limit_wait_for_the_next_offer(lab):
         lab.run_until(lambda: not lab.logic._queue._waiting)
     lab.run_until(lambda: len(lab.kept) >= MAX_WAITING)
     with Study.open(lab.path) as study:
-        assert MAX_WAITING <= len(AbortedTrials(study).of("T-001")) <= len(offered)
+        assert MAX_WAITING <= len(study.aborted("T-001")) <= len(offered)

@@ -485,7 +485,7 @@ def test_a_trial_is_scored_beside_the_reference_group_and_exported(
     assert findNode(panels.scene, "vtkMRMLTableNode", Role.SCORE) is not None
     panels.answer("Export all trials", str(tmp_path / "all.csv"))
     with Study.open(study_path) as study:
-        study.set_consent("T-001", True)
+        study.change_trainee("T-001", consent=True)
     panels.press("exportScoresButton")
     assert len((tmp_path / "all.csv").read_text().splitlines()) == 3
     # The consent was given elsewhere, which the module notices sooner or later.
@@ -505,7 +505,7 @@ def test_the_report_of_those_who_consent_is_written_and_opened(
     panels.press("reportButton")
     assert "consented to research" in panels.messages[-1].text
     with Study.open(study_path) as study:
-        study.set_consent("T-001", True)
+        study.change_trainee("T-001", consent=True)
     panels.answer("Folder for the report", str(tmp_path / "report"))
     panels.press("reportButton")
     page = tmp_path / "report" / "report.html"
@@ -579,7 +579,7 @@ def test_deleting_a_trainee_leaves_no_trace_in_database_journals_and_later_expor
     (tmp_path / "later").mkdir()
     with Study.open(study_path) as study:
         for name in ("T-001", "other"):
-            study.set_consent(name, True)
+            study.change_trainee(name, consent=True)
         progress = StudyProgress(study)
         progress.set_protocol(read_study_protocol(PROTOCOL))
         progress.enroll("T-001")

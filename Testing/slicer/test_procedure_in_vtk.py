@@ -17,6 +17,7 @@ from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.procedure.record import ProcedureRecord, RecordedAttempt, UsedRegistration
 from rastrainer.registration.registration import register
 from rastrainer.study.database.values import StoredTrial
+from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.export.trial_files import write_slicer_files
 from Testing.domain.procedure.made_up_procedure import (
@@ -162,7 +163,8 @@ def carried_out(seed):
     )
     record["procedure"] = record_to_json(done)
     trial = record_from_json(TrialRecord, json.loads(json.dumps(record)))
-    stored = StoredTrial(trial, {}, None, None, tuple(head_to_world.ravel().tolist()))
+    truth = RevealedTruth(tuple(head_to_world.ravel().tolist()), 0.5)
+    stored = StoredTrial(trial, {}, truth=truth)
     return procedure, fiducials, stored
 
 
@@ -199,45 +201,50 @@ def test_vtk_and_slicer_compute_the_same_errors_from_the_exported_files(
         procedure, fiducials, stored = carried_out(seed)
         write_slicer_files(stored, tmp_path)
         exported = json.loads(json.dumps(record_to_json(stored.record)))
-        truth = np.reshape(stored.head_to_world, (4, 4))
+        truth = np.reshape(stored.truth.head_to_world, (4, 4))
         ours = analyze_procedure(stored.record.procedure, procedure, meshes, truth)
         targets = []
-        for number, errors in enumerate(ours.trajectories, start=1):
+        done = zip(ours.trajectories, stored.record.procedure.instruments, strict=True)
+        for number, (errors, instrument) in enumerate(done, start=1):
             lines = {
                 kind: SlicerLine(scene, tmp_path / f"trajectory-{number}-{kind}.mrk.json")
                 for kind in ("planned", "shown", "placed")
             }
             compare(errors, **lines)
             compare_registration(exported, fiducials, truth, lines)
-            compare_drill(errors, lines["placed"], skull)
+            compare_drill(errors, instrument, lines["placed"], skull)
             targets.append(distance(lines["placed"].end, lines["planned"].end))
             count += 1
         rms = math.sqrt(sum(target**2 for target in targets) / len(targets))
-        assert ours.target_rms_mm == pytest.approx(rms, abs=EQUAL)
+        assert ours.target_point_error_rms_mm == pytest.approx(rms, abs=EQUAL)
         scene.Clear(0)
     assert count > 1.5 * procedures
 
 
 def compare(errors, planned, shown, placed):
     tip, expected = placed.end, pytest.approx
-    assert errors.trajectory.length_mm == expected(planned.length, abs=EQUAL)
-    assert errors.instrument.instrument_depth_mm == expected(placed.length, abs=EQUAL)
-    assert errors.entry.length_mm == expected(off_line(planned.start, placed), abs=EQUAL)
-    assert errors.entry.hand_mm == expected(off_line(shown.start, placed), abs=EQUAL)
-    assert errors.target.length_mm == expected(distance(tip, planned.end), abs=EQUAL)
-    assert errors.target.registration_mm == expected(distance(shown.end, planned.end), abs=EQUAL)
-    assert errors.target.hand_mm == expected(distance(tip, shown.end), abs=EQUAL)
-    assert errors.radial.length_mm == expected(off_line(tip, planned), abs=EQUAL)
+    assert errors.entry_point_error.mm == expected(off_line(planned.start, placed), abs=EQUAL)
+    assert errors.entry_point_error.by_hand_mm == expected(off_line(shown.start, placed), abs=EQUAL)
+    assert errors.target_point_error.mm == expected(distance(tip, planned.end), abs=EQUAL)
+    assert errors.target_point_error.by_registration_mm == expected(
+        distance(shown.end, planned.end), abs=EQUAL
+    )
+    assert errors.target_point_error.by_hand_mm == expected(distance(tip, shown.end), abs=EQUAL)
+    assert errors.radial_error.mm == expected(off_line(tip, planned), abs=EQUAL)
     depths = (
         along(minus(tip, planned.end), planned),
         along(minus(shown.end, planned.end), planned),
         along(minus(tip, shown.end), planned),
     )
-    assert errors.depth == expected(depths, abs=EQUAL)
+    assert errors.depth_error_mm == expected(depths[0], abs=EQUAL)
+    assert errors.depth_error_by_registration_mm == expected(depths[1], abs=EQUAL)
+    assert errors.depth_error_by_hand_mm == expected(depths[2], abs=EQUAL)
     directions = planned.direction, shown.direction, placed.direction
-    assert errors.angle_deg == expected(angle(directions[0], directions[2]), abs=EQUAL)
-    assert errors.registration_angle_deg == expected(angle(*directions[:2]), abs=EQUAL)
-    assert errors.hand_angle_deg == expected(angle(*directions[1:]), abs=EQUAL)
+    assert errors.angular_deviation_deg == expected(angle(directions[0], directions[2]), abs=EQUAL)
+    assert errors.angular_deviation_by_registration_deg == expected(
+        angle(*directions[:2]), abs=EQUAL
+    )
+    assert errors.angular_deviation_by_hand_deg == expected(angle(*directions[1:]), abs=EQUAL)
 
 
 def compare_registration(exported, fiducials, truth, lines):
@@ -258,7 +265,7 @@ def compare_registration(exported, fiducials, truth, lines):
         assert there[:3] == pytest.approx(shown, abs=EQUAL)
 
 
-def compare_drill(errors, placed, skull):
+def compare_drill(errors, instrument, placed, skull):
     """Find both tables along the instrument by VTK."""
     far = [a + 3.0 * b for a, b in zip(placed.start, placed.direction, strict=True)]
     points = vtk.vtkPoints()
@@ -268,9 +275,9 @@ def compare_drill(errors, placed, skull):
         distance(placed.start, points.GetPoint(row)) for row in range(points.GetNumberOfPoints())
     )
     outer, inner = crossings[:2]
-    assert errors.bone.outer_mm == pytest.approx(outer, abs=EQUAL)
-    assert errors.bone.inner_mm == pytest.approx(inner, abs=EQUAL)
-    plunge = max(0.0, errors.instrument.drill_depth_mm - inner)
+    assert errors.outer_table_mm == pytest.approx(outer, abs=EQUAL)
+    assert errors.inner_table_mm == pytest.approx(inner, abs=EQUAL)
+    plunge = max(0.0, instrument.drill_depth_mm - inner)
     assert errors.plunge_mm == pytest.approx(plunge, abs=EQUAL)
 
 
@@ -284,21 +291,21 @@ def test_the_distance_kept_to_a_structure_is_that_of_vtk(meshes, seed):
     procedure = made_up_procedure(trajectory("Line", (0.0, 0.0, 90.0), target))
     ours = analyze_procedure(recorded(procedure, np.eye(4)), procedure, meshes, np.eye(4))
     (errors,) = ours.trajectories
-    begin, end = errors.axis_start, errors.tip
+    begin, end = np.array(errors.guide_tip_ras), np.array(errors.tip_ras)
     shares = np.linspace(0.0, 1.0, 200)
     for _ in range(2):
         places = [begin + share * (end - begin) for share in shares]
         best = int(np.argmin([to_vessel.EvaluateFunction(place) for place in places]))
         around = shares[max(0, best - 1)], shares[min(len(shares) - 1, best + 1)]
         least, shares = to_vessel.EvaluateFunction(places[best]), np.linspace(*around, 200)
-    radius = errors.instrument.diameter_mm / 2
+    radius = procedure.trajectories[0].diameter_mm / 2
     assert errors.kept_mm["Vessel"] + radius == pytest.approx(max(0.0, least), abs=1e-3)
-    assert errors.hits == (("Vessel",) if least <= radius else ())
+    assert ours.hits == ((("Line", "Vessel"),) if least <= radius else ())
 
 
 def test_before_the_truth_is_known_only_the_plan_is_exported(tmp_path):
     _procedure, _fiducials, stored = carried_out(0)
-    written = write_slicer_files(replace(stored, head_to_world=None), tmp_path)
+    written = write_slicer_files(replace(stored, truth=None), tmp_path)
     lines = [path.name for path in written if path.name.startswith("trajectory")]
     assert lines == [f"trajectory-{row + 1}-planned.mrk.json" for row in range(len(lines))]
     assert len(lines) == len(stored.record.procedure.instruments)

@@ -8,7 +8,7 @@ from coloraide import Color
 from vtk.util.numpy_support import vtk_to_numpy
 
 from rastrainer import transforms
-from rastrainer.procedure.errors import analyze_procedure
+from rastrainer.procedure.errors import analyze_procedure, true_lines
 from rastrainer.slicer.scene.nodes import Role, findNode, nodesOf, worldPoints
 from rastrainer.slicer.scene.procedure_lines import (
     LINE,
@@ -34,11 +34,11 @@ def analysis():
     done = recorded(procedure, truth @ off, depth=60.0)
     first, *others = done.instruments
     done = replace(done, instruments=(replace(first, self_aligned=True), *others))
-    return procedure, analyze_procedure(done, procedure, made_up_meshes(), truth)
+    return analyze_procedure(done, procedure, made_up_meshes(), truth), true_lines(done, truth)
 
 
 def test_each_meaning_has_one_color_in_slicer_and_in_the_simulators_views(headless_scene, analysis):
-    showProcedureErrors(headless_scene.scene, analysis[1])
+    showProcedureErrors(headless_scene.scene, *analysis)
     for role, tone in zip(ROLES, (PLANNED, SHOWN, PLACED), strict=True):
         color = nodesOf(headless_scene.scene, LINE, role)[0].GetDisplayNode().GetSelectedColor()
         assert color == pytest.approx(Color(TONES[tone]).coords(), abs=1e-3)
@@ -67,13 +67,15 @@ def check(scene, found):
         for cause, length in split.items():
             in_table = column(scene, f"target point error, by {cause} (mm)")[row]
             assert in_table == pytest.approx(length, abs=1e-4)
-        assert np.linalg.norm(shown[1] - shown[0]) == pytest.approx(errors.trajectory.length_mm)
+        assert np.linalg.norm(shown[1] - shown[0]) == pytest.approx(
+            np.linalg.norm(plan[1] - plan[0])
+        )
         assert column(scene, "plunge depth (mm)")[row] == pytest.approx(errors.plunge_mm, abs=1e-3)
 
 
 def test_the_lines_in_a_scene_have_the_errors_shown_in_its_table(headless_scene, analysis):
-    scene, found = headless_scene.scene, analysis[1]
-    showProcedureErrors(scene, found)
+    scene, found = headless_scene.scene, analysis[0]
+    showProcedureErrors(scene, *analysis)
     check(scene, found)
     aligned = findNode(scene, "vtkMRMLTableNode", Role.PROCEDURE_ERRORS).GetTable()
     first, second = map(aligned.GetColumnByName("aligned by").GetValue, (0, 1))
@@ -86,19 +88,19 @@ def test_the_lines_in_a_scene_have_the_errors_shown_in_its_table(headless_scene,
 def test_the_arrows_show_the_registration_error_then_the_hand_error_true_to_scale(
     headless_scene, analysis
 ):
-    scene, found = headless_scene.scene, analysis[1]
-    showProcedureErrors(scene, found)
+    scene, found = headless_scene.scene, analysis[0]
+    showProcedureErrors(scene, *analysis)
     by_registration, by_hand = (
         findNode(scene, MODEL, role).GetPolyData()
         for role in (Role.ERRORS_BY_REGISTRATION, Role.ERRORS_BY_HAND)
     )
-    for errors in found.trajectories:
-        target, shown = errors.trajectory.target_ras, errors.shown_target
+    for errors, line in zip(found.trajectories, analysis[1], strict=True):
+        target, shown = line.planned[1], line.shown[1]
         for data, place in (
             (by_registration, target),
             (by_registration, shown),
             (by_hand, shown),
-            (by_hand, errors.tip),
+            (by_hand, errors.tip_ras),
         ):
             points = vtk_to_numpy(data.GetPoints().GetData())
             assert np.linalg.norm(points - place, axis=1).min() < 0.3
@@ -107,19 +109,19 @@ def test_the_arrows_show_the_registration_error_then_the_hand_error_true_to_scal
 def test_everything_is_still_there_in_a_saved_and_reopened_scene(
     headless_scene, analysis, tmp_path
 ):
-    showProcedureErrors(headless_scene.scene, analysis[1])
+    showProcedureErrors(headless_scene.scene, *analysis)
     headless_scene.save(tmp_path / "procedure.mrb")
     headless_scene.load(tmp_path / "procedure.mrb")
-    check(headless_scene.scene, analysis[1])
+    check(headless_scene.scene, analysis[0])
     assert findNode(headless_scene.scene, MODEL, Role.ERRORS_BY_HAND).GetPolyData() is not None
     # When it is shown again, nothing is duplicated.
-    showProcedureErrors(headless_scene.scene, analysis[1])
-    check(headless_scene.scene, analysis[1])
+    showProcedureErrors(headless_scene.scene, *analysis)
+    check(headless_scene.scene, analysis[0])
 
 
 def test_another_plan_replaces_lines_and_errors(headless_scene, analysis):
-    scene, procedure = headless_scene.scene, analysis[0]
-    showProcedureErrors(scene, analysis[1])
+    scene, procedure = headless_scene.scene, made_up_procedure()
+    showProcedureErrors(scene, *analysis)
     other = made_up_procedure(trajectory("Only", (0.0, 0.0, 90.0), (0.0, 5.0, 10.0)))
     showPlannedLines(scene, other)
     assert [node.GetName() for node in nodesOf(scene, LINE, Role.PLANNED_LINE)] == ["Only"]

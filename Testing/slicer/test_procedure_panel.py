@@ -9,7 +9,7 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.igtl.content import String
-from rastrainer.procedure.errors import analyze_procedure
+from rastrainer.procedure.errors import analyze_procedure, true_lines
 from rastrainer.protocol import DeviceName
 from rastrainer.trial.procedure_outcome import ProcedureMeasures, ProcedureOutcome, score_procedure
 from Testing.domain.procedure.made_up_procedure import made_up_meshes, made_up_procedure
@@ -146,10 +146,12 @@ def test_the_errors_are_shown_with_the_shares_of_registration_and_hand(host):
     session = host.widget.logic.session
     procedure = made_up_procedure()
     off = transforms.rigid(np.eye(3), np.array([0.0, 1.5, 0.0]))
-    analysis = analyze_procedure(recorded(procedure, off), procedure, made_up_meshes(), np.eye(4))
+    done = recorded(procedure, off)
+    analysis = analyze_procedure(done, procedure, made_up_meshes(), np.eye(4))
     session.procedure.outcome = ProcedureOutcome(
-        analysis, score_procedure(ProcedureMeasures.of(analysis), 300.0)
+        analysis, score_procedure(ProcedureMeasures.of(analysis, procedure), 300.0)
     )
+    session.procedure.lines = tuple(true_lines(done, np.eye(4)))
     session.procedure.changed.emit()
     host.unfold("procedureErrorsTable")
     table = host.find("procedureErrorsTable")

@@ -11,7 +11,6 @@ from rastrainer.json_records import record_from_json
 from rastrainer.protocol import StepKind
 from rastrainer.slicer.logic.study_logic import StudyLogic
 from rastrainer.slicer.logic.trainee_logic import TraineeLogic
-from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import moment
 from rastrainer.study.protocol.study_progress import StudyProgress
@@ -429,7 +428,7 @@ def test_the_simulator_waits_until_an_aborted_trial_has_its_reason(enrolled):
     step = enrolled.logic.progress().next_step
     started = datetime.now(timezone.utc).isoformat()
     aborted = make_aborted(trainee="T001", mode=step.mode, task=step.task, startedUtc=started)
-    AbortedTrials(enrolled.trainees.study).add(aborted)
+    enrolled.trainees.study.add_aborted(aborted)
     enrolled.logic.countTrial(record_from_json(AbortedTrial, aborted))
     room = enrolled.room
     room.run_until(lambda: sent_step(enrolled).get("kind") == "repeat")

@@ -8,7 +8,6 @@ import pytest
 
 from rastrainer.json_records import record_from_json
 from rastrainer.protocol import StepKind
-from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.questionnaires import SSQ
 from rastrainer.study.protocol.study_progress import StudyProgress
@@ -145,7 +144,7 @@ def test_an_aborted_trial_is_played_again_only_with_a_reason(begun):
         trainee="T001", mode=step.mode, task=step.task, startedUtc=started, touches=15
     )
     with Study.open(begun.find("studyPathLineEdit").currentPath) as study:
-        AbortedTrials(study).add(record)
+        study.add_aborted(record)
     begun.widget.logic.session.aborted.kept.emit(record_from_json(AbortedTrial, record))
     begun.process_events()
     assert "aborted with 15 of 15 points touched" in begun.text("stepText")
@@ -158,5 +157,5 @@ def test_an_aborted_trial_is_played_again_only_with_a_reason(begun):
     assert begun.find("startStepButton").visible
     assert not begun.find("repeatStepButton").visible
     with Study.open(begun.find("studyPathLineEdit").currentPath) as study:
-        (stored,) = AbortedTrials(study).of("T001")
+        (stored,) = study.aborted("T001")
     assert stored.repeat_reason == "the tracking of the headset was lost"

@@ -156,7 +156,7 @@ def test_the_learning_curve_plot_begins_at_zero_and_includes_every_trial(scene, 
 
 def test_true_and_expected_errors_of_all_trainees_are_a_table_and_a_plot(scene, logic, add_trial):
     trials = [add_trial(number, trainee=name) for number, name in ((1, "a"), (2, "b"), (30, "a"))]
-    logic.study.set_archived("b", True)
+    logic.study.change_trainee("b", archived=True)
     found = logic.calibration()
     assert [point.true_mm for point in found.points if not point.is_inside] == [6.0]
     chart = showCalibration(scene, found)
@@ -249,7 +249,7 @@ def test_the_score_of_a_procedure_is_shown_beside_that_of_the_touches(logic, add
     assert rows["Score of the procedure"].value == dbs.score.score
     assert rows["Score of the procedure"].note == "Version procedure-1"
     assert rows["… target point error"].note == "registration 0.50 mm, hand 1.20 mm"
-    assert rows["… target point error"].value == dbs.analysis.target_rms_mm
+    assert rows["… target point error"].value == dbs.analysis.target_point_error_rms_mm
 
 
 def test_a_trial_is_compared_with_the_trainees_own_others_and_a_reference_group(logic, add_trial):

@@ -128,7 +128,7 @@ def test_a_finished_trial_and_its_truth_are_stored_acknowledged_and_scored(lab, 
     assert stored.score.score == lab.sent("TrialScored")[0]["score"]
     assert stored.true_tre_mm == lab.scored[0].truth.true_tre_mm
     expected = lab.scenario.perturbed_head_to_world(SEED)
-    np.testing.assert_allclose(np.reshape(stored.head_to_world, (4, 4)), expected)
+    np.testing.assert_allclose(np.reshape(stored.truth.head_to_world, (4, 4)), expected)
 
 
 def test_the_trial_is_shown_in_the_scene(lab, make_record):

@@ -284,16 +284,18 @@ def procedure_summary(record: TrialRecord, scenario: Scenario, head_to_world: np
     """
     outcome = procedure_outcome(record, scenario, head_to_world)
     assert outcome is not None, "the trial has a procedure"
-    procedure = scenario.procedure(outcome.analysis.record.procedure)
+    procedure = scenario.procedure(outcome.analysis.procedure)
     lines = [f"{procedure.title}, errors by registration and by hand or robot in brackets"]
     for each in outcome.analysis.trajectories:
-        who = "the robot" if each.instrument.self_aligned else "hand"
-        lines.append(f"  {each.trajectory.name}, aligned by {who}")
-        for name, error in (("Target point error", each.target), ("Entry point error", each.entry)):
-            parts = f"({error.registration_mm:.2f} and {error.hand_mm:.2f})"
-            lines.append(_line(f"  {name}", error.length_mm, f"mm {parts}"))
-        parts = f"({each.registration_angle_deg:.2f} and {each.hand_angle_deg:.2f})"
-        lines.append(_line("  Angular deviation", each.angle_deg, f"° {parts}"))
+        who = "the robot" if each.self_aligned else "hand"
+        lines.append(f"  {each.trajectory}, aligned by {who}")
+        errors = each.target_point_error, each.entry_point_error
+        for name, error in zip(("Target point error", "Entry point error"), errors, strict=True):
+            parts = f"({error.by_registration_mm:.2f} and {error.by_hand_mm:.2f})"
+            lines.append(_line(f"  {name}", error.mm, f"mm {parts}"))
+        by_registration = each.angular_deviation_by_registration_deg
+        parts = f"({by_registration:.2f} and {each.angular_deviation_by_hand_deg:.2f})"
+        lines.append(_line("  Angular deviation", each.angular_deviation_deg, f"° {parts}"))
         lines.append(_line("  Plunge depth", each.plunge_mm or 0.0, "mm"))
     lines.append(_line("Score of the procedure", outcome.score.score, "of 100"))
     return "\n".join(lines)

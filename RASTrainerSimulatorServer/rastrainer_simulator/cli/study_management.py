@@ -9,7 +9,7 @@ from itertools import zip_longest
 from rastrainer.errors import InputError
 from rastrainer.number_text import counted
 from rastrainer.study.database.database import Connection
-from rastrainer.study.database.schema import Table, study_tables
+from rastrainer.study.database.schema import TABLES, Table
 from rastrainer.study.database.study import Study
 from rastrainer.study.trainee_data import erase_trainee
 from rastrainer_simulator.cli import arg
@@ -39,18 +39,18 @@ def copy_study(source: Study, target: Study) -> dict[str, int]:
     """
     counts = {}
     with source.database.reading() as given, target.database.writing() as taken:
-        for table in study_tables():
+        for table in TABLES.values():
             if table.name != COUNTER and _count(taken, table):
                 raise InputError("The study to copy to holds something; choose an empty one.")
         taken.execute(f"DELETE FROM {COUNTER}")
-        for table in study_tables():
+        for table in TABLES.values():
             marks = ", ".join("?" * len(table.columns))
             taken.executemany(
                 f"INSERT INTO {table.name} ({', '.join(table.columns)}) VALUES ({marks})",
                 _rows(given, table),
             )
         target.database.continue_numbers()
-        for table in study_tables():
+        for table in TABLES.values():
             pairs = zip_longest(_rows(given, table), _rows(taken, table))
             if any(tuple(before or ()) != tuple(after or ()) for before, after in pairs):
                 raise InputError(f"The table {table.name} was not copied as it is; nothing is.")

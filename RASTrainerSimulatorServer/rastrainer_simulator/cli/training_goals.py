@@ -20,7 +20,6 @@ from rastrainer.study.curriculum.standing import (
     short_progress_of,
     title_of,
 )
-from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import protocol_text, read_study_protocol
 from rastrainer.trial.trial_feedback import PastTrial
@@ -83,7 +82,7 @@ def compute_pass_mark(arguments: argparse.Namespace) -> int:
         aborted = sum(
             attempt.is_aborted
             for pseudonym in {*arguments.novices, *arguments.experts}
-            for attempt in AbortedTrials(opened).attempts(pseudonym)
+            for attempt in opened.attempts(pseudonym)
         )
     method = _method(counted)
     novices, experts = (

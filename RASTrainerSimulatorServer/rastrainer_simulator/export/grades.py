@@ -32,7 +32,6 @@ def grade(
         trials: scored ones of one trainee, in order of starting.
         task, mode: of the trials that count; None for any.
         method: of their registration: scores of different methods are not compared.
-        rule: which of them counts, one of `RULES`.
     """
     scores = [
         trial.score

@@ -24,6 +24,7 @@ from rastrainer.files.point_list import PointList
 from rastrainer.files.writing import make_empty_folder, make_folder, write_json, write_text
 from rastrainer.motion.trajectory import Trajectory, resample
 from rastrainer.motion.trial_motion import RATE_HZ
+from rastrainer.procedure.errors import true_lines
 from rastrainer.registration.fits import RIGID
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.study_data import StudyData, TrialRow
@@ -45,8 +46,6 @@ def write_motion_bids(data: StudyData, folder: Path, find_trajectory: FindTrajec
     """Write the dataset and return the number of trials in it.
 
     Args:
-        data: The study.
-        folder: Target; must be empty or missing.
         find_trajectory: Returns the trajectory of a trial's UUID, or None.
     """
     make_empty_folder(folder)
@@ -246,19 +245,15 @@ def _write_trace(trial: StoredTrial, folder: Path, matrix: np.ndarray | None) ->
 def _write_lines(trial: StoredTrial, folder: Path) -> list[Path]:
     """Write the lines of the trial's procedure, if it has one."""
     procedure, written = trial.record.procedure, []
-    for number, one in enumerate(procedure.instruments if procedure else (), start=1):
-        planned = np.array([one.entry_ras, one.target_ras])
-        lines = {"planned": planned}
-        if trial.head_to_world is not None and procedure is not None:
-            to_ras = transforms.inverse(np.reshape(trial.head_to_world, (4, 4)))
-            to_world = transforms.inverse(procedure.accepted.world_to_head)
-            placed = [one.guide_tip_mm, one.at_depth(one.instrument_depth_mm)]
-            lines["shown"] = transforms.apply(to_ras @ to_world, planned)
-            lines["placed"] = transforms.apply(to_ras, np.array(placed))
-        for kind, ends in lines.items():
+    truth = np.eye(4) if trial.truth is None else trial.truth.matrix
+    lines = () if procedure is None else true_lines(procedure, truth)
+    for number, line in enumerate(lines, start=1):
+        kinds = ("planned",) if trial.truth is None else ("planned", "shown", "placed")
+        for kind in kinds:
             path = folder / f"trajectory-{number}-{kind}.mrk.json"
             labels = ("guide", "tip") if kind == "placed" else ("entry", "target")
-            write_line(path, f"{one.trajectory} ({kind})", PointList(labels, ends))
+            points = PointList(labels, getattr(line, kind))
+            write_line(path, f"{line.trajectory} ({kind})", points)
             written.append(path)
     return written
 

@@ -60,7 +60,6 @@ class RatingWork:
         return sum(self._open_of(marks) is None for marks in self._marks.values())
 
     def give(self, mark: int) -> None:
-        """Give the open domain a mark from 1 to 5."""
         if self.open_domain is not None:
             form, domain = self.open_domain
             self._store_mark(form, domain.name, mark)

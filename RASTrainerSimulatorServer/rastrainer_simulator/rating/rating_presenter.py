@@ -34,10 +34,7 @@ class RatingPresenter(Presenter):
     """The presenter for one rater: replays under numbers, and the pages of the forms over them.
 
     Attributes:
-        work: what is marked.
-        texts: in the chosen language.
         pages: which are open; none while a replay is watched.
-        shown: the states that the views show.
     """
 
     def __init__(
@@ -51,10 +48,7 @@ class RatingPresenter(Presenter):
         """Begin with a replay.
 
         Args:
-            work: what is marked; its present replay is `first`.
-            first: a playback of that trial.
             load: begins to load the playback of a trial, by its UUID.
-            language: BCP 47 tag.
             end: called when the rater leaves.
         """
         super().__init__()

@@ -10,8 +10,7 @@ import numpy as np
 from markupsafe import Markup
 
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.study.database.aborted_trials import StoredAbortedTrial
-from rastrainer.study.database.values import moment
+from rastrainer.study.database.values import StoredAbortedTrial, moment
 from rastrainer.study.outcomes import mode_title, short_mode_title, task_title
 from rastrainer.study.protocol.study_protocol import pass_mark_of
 from rastrainer.study.study_data import StudyData, TrialRow

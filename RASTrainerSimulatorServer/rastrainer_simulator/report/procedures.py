@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -10,9 +10,10 @@ import numpy as np
 from markupsafe import Markup
 
 from rastrainer.number_text import fixed
-from rastrainer.study.database.values import StoredProcedure
+from rastrainer.procedure.errors import TrajectoryErrors
 from rastrainer.study.study_data import StudyData, TrialRow
 from rastrainer.trial import procedure_outcome
+from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer_simulator.report import charts
 from rastrainer_simulator.report.page import render
 from rastrainer_simulator.statistics.intervals import mean
@@ -31,8 +32,8 @@ PHASES = {
     "inserting": "inserting",
 }
 """Title of each phase."""
-TARGET = "targetPointError"
-WHOLE, BY_REGISTRATION, BY_HAND = "mm", "byRegistrationMm", "byHandMm"
+TARGET = "target_point_error"
+WHOLE, BY_REGISTRATION, BY_HAND = "mm", "by_registration_mm", "by_hand_mm"
 """Length of an error, and of its parts."""
 LEAST_TRAINEES = 3
 """Fewer say nothing about others."""
@@ -44,27 +45,28 @@ class ProcedureGroup:
 
     Attributes:
         done: Trials that continued with one.
-        lines: The errors of all their trajectories, as `TrajectoryErrors.to_json`.
+        lines: The errors of all their trajectories.
     """
 
-    done: tuple[tuple[TrialRow, StoredProcedure], ...]
-    lines: tuple[Mapping[str, Any], ...]
+    done: tuple[tuple[TrialRow, ProcedureOutcome], ...]
+    lines: tuple[TrajectoryErrors, ...]
 
     @classmethod
     def of(
-        cls, done: Sequence[tuple[TrialRow, StoredProcedure]], name: str = "", kind: str = ""
+        cls, done: Sequence[tuple[TrialRow, ProcedureOutcome]], name: str = "", kind: str = ""
     ) -> ProcedureGroup:
         """Return the group of all procedures, of a trainee's, or of those of one kind."""
         own = tuple(
             (trial, found)
             for trial, found in done
-            if name in ("", trial.trainee) and kind in ("", found.kind)
+            if name in ("", trial.trainee) and kind in ("", found.analysis.kind)
         )
-        return cls(own, tuple(line for _trial, found in own for line in found.trajectories))
+        lines = (line for _trial, found in own for line in found.analysis.trajectories)
+        return cls(own, tuple(lines))
 
     def lengths(self, error: str, part: str = WHOLE) -> np.ndarray:
         """Return lengths of an error, or of one of its parts, one per trajectory, mm."""
-        return np.array([line[error][part] for line in self.lines])
+        return np.array([getattr(getattr(line, error), part) for line in self.lines])
 
     def rms_text(self, error: str, part: str = WHOLE) -> str:
         return fixed(_rms(self.lengths(error, part)), 2) if self.lines else "–"
@@ -83,11 +85,11 @@ class ProcedureGroup:
     @property
     def angles_rms(self) -> float:
         """RMS of the angular deviations, degrees."""
-        return _rms(np.array([line["angularDeviationDeg"] for line in self.lines]))
+        return _rms(np.array([line.angular_deviation_deg for line in self.lines]))
 
     @property
     def deepest_plunge_mm(self) -> float:
-        return max((line["plungeMm"] or 0.0 for line in self.lines), default=0.0)
+        return max((line.plunge_mm or 0.0 for line in self.lines), default=0.0)
 
     @property
     def acceptable(self) -> int:
@@ -101,7 +103,7 @@ class ProcedureGroup:
     @property
     def kept_mm(self) -> list[float]:
         """Least distances of instruments from no-go structures; 0 or less is a hit."""
-        return [distance for line in self.lines for distance in line["keptMm"].values()]
+        return [distance for line in self.lines for distance in line.kept_mm.values()]
 
     @property
     def hits(self) -> int:
@@ -117,21 +119,19 @@ class ProcedureGroup:
     def mean_times_s(self) -> list[float]:
         """Mean time of the whole trial, and of each of `PHASES`."""
         analyses = [found.analysis for _trial, found in self.done]
-        whole = [analysis["durationS"] for analysis in analyses]
+        whole = [analysis.duration_s for analysis in analyses]
         phases = [
-            [analysis["phaseTimesS"].get(phase, 0.0) for analysis in analyses] for phase in PHASES
+            [analysis.phase_times_s.get(phase, 0.0) for analysis in analyses] for phase in PHASES
         ]
         return [float(np.mean(times)) for times in (whole, *phases)]
 
     @property
     def alignments_a_line(self) -> float:
-        return sum(found.analysis["alignments"] for _trial, found in self.done) / len(self.lines)
+        return sum(found.analysis.alignments for _trial, found in self.done) / len(self.lines)
 
     def aligned_by(self, *, robot: bool) -> ProcedureGroup:
         """Return the same with only the lines on which the robot, or a hand, aligned the guide."""
-        return replace(
-            self, lines=tuple(line for line in self.lines if line["selfAligned"] is robot)
-        )
+        return replace(self, lines=tuple(line for line in self.lines if line.self_aligned is robot))
 
 
 def procedures(data: StudyData) -> Markup:

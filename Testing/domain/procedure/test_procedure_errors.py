@@ -8,8 +8,10 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
+from rastrainer.json_records import record_to_json
 from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.registration.registration import register
+from rastrainer.trial.procedure_outcome import ProcedureMeasures
 from Testing.domain.procedure.made_up_procedure import (
     VESSEL_MM,
     made_up_meshes,
@@ -39,6 +41,23 @@ def analyzed(shown=TRUTH, lines=(DOWN,), **changes):
     return analyze_procedure(record, procedure, MESHES, TRUTH)
 
 
+def depths(errors):
+    return (
+        errors.depth_error_mm,
+        errors.depth_error_by_registration_mm,
+        errors.depth_error_by_hand_mm,
+    )
+
+
+def whole(error):
+    return np.add(error.by_registration_ras, error.by_hand_ras)
+
+
+def placed(shown=TRUTH):
+    """The instrument of steady hands by a registration."""
+    return recorded(made_up_procedure(DOWN), shown).instruments[0]
+
+
 def only(analysis):
     (errors,) = analysis.trajectories
     return errors
@@ -46,54 +65,58 @@ def only(analysis):
 
 def test_steady_hands_and_an_exact_registration_make_no_error():
     errors = only(analyzed())
-    for length in (errors.entry.length_mm, errors.target.length_mm, errors.radial.length_mm):
+    for length in (
+        errors.entry_point_error.mm,
+        errors.target_point_error.mm,
+        errors.radial_error.mm,
+    ):
         assert length == pytest.approx(0.0, abs=1e-9)
-    assert errors.angle_deg == pytest.approx(0.0, abs=1e-9)
-    assert errors.tip == pytest.approx(DOWN.target_ras, abs=1e-9)
+    assert errors.angular_deviation_deg == pytest.approx(0.0, abs=1e-9)
+    assert errors.tip_ras == pytest.approx(DOWN.target_ras, abs=1e-9)
 
 
 def test_a_sideways_registration_error_is_attributed_to_the_registration_and_not_to_the_hand():
     errors = only(analyzed(shifted(x=2.0)))
-    assert errors.target.by_registration == pytest.approx([2.0, 0.0, 0.0], abs=1e-9)
-    assert errors.target.by_hand == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
-    assert (errors.entry.length_mm, errors.radial.length_mm) == pytest.approx((2.0, 2.0))
-    assert errors.depth == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
+    assert errors.target_point_error.by_registration_ras == pytest.approx([2.0, 0.0, 0.0], abs=1e-9)
+    assert errors.target_point_error.by_hand_ras == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
+    assert (errors.entry_point_error.mm, errors.radial_error.mm) == pytest.approx((2.0, 2.0))
+    assert depths(errors) == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
 
 
 def test_a_registration_error_along_the_line_changes_the_depth_and_not_the_entry():
     errors = only(analyzed(shifted(z=-1.5)))
-    assert errors.depth == pytest.approx((1.5, 1.5, 0.0), abs=1e-9)
-    assert errors.entry.length_mm == pytest.approx(0.0, abs=1e-9)
-    assert errors.entry.hand_mm == pytest.approx(0.0, abs=1e-9)
+    assert depths(errors) == pytest.approx((1.5, 1.5, 0.0), abs=1e-9)
+    assert errors.entry_point_error.mm == pytest.approx(0.0, abs=1e-9)
+    assert errors.entry_point_error.by_hand_mm == pytest.approx(0.0, abs=1e-9)
 
 
 def test_an_instrument_not_inserted_far_enough_has_a_negative_depth_error():
-    deep = only(analyzed()).instrument.instrument_depth_mm
+    deep = placed().instrument_depth_mm
     errors = only(analyzed(instrument_depth_mm=deep - 3.0))
-    assert errors.depth == pytest.approx((-3.0, 0.0, -3.0), abs=1e-9)
-    assert errors.target.length_mm == pytest.approx(3.0)
-    assert errors.radial.length_mm == pytest.approx(0.0, abs=1e-9)
+    assert depths(errors) == pytest.approx((-3.0, 0.0, -3.0), abs=1e-9)
+    assert errors.target_point_error.mm == pytest.approx(3.0)
+    assert errors.radial_error.mm == pytest.approx(0.0, abs=1e-9)
 
 
 def test_a_rotated_guide_has_an_angular_deviation_caused_by_the_hand():
-    exact = only(analyzed()).instrument
+    exact = placed()
     turn = np.radians(2.0)
     turned = TRUTH[:3, :3] @ np.array([np.sin(turn), 0.0, -np.cos(turn)])
     errors = only(analyzed(guide_direction=tuple(turned.tolist())))
-    assert errors.angle_deg == pytest.approx(2.0)
-    assert errors.hand_angle_deg == pytest.approx(2.0)
-    assert errors.registration_angle_deg == pytest.approx(0.0, abs=1e-9)
-    assert errors.entry.length_mm == pytest.approx(30.0 * np.sin(turn))
+    assert errors.angular_deviation_deg == pytest.approx(2.0)
+    assert errors.angular_deviation_by_hand_deg == pytest.approx(2.0)
+    assert errors.angular_deviation_by_registration_deg == pytest.approx(0.0, abs=1e-9)
+    assert errors.entry_point_error.mm == pytest.approx(30.0 * np.sin(turn))
     depth = exact.instrument_depth_mm
-    assert errors.radial.length_mm == pytest.approx(depth * np.sin(turn))
-    assert errors.depth[0] == pytest.approx(-depth * (1 - np.cos(turn)))
+    assert errors.radial_error.mm == pytest.approx(depth * np.sin(turn))
+    assert errors.depth_error_mm == pytest.approx(-depth * (1 - np.cos(turn)))
 
 
 @pytest.mark.parametrize("seed", range(30))
 def test_the_shares_of_registration_and_hand_add_up_exactly(seed):
     random = np.random.default_rng(seed)
     off = transforms.rigid(rotation(random, 4.0), random.normal(0.0, 2.0, 3))
-    tip = np.array(only(analyzed(TRUTH @ off)).instrument.guide_tip_mm)
+    tip = np.array(placed(TRUTH @ off).guide_tip_mm)
     errors = only(
         analyzed(
             TRUTH @ off,
@@ -102,19 +125,20 @@ def test_the_shares_of_registration_and_hand_add_up_exactly(seed):
         )
     )
     there = transforms.apply(transforms.inverse(TRUTH), tip)
-    assert not np.allclose(errors.axis_start, there)
-    whole = errors.tip - DOWN.target_ras
-    assert errors.target.whole == pytest.approx(whole, abs=1e-9)
+    assert not np.allclose(errors.guide_tip_ras, there)
+    reached = errors.tip_ras - DOWN.target_ras
+    assert whole(errors.target_point_error) == pytest.approx(reached, abs=1e-9)
     shown = transforms.apply(off, DOWN.target_ras)
-    assert errors.target.by_registration == pytest.approx(shown - DOWN.target_ras, abs=1e-9)
-    depth, registration, hand = errors.depth
-    assert depth == pytest.approx(registration + hand)
-    assert errors.target.length_mm == pytest.approx(np.hypot(errors.radial.length_mm, depth))
-    assert errors.radial.whole == pytest.approx(
-        errors.radial.by_registration + errors.radial.by_hand
+    assert errors.target_point_error.by_registration_ras == pytest.approx(
+        shown - DOWN.target_ras, abs=1e-9
     )
-    parts = errors.registration_angle_deg, errors.hand_angle_deg
-    assert abs(parts[0] - parts[1]) - 1e-9 <= errors.angle_deg <= sum(parts) + 1e-9
+    depth, registration, hand = depths(errors)
+    assert depth == pytest.approx(registration + hand)
+    assert errors.target_point_error.mm == pytest.approx(np.hypot(errors.radial_error.mm, depth))
+    radial = errors.radial_error
+    assert radial.mm == pytest.approx(np.linalg.norm(whole(radial)))
+    parts = errors.angular_deviation_by_registration_deg, errors.angular_deviation_by_hand_deg
+    assert abs(parts[0] - parts[1]) - 1e-9 <= errors.angular_deviation_deg <= sum(parts) + 1e-9
 
 
 def test_plunging_is_measured_from_the_inner_table_of_the_true_skull():
@@ -138,35 +162,36 @@ def test_an_axis_that_misses_the_skull_has_no_plunge_and_is_named():
 def test_the_distance_kept_from_a_structure_is_that_of_the_true_instrument(x, kept, hits):
     """The plan passes the vessel (at 30 mm) in the midline; the registration moves it there."""
     line = trajectory(target=(0, 0, -20))
-    errors = only(analyzed(shifted(x=-x), lines=(line,)))
-    assert errors.kept_mm["Vessel"] == pytest.approx(kept, abs=0.1)
-    assert errors.hits == hits
-    assert errors.intrusion_mm == pytest.approx(max(0.0, 3.0 - kept), abs=0.1)
+    analysis = analyzed(shifted(x=-x), lines=(line,))
+    assert only(analysis).kept_mm["Vessel"] == pytest.approx(kept, abs=0.1)
+    assert [name for _trajectory, name in analysis.hits] == list(hits)
+    measures = ProcedureMeasures.of(analysis, made_up_procedure(line))
+    assert measures.intrusion_mm == pytest.approx(max(0.0, 3.0 - kept), abs=0.1)
     assert VESSEL_MM == 5.0
 
 
 def test_a_drill_that_goes_deeper_than_the_instrument_counts_for_the_distance():
     line = trajectory(entry=(30, 0, 84.85), target=(30, 0, 20))
     assert only(analyzed(lines=(line,))).kept_mm["Vessel"] == pytest.approx(14.0, abs=0.1)
-    plunged = only(analyzed(lines=(line,), drill_depth_mm=30.0 + 82.0))
-    assert plunged.hits == ("Vessel",)
+    plunged = analyzed(lines=(line,), drill_depth_mm=30.0 + 82.0)
+    assert plunged.hits == (("Left", "Vessel"),)
 
 
 def test_a_procedure_without_structures_has_no_intrusion():
     procedure = made_up_procedure(DOWN, no_go=())
     meshes = replace(MESHES, no_go={})
     analysis = analyze_procedure(recorded(procedure, TRUTH), procedure, meshes, TRUTH)
-    assert (only(analysis).intrusion_mm, analysis.hits) == (0.0, ())
+    assert (ProcedureMeasures.of(analysis, procedure).intrusion_mm, analysis.hits) == (0.0, ())
 
 
 def test_a_procedure_is_summarized_by_root_mean_squares():
     right = trajectory("Right", (-60.0, 0.0, 67.08), (-15.0, 10.0, 0.0))
     analysis = analyzed(shifted(x=2.0), lines=(DOWN, right))
-    lengths = [each.target.length_mm for each in analysis.trajectories]
-    assert analysis.target_rms_mm == pytest.approx(np.sqrt(np.mean(np.square(lengths))))
-    assert analysis.target_by_registration_rms_mm == pytest.approx(2.0)
-    assert analysis.target_by_hand_rms_mm == pytest.approx(0.0, abs=1e-9)
-    content = json.loads(json.dumps(analysis.to_json()))
+    lengths = [each.target_point_error.mm for each in analysis.trajectories]
+    assert analysis.target_point_error_rms_mm == pytest.approx(np.sqrt(np.mean(np.square(lengths))))
+    assert analysis.target_point_error_by_registration_rms_mm == pytest.approx(2.0)
+    assert analysis.target_point_error_by_hand_rms_mm == pytest.approx(0.0, abs=1e-9)
+    content = json.loads(json.dumps(record_to_json(analysis)))
     assert content["trajectories"][1]["targetPointError"]["mm"] == lengths[1]
     assert content["alignments"] == 2
 
@@ -203,11 +228,15 @@ def test_a_common_bias_of_2_mm_is_in_the_error_and_in_nothing_that_the_trainee_s
         analysis = analyze_procedure(record, procedure, MESHES, TRUTH)
         # FRE, residuals, checkpoints, and how the guide lies to the plan as it is shown.
         hands = [
-            (each.entry.hand_mm, each.target.hand_mm, each.hand_angle_deg)
+            (
+                each.entry_point_error.by_hand_mm,
+                each.target_point_error.by_hand_mm,
+                each.angular_deviation_by_hand_deg,
+            )
             for each in analysis.trajectories
         ]
         seen.append([registration.fre_mm, *registration.residuals_mm, *checks, *np.ravel(hands)])
-        true.append([each.target.whole for each in analysis.trajectories])
+        true.append([whole(each.target_point_error) for each in analysis.trajectories])
     assert seen[1] == pytest.approx(seen[0], abs=1e-9)
     moved = np.array(true[1]) - np.array(true[0])
     assert np.linalg.norm(moved, axis=1) == pytest.approx([2.0, 2.0], abs=1e-9)

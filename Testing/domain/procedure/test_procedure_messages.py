@@ -22,7 +22,7 @@ from rastrainer.procedure.record import (
     MAX_TOUCHED_CHECKPOINTS,
 )
 from rastrainer.protocol import FIDUCIAL_COUNT, PROCEDURE_PHASES
-from rastrainer.study.database.values import RECORD_LIMIT_BYTES
+from rastrainer.study.database.study import RECORD_LIMIT_BYTES
 from rastrainer.trial.procedure_outcome import ProcedureMeasures, ProcedureOutcome, score_procedure
 from rastrainer.trial.record import TrialRecord
 from Testing.domain.procedure.made_up_procedure import (
@@ -100,7 +100,7 @@ def test_the_simulator_accepts_the_score_of_the_longest_procedure():
     procedure = made_up_procedure(*lines)
     off = transforms.rigid(np.eye(3), np.array([0.123456789, 0.4, 0.0]))
     analysis = analyze_procedure(recorded(procedure, off), procedure, made_up_meshes(), np.eye(4))
-    score = score_procedure(ProcedureMeasures.of(analysis), 300.0)
+    score = score_procedure(ProcedureMeasures.of(analysis, procedure), 300.0)
     details = {
         "procedure": ProcedureOutcome(analysis, score).summary(),
         "residualsMm": [DIGITS] * 15,

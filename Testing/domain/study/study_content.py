@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from rastrainer.study.database.database import StudyPlace
-from rastrainer.study.database.schema import study_tables
+from rastrainer.study.database.schema import TABLES
 from rastrainer.study.database.study import Study
 from rastrainer_simulator.cli.main import main
 
@@ -21,7 +21,7 @@ def rows_of(place: StudyPlace) -> dict[str, list[tuple]]:
             table.name: connection.execute(
                 f"SELECT {', '.join(table.columns)} FROM {table.name} ORDER BY {table.order}"
             ).fetchall()
-            for table in study_tables()
+            for table in TABLES.values()
         }
 
 

@@ -24,7 +24,6 @@ from rastrainer.study.curriculum.curriculum import (
 )
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import standing_in
-from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
@@ -307,8 +306,8 @@ def test_stored_trials_count_in_order_of_starting_and_aborted_ones_as_failures(s
     study.add_trial(record(4, task="trial-run"), score=good)
     study.add_trial(record(5))
     at = {"trainee": "A", "startedUtc": "2024-05-17T10:02:00Z"}
-    AbortedTrials(study).add(make_aborted(**at))
-    found = AbortedTrials(study).attempts("A")
+    study.add_aborted(make_aborted(**at))
+    found = study.attempts("A")
     assert [trial.is_aborted for trial in found] == [False, True, False]
     assert found[0].parts["common bias"] == 1.0
     store = CurriculumStore(study)
@@ -330,7 +329,7 @@ def test_a_failed_trial_stored_late_breaks_the_streak_in_which_it_was_played(stu
     for number in (1, 3):
         study.add_trial(record(number), score=gentle_score(60.0, 0.2))
     assert store.standing("A").reached == 1
-    AbortedTrials(study).add(make_aborted(trainee="A", startedUtc="2024-05-17T10:02:00Z"))
+    study.add_aborted(make_aborted(trainee="A", startedUtc="2024-05-17T10:02:00Z"))
     assert [each.state for each in store.standing("A").standings] == [OPEN, LOCKED]
     study.add_trial(record(4), score=gentle_score(60.0, 0.2))
     assert store.standing("A").reached == 1

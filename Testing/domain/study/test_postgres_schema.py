@@ -8,7 +8,7 @@ import sqlite3
 import pytest
 
 from rastrainer.study.database.postgres_database import in_postgres, portable_to_postgres
-from rastrainer.study.database.schema import STATEMENTS, study_tables
+from rastrainer.study.database.schema import STATEMENTS, TABLES
 from rastrainer.study.database.study import Study
 
 
@@ -22,7 +22,7 @@ def test_the_tables_and_columns_match_those_that_sqlite_makes_from_the_schema(tm
             "SELECT name FROM sqlite_master WHERE type = 'table' AND name != 'sqlite_sequence'"
         )
     }
-    for table in study_tables():
+    for table in TABLES.values():
         columns = [name for name in table.columns if name != "rowid"]
         assert made.pop(table.name) == columns
         assert connection.execute(f"SELECT {table.order} FROM {table.name}").fetchall() is not None
@@ -38,7 +38,7 @@ def test_nothing_specific_to_sqlite_is_left(statement):
 
 
 def test_rows_that_sqlite_numbers_are_numbered():
-    numbered = {table.name for table in study_tables() if "rowid" in table.columns}
+    numbered = {table.name for table in TABLES.values() if "rowid" in table.columns}
     for statement in STATEMENTS:
         name = re.match(r"\s*CREATE TABLE (\w+)", statement)
         if name is not None:

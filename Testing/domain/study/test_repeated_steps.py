@@ -7,7 +7,6 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import REPEAT, StepKind
-from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
@@ -41,7 +40,7 @@ def study(study_place):
 def abort(study, number, minute, **changes):
     started = f"2999-01-01T10:{minute:02d}:00Z"
     record = make_aborted(number, trainee="A", startedUtc=started, **changes)
-    AbortedTrials(study).add(record)
+    study.add_aborted(record)
 
 
 def play(study, number, minute):
@@ -65,7 +64,7 @@ def test_an_aborted_trial_is_repeated_only_with_a_reason(study):
     standing = progress.progress("A")
     assert standing.check_start("desktop", "task-1")
     assert standing.study_step("A", datetime.now(timezone.utc)).kind == StepKind.TRIAL.value
-    (stored,) = AbortedTrials(study).of("A")
+    (stored,) = study.aborted("A")
     assert (stored.step, stored.repeat_reason) == ("desktop/1/task-1", REASON)
 
 
@@ -88,7 +87,7 @@ def test_each_further_abort_needs_its_own_reason(study):
     with pytest.raises(InputError, match="only with a reason"):
         progress.progress("A").check_start("desktop", "task-1")
     progress.explain_repeat("A", "the headset had lost its tracking")
-    assert [stored.repeat_reason[:9] for stored in AbortedTrials(study).of("A")] == [
+    assert [stored.repeat_reason[:9] for stored in study.aborted("A")] == [
         "a phone r",
         "the heads",
     ]
@@ -132,7 +131,7 @@ def test_an_aborted_trial_belongs_to_one_step_only(study):
 
 def test_skipping_a_step_settles_its_aborted_trials(study):
     started = datetime.now(timezone.utc).isoformat()
-    AbortedTrials(study).add(make_aborted(trainee="A", startedUtc=started))
+    study.add_aborted(make_aborted(trainee="A", startedUtc=started))
     progress = StudyProgress(study)
     assert progress.progress("A").unexplained
     skipped = progress.skip("A", "desktop/1/task-1", "felt sick and went home")

@@ -7,15 +7,15 @@ import pytest
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.procedure.plan import ProcedureKind
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import StoredProcedure
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.trial.procedure_outcome import PROCEDURE_SCORE_VERSION
 from rastrainer.trial.record import TrialRecord
 from Testing.domain.trial.trial_records import gentle_score, make_record
-from Testing.simulator.report.studied_procedures import TOO_DEEP_MM, outcome
+from Testing.simulator.report.studied_procedures import TOO_DEEP_MM, carried_out, outcome
 
 DBS = outcome(ProcedureKind.DBS)
+DONE = carried_out(ProcedureKind.DBS)[1]
 
 
 @pytest.fixture
@@ -36,7 +36,7 @@ def record(number, procedure=None):
 
 
 def test_an_outcome_is_stored_beside_the_score_of_the_touches(study):
-    trial = record(1, DBS.analysis.record)
+    trial = record(1, DONE)
     study.add_trial(trial, score=gentle_score(110.0, 0.5))
     assert study.trial(trial.trial_id).procedure is None
     assert study.history(trial.trainee)[0].procedure is None
@@ -45,17 +45,17 @@ def test_an_outcome_is_stored_beside_the_score_of_the_touches(study):
     assert stored.procedure.score == DBS.score
     assert stored.procedure.score.version == PROCEDURE_SCORE_VERSION
     assert stored.score.version != PROCEDURE_SCORE_VERSION
-    assert (stored.procedure.name, stored.procedure.kind) == ("dbs", "dbs")
-    first = stored.procedure.trajectories[0]
-    assert first["targetPointError"]["byRegistrationMm"] == pytest.approx(0.5)
-    assert first["depthErrorByHandMm"] == pytest.approx(TOO_DEEP_MM)
+    assert stored.procedure == DBS
+    assert (DBS.analysis.procedure, DBS.analysis.kind) == ("dbs", "dbs")
+    first = stored.procedure.analysis.trajectories[0]
+    assert first.target_point_error.by_registration_mm == pytest.approx(0.5)
+    assert first.depth_error_by_hand_mm == pytest.approx(TOO_DEEP_MM)
     # What was read before is read again.
     assert study.history(trial.trainee)[0].procedure == stored.procedure
-    assert StoredProcedure.from_json(stored.procedure.to_json()) == stored.procedure
 
 
 def test_the_outcome_is_deleted_with_its_trainee(study):
-    trial = record(1, DBS.analysis.record)
+    trial = record(1, DONE)
     study.add_trial(trial, score=gentle_score(110.0, 0.5))
     study.add_results(trial.trial_id, procedure=DBS)
     study.delete_trainee(trial.trainee)
@@ -74,8 +74,9 @@ def test_only_a_trial_with_the_procedure_counts_for_a_step_that_asks_for_it(stud
     study.create_trainee(trainee)
     progress.enroll(trainee)
     played = {"task": "task-2", "mode": "desktop"}
-    for number, procedure in enumerate([None, outcome(ProcedureKind.SEEG), DBS], start=1):
-        done = None if procedure is None else procedure.analysis.record
-        study.add_trial(replace(record(number, done), **played), score=gentle_score(110.0, 0.5))
+    for number, procedure in enumerate([None, carried_out(ProcedureKind.SEEG)[1], DONE], start=1):
+        study.add_trial(
+            replace(record(number, procedure), **played), score=gentle_score(110.0, 0.5)
+        )
         counted = progress.count_played(trainee).counted_trials
         assert counted == ((record(3).trial_id,) if number == 3 else ())

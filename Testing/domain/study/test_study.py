@@ -14,9 +14,8 @@ from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.fits import KINDS
 from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import target_error
-from rastrainer.study.database.schema import study_tables
-from rastrainer.study.database.study import Study
-from rastrainer.study.database.study_trainees import DeletedTrialError
+from rastrainer.study.database.schema import TABLES
+from rastrainer.study.database.study import DeletedTrialError, Study
 from rastrainer.study.database.values import StoredRegistration
 from rastrainer.study.tidy_csv import write_history
 from rastrainer.study.trainee_data import export_trainee
@@ -46,7 +45,7 @@ def record(number=7, **changes):
 def test_a_trainee_is_a_pseudonym_with_a_consent(study):
     created = study.create_trainee("Blue Heron")
     assert (created.pseudonym, created.consent, created.archived) == ("Blue Heron", False, False)
-    assert study.set_consent("Blue Heron", True).consent
+    assert study.change_trainee("Blue Heron", consent=True).consent
     assert study.trainee("Blue Heron").consent
 
 
@@ -107,11 +106,11 @@ def test_only_changed_trials_are_read_again(study, study_place, monkeypatch):
     assert read == []
     with Study.open(study_place) as other:
         other.set_truth(trials[1], 1.5, [float(n) for n in range(16)])
-        other.set_motion(trials[0], {"sparc": -1.9})
+        other.add_results(trials[0], score=gentle_score(50.0, 0.2))
     stored = {trial.record.trial_id: trial for trial in study.history("T-001")}
     assert sorted(read) == trials
     assert stored[trials[1]].true_tre_mm == 1.5
-    assert stored[trials[0]].motion == {"sparc": -1.9}
+    assert stored[trials[0]].score == gentle_score(50.0, 0.2)
     study.delete_trainee("T-001")
     study.create_trainee("T-001")
     assert study.history("T-001") == ()
@@ -120,10 +119,10 @@ def test_only_changed_trials_are_read_again(study, study_place, monkeypatch):
 def test_an_archived_trainee_is_hidden_and_can_be_restored(study):
     study.create_trainee("a")
     study.create_trainee("b")
-    study.set_archived("a", True)
+    study.change_trainee("a", archived=True)
     assert [t.pseudonym for t in study.trainees()] == ["b"]
     assert [t.pseudonym for t in study.trainees(archived=True)] == ["a"]
-    study.set_archived("a", False)
+    study.change_trainee("a", archived=False)
     assert [t.pseudonym for t in study.trainees()] == ["a", "b"]
 
 
@@ -132,7 +131,7 @@ def test_an_unknown_trainee_or_trial_is_reported(study):
         with pytest.raises(InputError, match='no trainee "x"'):
             ask("x")
     with pytest.raises(InputError, match='no trainee "x"'):
-        study.set_consent("x", True)
+        study.change_trainee("x", consent=True)
     with pytest.raises(InputError, match='no trial "y"'):
         study.trial("y")
     with pytest.raises(InputError, match='no trial "y"'):
@@ -215,7 +214,7 @@ def test_the_truth_is_stored_once(study):
     study.set_truth(first["trialId"], 0.75, matrix)
     study.set_truth(first["trialId"], 9.0, matrix)
     stored = study.trial(first["trialId"])
-    assert (stored.true_tre_mm, stored.head_to_world) == (0.75, matrix)
+    assert (stored.true_tre_mm, stored.truth.head_to_world) == (0.75, matrix)
     assert [r.trial_id for r in study.unrevealed()] == [second["trialId"]]
     with pytest.raises(InputError, match="reveals must be a number"):
         study.set_truth(second["trialId"], float("nan"), matrix)
@@ -244,7 +243,7 @@ def test_deleting_a_trainee_leaves_no_row_of_theirs(study, results):
     study.add_trial(record(2, trainee="staying"), *results)
     assert study.delete_trainee("Vanishing Heron") == 1
     with study.database.reading() as connection:
-        for table in study_tables():
+        for table in TABLES.values():
             rows = str(connection.execute(f"SELECT * FROM {table.name}").fetchall())
             assert "Vanishing Heron" not in rows
             assert record(1)["trialId"] not in rows
@@ -321,36 +320,31 @@ def test_past_trials_are_the_scored_ones_in_order_of_starting(study, results):
 
 
 def test_motion_metrics_are_stored_once_and_finite(study):
-    study.add_trial(record())
-    study.set_motion(record()["trialId"], {"path_mm": 2500.5, "sparc": -1.9})
-    study.set_motion(record()["trialId"], {"path_mm": 1.0})
-    assert study.trial(record()["trialId"]).motion == {"path_mm": 2500.5, "sparc": -1.9}
-    study.add_trial(record(1))
-    assert study.trial(record(1)["trialId"]).motion == {}
-    with pytest.raises(InputError, match="motion metric must be a number"):
-        study.set_motion(record(1)["trialId"], {"path_mm": float("inf")})
+    study.add_trial(record(motion={"path_mm": 2500.5, "sparc": -1.9}))
+    assert study.trial(record()["trialId"]).record.motion == {"path_mm": 2500.5, "sparc": -1.9}
+    with pytest.raises(InputError, match="Another trial is stored"):
+        study.add_trial(record(motion={"path_mm": 1.0}))
+    with pytest.raises(InputError, match="must be a number"):
+        study.add_trial(record(1, motion={"path_mm": float("inf")}))
 
 
 def test_everything_about_one_trainee_is_exported_and_nothing_about_others(
     study, results, tmp_path
 ):
-    study.add_trial(record(1, trainee="a"), *results)
+    first = record(1, trainee="a", motion={"path_mm": 2500.5})
+    study.add_trial(first, *results)
     study.set_truth(record(1)["trialId"], 0.5, np.eye(4).ravel().tolist())
-    study.set_motion(record(1)["trialId"], {"path_mm": 2500.5})
     study.add_trial(record(2, trainee="b"))
     assert export_trainee(study, "a", tmp_path / "a.json") == 1
     text = (tmp_path / "a.json").read_text()
     (trial,) = json.loads(text)["trials"]
-    assert record_from_json(TrialRecord, trial["record"]) == record_from_json(
-        TrialRecord, record(1, trainee="a")
-    )
+    assert record_from_json(TrialRecord, trial["record"]) == record_from_json(TrialRecord, first)
     assert (trial["true_tre_mm"], trial["motion"]) == (0.5, {"path_mm": 2500.5})
     assert record(2)["trialId"] not in text
 
 
 def test_the_history_is_a_table_with_empty_cells_for_what_is_unknown(study, results, tmp_path):
-    study.add_trial(record(1, trainee="=SUM(A1)"), *results)
-    study.set_motion(record(1)["trialId"], {"path_mm": 2500.5})
+    study.add_trial(record(1, trainee="=SUM(A1)", motion={"path_mm": 2500.5}), *results)
     study.add_trial(record(2, trainee="b"))
     assert write_history(study, ["=SUM(A1)", "b"], tmp_path / "history.csv") == 2
     with (tmp_path / "history.csv").open(newline="") as file:

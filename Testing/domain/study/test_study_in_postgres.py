@@ -15,9 +15,8 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.study.database import postgres_connecting, postgres_database
-from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.database import LockWait, StudyBusyError, StudyUnreachableError
-from rastrainer.study.database.schema import study_tables
+from rastrainer.study.database.schema import TABLES
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
@@ -117,7 +116,7 @@ def test_a_change_whose_answer_was_lost_is_stored_once_when_it_is_retried(place)
             "enroll": lambda: progress.enroll("A"),
             "trial": lambda: study.add_trial(make_record()),
             "truth": lambda: study.set_truth(trial, 0.5, matrix),
-            "aborted": lambda: AbortedTrials(study).add(make_aborted()),
+            "aborted": lambda: study.add_aborted(make_aborted()),
             "assign": lambda: ratings.assign("R1", [trial], 1, random.Random(1)),
             "mark": lambda: ratings.give(mark_id, "R1", trial, form, domain, 4),
         }
@@ -136,7 +135,7 @@ def test_a_change_whose_answer_was_lost_is_stored_once_when_it_is_retried(place)
 def counts_of(connection):
     return [
         connection.execute(f"SELECT count(*) FROM {table.name}").fetchone()
-        for table in study_tables()
+        for table in TABLES.values()
     ]
 
 
@@ -219,7 +218,7 @@ def test_windows_and_waiting_commands_give_up_on_a_server_that_hangs(lock_wait, 
 STOPPED = """
 import os, signal, sys
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.schema import study_tables
+from rastrainer.study.database.schema import TABLES
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer.study.ratings import FORMS

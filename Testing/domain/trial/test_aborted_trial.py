@@ -7,10 +7,8 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.study.database.aborted_trials import AbortedTrials
-from rastrainer.study.database.schema import study_tables
-from rastrainer.study.database.study import Study
-from rastrainer.study.database.study_trainees import DeletedTrialError
+from rastrainer.study.database.schema import TABLES
+from rastrainer.study.database.study import DeletedTrialError, Study
 from rastrainer.study.trainee_data import erase_trainee, export_trainee
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.scoring import passes
@@ -67,7 +65,7 @@ def test_unknown_keys_are_ignored_and_unknown_reasons_accepted():
 )
 def test_an_invalid_record_is_refused_with_a_message_and_not_stored(study, change, words):
     with pytest.raises(InputError, match=words):
-        AbortedTrials(study).add(make_aborted(**change))
+        study.add_aborted(make_aborted(**change))
     assert study.trainees() == ()
 
 
@@ -75,55 +73,54 @@ def test_an_incomplete_or_too_large_record_is_refused(study):
     lacking = make_aborted()
     del lacking["phase"]
     with pytest.raises(InputError, match='needs the key "phase"'):
-        AbortedTrials(study).add(lacking)
+        study.add_aborted(lacking)
     with pytest.raises(InputError, match="must be a JSON object"):
-        AbortedTrials(study).add(["no", "object"])
+        study.add_aborted(["no", "object"])
     with pytest.raises(InputError, match="larger than 1 MiB"):
-        AbortedTrials(study).add(make_aborted(more="x" * 2**20))
+        study.add_aborted(make_aborted(more="x" * 2**20))
     with pytest.raises(InputError, match="pseudonym"):
-        AbortedTrials(study).add(make_aborted(trainee=" T"))
+        study.add_aborted(make_aborted(trainee=" T"))
     assert study.trainees() == ()
 
 
 def test_an_aborted_trial_is_stored_once(study):
-    aborted = AbortedTrials(study)
-    assert aborted.add(make_aborted())
-    assert not aborted.add(make_aborted())
-    assert len(aborted.of("T-001")) == 1
+    assert study.add_aborted(make_aborted())
+    assert not study.add_aborted(make_aborted())
+    assert len(study.aborted("T-001")) == 1
     assert not study.trainee("T-001").consent
     with pytest.raises(InputError, match="Another trial is stored"):
-        aborted.add(make_aborted(elapsedS=3.0))
+        study.add_aborted(make_aborted(elapsedS=3.0))
 
 
 def test_finished_and_aborted_trials_have_different_uuids(study):
     study.add_trial(make_record())
     with pytest.raises(InputError, match="Another trial is stored"):
-        AbortedTrials(study).add(make_aborted(number=7))
+        study.add_aborted(make_aborted(number=7))
 
 
 def test_an_aborted_trial_is_not_listed_as_finished(study):
-    AbortedTrials(study).add(make_aborted())
+    study.add_aborted(make_aborted())
     assert study.history("T-001") == study.past_trials("T-001") == ()
 
 
 def test_deleting_a_trainee_deletes_aborted_trials_for_good(study, tmp_path):
-    AbortedTrials(study).add(make_aborted())
+    study.add_aborted(make_aborted())
     records = tmp_path / "records"
     records.mkdir()
     erased = erase_trainee(study, "T-001", records)
     assert erased.trials == 0
     assert erased.missing == (make_aborted()["trialId"],)
     with pytest.raises(DeletedTrialError):
-        AbortedTrials(study).add(make_aborted())
+        study.add_aborted(make_aborted())
     with study.database.reading() as connection:
-        for table in study_tables():
+        for table in TABLES.values():
             rows = str(connection.execute(f"SELECT * FROM {table.name}").fetchall())
             assert "T-001" not in rows
             assert make_aborted()["trialId"] not in rows
 
 
 def test_the_export_of_a_trainee_has_the_aborted_trials(study, tmp_path):
-    AbortedTrials(study).add(make_aborted())
+    study.add_aborted(make_aborted())
     assert export_trainee(study, "T-001", tmp_path / "all.json") == 0
     exported = json.loads((tmp_path / "all.json").read_text())["aborted_trials"]
     assert [(each["record"]["reason"], len(each["record"]["points"])) for each in exported] == [
@@ -144,8 +141,8 @@ def test_the_export_of_a_trainee_has_the_aborted_trials(study, tmp_path):
 def test_an_aborted_trial_of_a_scored_task_with_a_touch_counts_as_not_passed(
     study, changes, counts
 ):
-    AbortedTrials(study).add(make_aborted(**changes))
-    attempts = AbortedTrials(study).attempts("T-001")
+    study.add_aborted(make_aborted(**changes))
+    attempts = study.attempts("T-001")
     assert [attempt.is_aborted for attempt in attempts] == [True] * counts
     assert not any(passes(each.score, each.acceptable, 0.0) for each in attempts)
 
@@ -156,8 +153,8 @@ def test_attempts_are_in_order_of_starting(study):
         utc = f"2024-05-17T09:{minute}:00Z"
         record = make_record(trialId=f"00000000-0000-0000-0000-00000000000{number}", startedUtc=utc)
         study.add_trial(record, score=score)
-    AbortedTrials(study).add(make_aborted(startedUtc="2024-05-17T09:20:00+00:00"))
-    attempts = AbortedTrials(study).attempts("T-001")
+    study.add_aborted(make_aborted(startedUtc="2024-05-17T09:20:00+00:00"))
+    attempts = study.attempts("T-001")
     assert [attempt.is_aborted for attempt in attempts] == [False, True, False]
     standing = progress_of(attempts, attempts[-1].trial_id, 10.0)
     assert len(standing.scores) == 2
@@ -172,10 +169,10 @@ def test_aborting_bad_trials_does_not_help_to_show_competence(study):
         utc = f"2024-05-17T{10 + number // 2}:{30 * (number % 2):02d}:00Z"
         trial_id = f"00000000-0000-0000-0000-0000000000{number:02d}"
         if number % 2:
-            AbortedTrials(study).add(make_aborted(number=number + 500, touches=15, startedUtc=utc))
+            study.add_aborted(make_aborted(number=number + 500, touches=15, startedUtc=utc))
         else:
             study.add_trial(make_record(trialId=trial_id, startedUtc=utc), score=score)
-    attempts = AbortedTrials(study).attempts("T-001")
+    attempts = study.attempts("T-001")
     finished = [attempt for attempt in attempts if not attempt.is_aborted]
     last = finished[-1].trial_id
     assert progress_of(finished, last, 10.0).competence.competent_at is not None

@@ -52,8 +52,8 @@ def test_a_procedure_is_analyzed_and_scored_once_the_truth_is_known(record):
     assert before.procedure is None
     found = analyze_trial(record, SCENARIO, truth=REVEALED).procedure
     assert len(found.analysis.trajectories) == 5
-    assert 0.0 < found.analysis.target_rms_mm < 1.5
-    assert found.analysis.target_by_hand_rms_mm == pytest.approx(0.0, abs=1e-9)
+    assert 0.0 < found.analysis.target_point_error_rms_mm < 1.5
+    assert found.analysis.target_point_error_by_hand_rms_mm == pytest.approx(0.0, abs=1e-9)
     assert found.score.is_accurate
     assert found.score.reference_s > 400.0
 
@@ -89,7 +89,7 @@ def test_the_outcome_of_a_procedure_is_submitted_with_the_score(record):
         each.name for each in SCENARIO.procedure("seeg").trajectories
     ]
     first, errors = submitted["trajectories"][0], analysis.procedure.analysis.trajectories[0]
-    assert first["targetMm"] == errors.target.length_mm
+    assert first["targetMm"] == errors.target_point_error.mm
     assert first["keptMm"] == min(errors.kept_mm.values()) == errors.kept_mm[first["nearest"]]
 
 

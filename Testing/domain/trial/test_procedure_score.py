@@ -150,6 +150,11 @@ def test_a_procedure_without_duration_is_refused():
         score_procedure(replace(PERFECT, duration_s=0.0), 100.0)
 
 
+def measured(record, procedure):
+    analysis = analyze_procedure(record, procedure, MESHES, np.eye(4))
+    return ProcedureMeasures.of(analysis, procedure)
+
+
 def carried_out(off, lines=(DOWN,), **changes):
     """The score of steady hands whose registration is off by a shift (3,), mm."""
     procedure = made_up_procedure(*lines)
@@ -157,8 +162,7 @@ def carried_out(off, lines=(DOWN,), **changes):
         procedure, transforms.rigid(np.eye(3), np.array(off, dtype=float)), drill=14.5
     )
     record = replace(record, **changes)
-    analysis = analyze_procedure(record, procedure, MESHES, np.eye(4))
-    return score_procedure(ProcedureMeasures.of(analysis), reference_duration_s(130.0, procedure))
+    return score_procedure(measured(record, procedure), reference_duration_s(130.0, procedure))
 
 
 def test_a_good_procedure_is_acceptable():
@@ -185,7 +189,7 @@ def test_the_worst_of_several_instruments_decides_whether_it_is_acceptable():
     first, *others = record.instruments
     deeper = replace(first, instrument_depth_mm=first.instrument_depth_mm + 3.5)
     record = replace(record, instruments=(deeper, *others))
-    measures = ProcedureMeasures.of(analyze_procedure(record, procedure, MESHES, np.eye(4)))
+    measures = measured(record, procedure)
     assert measures.target_mm < TARGET_LIMIT_MM < measures.worst_target_mm
     assert not score_procedure(measures, 600.0).acceptable
 
@@ -206,7 +210,7 @@ def test_what_a_trainee_sees_plays_no_part_in_the_score():
         checkpoints=(),
     )
     scores = {
-        score(ProcedureMeasures.of(analyze_procedure(each, procedure, MESHES, np.eye(4))), 300.0)
+        score(measured(each, procedure), 300.0)
         for each in (record, replace(record, attempts=(seen,)))
     }
     assert len(scores) == 1

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer import transforms
-from rastrainer.procedure.errors import analyze_procedure
+from rastrainer.procedure.errors import TrueLine, analyze_procedure, true_lines
 from rastrainer.procedure.plan import read_procedure_meshes
 from rastrainer.procedure.record import UsedRegistration
 from rastrainer.registration.registration import register
@@ -35,7 +35,7 @@ PROCEDURE, TASK, TOUCHING_S, FLE_MM = "seeg", "task-3", 90.0, 2.0
 SECTION = "procedureCollapsibleButton"
 
 
-def carried_out() -> ProcedureOutcome:
+def carried_out() -> tuple[ProcedureOutcome, list[TrueLine]]:
     """Return what virtual hands made of stereo-EEG after a careless registration."""
     scenario = load_scenario(asset_path("scenarios", "colin27"))
     procedure, skull = scenario.procedure(PROCEDURE), scenario.skull_mesh
@@ -52,20 +52,21 @@ def carried_out() -> ProcedureOutcome:
     done = carry_out(setting, used, TOUCHING_S, hands, random)
     analysis = analyze_procedure(done, procedure, meshes, truth)
     reference = reference_duration_s(TOUCHING_S, procedure)
-    return ProcedureOutcome(analysis, score_procedure(ProcedureMeasures.of(analysis), reference))
+    score = score_procedure(ProcedureMeasures.of(analysis, procedure), reference)
+    return ProcedureOutcome(analysis, score), true_lines(done, truth)
 
 
 def save(picture: Path) -> None:
     """Show the outcome in the module, with the slices along the first instrument."""
-    outcome = carried_out()
+    outcome, lines = carried_out()
     with tempfile.TemporaryDirectory() as temporary:
         host = Host(Path(temporary))
         host.open()
         host.press("showScenarioButton")
         host.finish_work()
-        host.widget.logic.session.procedure.showOutcome(outcome)
-        first = outcome.analysis.trajectories[0]
-        AlongInstrument(host.scene).show(first.tip, first.axis_direction)
+        host.widget.logic.session.procedure.showOutcome(outcome, lines)
+        guide, tip = lines[0].placed
+        AlongInstrument(host.scene).show(tip, (tip - guide) / np.linalg.norm(tip - guide))
         host.scene.GetFirstNodeByName("Head").SetDisplayVisibility(False)
         for name in ("scenario", "simulator", "setup"):
             host.find(f"{name}CollapsibleButton").collapsed = True

@@ -12,7 +12,6 @@ from rastrainer.protocol import TRACED_METHODS
 from rastrainer.study.curriculum.curriculum import Curriculum, read_curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import standing_in
-from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import day_of
@@ -43,7 +42,7 @@ def _practice(
 ) -> None:
     tempo_s = rng.uniform(90.0, 190.0)
     for number in range(trials):
-        standing = standing_in(follows, AbortedTrials(study).attempts(name), lambda _: PASS_MARK)
+        standing = standing_in(follows, study.attempts(name), lambda _: PASS_MARK)
         best = standing.next_best
         if best is None or best.procedure:
             return

@@ -19,7 +19,6 @@ from rastrainer.errors import InputError
 from rastrainer.files.point_files import write_markups
 from rastrainer.files.point_list import PointList
 from rastrainer.registration.registration import register
-from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer_simulator.cli.main import _parser, main
@@ -381,7 +380,7 @@ def test_aborted_trials_of_the_groups_are_reported_since_they_have_no_score(stud
     before = means(study, NOVICES)
     with Study.open(study) as opened:
         for number, name in enumerate((NOVICES[0], NOVICES[0], EXPERTS[1])):
-            AbortedTrials(opened).add(make_aborted(900 + number, trainee=name))
+            opened.add_aborted(make_aborted(900 + number, trainee=name))
     assert main(words(study)) == 0
     assert "They aborted 3 trials after a touch" in capsys.readouterr().out
     assert means(study, NOVICES) == before

@@ -55,12 +55,14 @@ def test_a_default_procedure_can_be_carried_out_and_its_error_is_the_registratio
     truth = surgeon.simulation.truth.head_to_world
     analysis = analyze_procedure(record, plan, meshes, truth)
     for errors in analysis.trajectories:
-        assert errors.target.registration_mm == pytest.approx(np.linalg.norm(SHIFT_MM), abs=1e-6)
-        assert errors.target.hand_mm < 0.1
-        assert errors.hand_angle_deg < 0.05
+        assert errors.target_point_error.by_registration_mm == pytest.approx(
+            np.linalg.norm(SHIFT_MM), abs=1e-6
+        )
+        assert errors.target_point_error.by_hand_mm < 0.1
+        assert errors.angular_deviation_by_hand_deg < 0.05
         assert 0.0 < errors.plunge_mm < 1.0
-        assert errors.instrument.self_aligned
+        assert errors.self_aligned
     reference_s = reference_duration_s(130.0, plan)
-    score = score_procedure(ProcedureMeasures.of(analysis), reference_s)
+    score = score_procedure(ProcedureMeasures.of(analysis, plan), reference_s)
     assert score.acceptable
     assert score.score > 75.0

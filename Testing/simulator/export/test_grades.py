@@ -60,7 +60,7 @@ def place(tmp_path):
                 completedUtc=f"2999-01-01T10:0{number}:30Z",
             )
             study.add_trial(record, score=gentle_score(seconds, 0.5))
-        study.set_archived("T004", True)
+        study.change_trainee("T004", archived=True)
     return place
 
 

@@ -19,7 +19,7 @@ def test_points_of_a_trace_are_exported_in_world_and_registered_coordinates(tmp_
     record = record_from_json(TrialRecord, record_of())
     moved = transforms.apply(transforms.rigid(np.eye(3), [100.0, 0.0, 50.0]), LANDMARKS)
     rigid = register(moved, LANDMARKS, labels=record.labels)
-    stored = StoredTrial(record, {"rigid": StoredRegistration.of(rigid, None)}, None, None, None)
+    stored = StoredTrial(record, {"rigid": StoredRegistration.of(rigid, None)})
     names = {path.name for path in write_slicer_files(stored, tmp_path)}
     kinds = ("mrk.json", "ply")
     assert {f"traced-{frame}.{kind}" for frame in ("world", "ras") for kind in kinds} < names

@@ -379,11 +379,11 @@ def test_the_result_splits_the_errors_into_registration_and_hand(operation):
     each = operation.outcome.analysis.trajectories
     for menu, errors in zip(operation.seen["errors"], each, strict=True):
         facts = {fact.label: fact.value for fact in menu.facts}
-        target = errors.target
+        target = errors.target_point_error
         assert facts["Target point error"] == (
-            f"{target.length_mm:.2f} mm ({target.registration_mm:.2f} / {target.hand_mm:.2f})"
+            f"{target.mm:.2f} mm ({target.by_registration_mm:.2f} / {target.by_hand_mm:.2f})"
         )
-        assert target.registration_mm == pytest.approx(float(np.linalg.norm(OFF_MM)), abs=0.01)
+        assert target.by_registration_mm == pytest.approx(float(np.linalg.norm(OFF_MM)), abs=0.01)
         assert facts["Plunge depth"] == f"{errors.plunge_mm:.2f} mm"
         assert {"Entry point error", "Radial error", "Angular deviation"} <= set(facts)
     result = operation.seen["result"]
@@ -403,7 +403,7 @@ def test_the_lines_on_the_head_show_plan_registration_and_instrument(operation):
         true_target = truth.in_world(np.array(TARGETS[number])) / MM_PER_M
         assert planned.end == pytest.approx(true_target, abs=MICROMETER)
         assert shown.end == pytest.approx(shown_in_world(operation, TARGETS[number]), abs=1e-6)
-        tip = truth.in_world(errors.tip) / MM_PER_M
+        tip = truth.in_world(np.array(errors.tip_ras)) / MM_PER_M
         assert placed.end == pytest.approx(tip, abs=MICROMETER)
 
 

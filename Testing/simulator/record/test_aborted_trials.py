@@ -13,7 +13,6 @@ from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, read_journal
 from rastrainer.protocol import MIN_ABORTED_S, Phase
-from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
@@ -129,10 +128,10 @@ def test_a_trial_that_was_only_viewed_is_delivered_for_its_number_alone(simulati
     assert not record.is_kept
     assert read_journal(server.path).integrity is Integrity.INTACT
     with Study.open(tmp_path / "study.db") as study:
-        assert not AbortedTrials(study).add(record)
+        assert not study.add_aborted(record)
         assert study.trainees() == ()
         later = replace(record, trial_id=str(uuid.UUID(int=9)), number=4, elapsed_s=20.0)
-        assert AbortedTrials(study).add(later)
+        assert study.add_aborted(later)
         assert study.undelivered() == {record.series: ((2, 3),)}
 
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.procedure.errors import analyze_procedure
-from rastrainer.procedure.plan import ProcedureKind
-from rastrainer.study.database.values import StoredProcedure
+from rastrainer.procedure.plan import Procedure, ProcedureKind
+from rastrainer.procedure.record import ProcedureRecord
 from rastrainer.study.study_data import StudyData
 from rastrainer.trial.procedure_outcome import ProcedureMeasures, ProcedureOutcome, score_procedure
 from Testing.domain.procedure.made_up_procedure import made_up_meshes, made_up_procedure
@@ -20,8 +20,10 @@ SHIFT_MM = np.array([0.3, 0.4, 0.0])
 TOO_DEEP_MM = 1.2
 
 
-def outcome(kind: ProcedureKind, number: int = 0, by_robot: bool = False) -> ProcedureOutcome:
-    """Return the outcome of a procedure whose lines are shifted, and its instruments too deep.
+def carried_out(
+    kind: ProcedureKind, number: int = 0, by_robot: bool = False
+) -> tuple[Procedure, ProcedureRecord]:
+    """Return plan and record of a procedure whose lines are shifted, its instruments too deep.
 
     `number` makes the shift larger, and the hands stay the same. `by_robot` has the robot align the
     guide on the first line, and the instrument is twice as much too deep there.
@@ -37,9 +39,16 @@ def outcome(kind: ProcedureKind, number: int = 0, by_robot: bool = False) -> Pro
         twice = deeper[0].instrument_depth_mm + TOO_DEEP_MM
         first = replace(deeper[0], self_aligned=True, instrument_depth_mm=twice)
         deeper = (first, *deeper[1:])
-    done = replace(done, instruments=deeper)
+    return procedure, replace(done, instruments=deeper)
+
+
+def outcome(kind: ProcedureKind, number: int = 0, by_robot: bool = False) -> ProcedureOutcome:
+    """Return the outcome of what was carried out so."""
+    procedure, done = carried_out(kind, number, by_robot)
     analysis = analyze_procedure(done, procedure, made_up_meshes(), np.eye(4))
-    return ProcedureOutcome(analysis, score_procedure(ProcedureMeasures.of(analysis), 300.0))
+    return ProcedureOutcome(
+        analysis, score_procedure(ProcedureMeasures.of(analysis, procedure), 300.0)
+    )
 
 
 def with_procedures(data: StudyData, by_robot: bool = False) -> StudyData:
@@ -53,7 +62,7 @@ def with_procedures(data: StudyData, by_robot: bool = False) -> StudyData:
         trials=tuple(
             replace(
                 trial,
-                procedure=StoredProcedure.of(outcome(kinds[row % len(kinds)], row % 4, by_robot)),
+                procedure=outcome(kinds[row % len(kinds)], row % 4, by_robot),
             )
             for row, trial in enumerate(data.trials)
         ),

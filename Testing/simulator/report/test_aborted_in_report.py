@@ -9,8 +9,8 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.json_records import record_from_json
-from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAbortedTrial
 from rastrainer.study.database.study import Study
+from rastrainer.study.database.values import StoredAbortedTrial
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.study_data import StudyData, TrialRow, read_study_data
 from rastrainer.study.tidy_csv import aborted_csv, aborted_touches_csv, write_history
@@ -36,14 +36,15 @@ def path(tmp_path):
         while progress.progress("B").next_step.task != "task-1":
             progress.skip("B", progress.progress("B").next_step.name, "left out to be quick")
         mode = progress.progress("B").next_step.mode
-        aborted = AbortedTrials(study)
         started = "2999-01-01T11:00:00Z"
-        aborted.add(make_aborted(901, 15, trainee="B", mode=mode, startedUtc=started))
+        study.add_aborted(make_aborted(901, 15, trainee="B", mode=mode, startedUtc=started))
         progress.explain_repeat("B", REASON)
-        aborted.add(make_aborted(902, 2, trainee="A", startedUtc="2999-01-01T09:00:00Z"))
-        aborted.add(make_aborted(903, 1, trainee="A", task="trial-run", reason="practice over"))
+        study.add_aborted(make_aborted(902, 2, trainee="A", startedUtc="2999-01-01T09:00:00Z"))
+        study.add_aborted(
+            make_aborted(903, 1, trainee="A", task="trial-run", reason="practice over")
+        )
         study.create_trainee("C")
-        aborted.add(make_aborted(904, 5, trainee="C"))
+        study.add_aborted(make_aborted(904, 5, trainee="C"))
     return path
 
 
@@ -136,10 +137,10 @@ def test_the_report_names_the_trials_that_never_arrived(path):
     with Study.open(path) as study:
         for number in (3, 4, 7, 9):
             record = make_aborted(950 + number, 2, trainee="A") | {"number": number}
-            AbortedTrials(study).add(record | {"series": series})
+            study.add_aborted(record | {"series": series})
         # What a deleted trainee leaves is no gap.
         deleted = make_aborted(970, 2, trainee="D") | {"number": 8, "series": series}
-        AbortedTrials(study).add(deleted)
+        study.add_aborted(deleted)
         study.delete_trainee("D")
     words = words_of(report_html(read_study_data(path)))
     assert f"2 started trials of the simulator {series[:8]} never arrived in this study" in words

@@ -1,6 +1,7 @@
 """The report tells what of the target point error the registration and the hands caused."""
 
 import re
+from dataclasses import replace
 
 import pytest
 
@@ -50,9 +51,13 @@ def comparison(words):
 
 def test_a_study_that_only_the_robot_aligned_says_nothing_about_hands():
     data = with_procedures(cohort(4))
+    trials = []
     for trial in data.trials:
-        for line in trial.procedure.trajectories:
-            line["selfAligned"] = True
+        analysis = trial.procedure.analysis
+        lines = tuple(replace(line, self_aligned=True) for line in analysis.trajectories)
+        by_robot = replace(trial.procedure, analysis=replace(analysis, trajectories=lines))
+        trials.append(replace(trial, procedure=by_robot))
+    data = replace(data, trials=tuple(trials))
     html = procedures(data)
     assert "48 lines were aligned by the robot" in html.replace("\N{NO-BREAK SPACE}", " ")
     assert "registration minus hands" not in html

@@ -294,7 +294,7 @@ def test_only_trials_with_consent_and_a_journal_are_rated(copied, study):
     journals(copied / RECORDS)[0].unlink()
     assert len(trials_to_show(study, copied / RECORDS)) == 3
     for trainee in study.trainees():
-        study.set_consent(trainee.pseudonym, False)
+        study.change_trainee(trainee.pseudonym, consent=False)
     with pytest.raises(InputError, match="There is nothing to rate"):
         trials_to_show(study, copied / RECORDS)
 

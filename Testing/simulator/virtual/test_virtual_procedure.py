@@ -49,8 +49,8 @@ def test_steady_hands_leave_only_the_registration_error(meshes):
     hands = ProcedureHands(0.0, 0.0, 0.0, 0.0, 0.0)
     done, analysis = analyzed(meshes, hands)
     for errors in analysis.trajectories:
-        assert errors.target.registration_mm == pytest.approx(1.0, abs=1e-6)
-        assert errors.target.hand_mm == pytest.approx(0.0, abs=1e-6)
+        assert errors.target_point_error.by_registration_mm == pytest.approx(1.0, abs=1e-6)
+        assert errors.target_point_error.by_hand_mm == pytest.approx(0.0, abs=1e-6)
         assert errors.plunge_mm == pytest.approx(0.0, abs=1e-6)
     (attempt,) = done.attempts
     assert [check.error_mm for check in attempt.checkpoints] == pytest.approx([1.0] * 3, abs=1e-6)
@@ -60,7 +60,7 @@ def test_the_scatter_of_hands_follows_from_their_skill(meshes):
     hands = ProcedureHands.of(replace(Skill(), aim_sd_mm=2.0 * Skill().aim_sd_mm))
     assert hands.depth_sd_mm == pytest.approx(2.0 * ProcedureHands().depth_sd_mm)
     found = [analyzed(meshes, hands, seed)[1] for seed in range(12)]
-    by_hand = [each.depth[2] for one in found for each in one.trajectories]
+    by_hand = [each.depth_error_by_hand_mm for one in found for each in one.trajectories]
     assert np.std(by_hand) == pytest.approx(hands.depth_sd_mm, rel=0.25)
     plunges = [each.plunge_mm for one in found for each in one.trajectories]
     assert np.mean(plunges) == pytest.approx(hands.plunge_mm, rel=0.35)
@@ -77,7 +77,7 @@ def test_a_cohort_whose_protocol_has_a_procedure_is_reported_with_the_split(
     assert (run.played, run.stuck) == (1, 0)
     data = read_study_data(tmp_path / "study" / "study.db")
     (trial,) = data.trials
-    assert trial.procedure.name == "dbs"
+    assert trial.procedure.analysis.procedure == "dbs"
     assert trial.values["procedure_target_rms_mm"] > 0.0
     assert trial.values["procedure_score"] == trial.procedure.score.score
     assert "1 of 1 trial continued with a procedure: 2 lines in all" in procedures(data)

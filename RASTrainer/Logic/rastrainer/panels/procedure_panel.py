@@ -162,8 +162,8 @@ class ProcedurePanel(Panel):
 
     def _jumpToTarget(self) -> None:
         row = self._ui.procedureErrorsTable.currentRow()
-        if self._shown is not None and 0 <= row < len(self._shown.analysis.trajectories):
-            self._session.slices.show(self._shown.analysis.trajectories[row].trajectory.target_ras)
+        if self._shown is not None and 0 <= row < len(self._logic.lines):
+            self._session.slices.show(self._logic.lines[row].planned[1])
 
     def _showMessage(self, sentence: str) -> None:
         setText(self._ui.procedureMessageText, sentence)
@@ -235,11 +235,10 @@ def scoreText(outcome: ProcedureOutcome) -> str:
         text += " " + _("{trajectory} hit {structure}.").format(
             trajectory=trajectory, structure=structure
         )
-    selfAligned = sum(each.instrument.self_aligned for each in analysis.trajectories)
-    if selfAligned:
+    if analysis.self_aligned:
         text += " " + _(
             "The robot aligned {count} of {lines} lines: only their depth is by hand."
-        ).format(count=selfAligned, lines=len(analysis.trajectories))
+        ).format(count=analysis.self_aligned, lines=len(analysis.trajectories))
     for trajectory in analysis.missed_bone:
         text += " " + _("{trajectory} missed the skull.").format(trajectory=trajectory)
     if not score.acceptable:
@@ -248,22 +247,22 @@ def scoreText(outcome: ProcedureOutcome) -> str:
 
 
 def _row(errors: TrajectoryErrors) -> tuple[str, ...]:
-    target = errors.target
+    target = errors.target_point_error
     return (
-        errors.trajectory.name,
-        fixed(target.length_mm, 2),
-        fixed(target.registration_mm, 2),
-        fixed(target.hand_mm, 2),
-        fixed(errors.entry.length_mm, 2),
-        fixed(errors.angle_deg, 2),
+        errors.trajectory,
+        fixed(target.mm, 2),
+        fixed(target.by_registration_mm, 2),
+        fixed(target.by_hand_mm, 2),
+        fixed(errors.entry_point_error.mm, 2),
+        fixed(errors.angular_deviation_deg, 2),
     )
 
 
 def _tip(errors: TrajectoryErrors) -> str:
-    depth, depthShown, depthHand = errors.depth
+    error = errors.entry_point_error
     entry = _("Entry: registration {shown} mm, hand {hand} mm.")
     angle = _("Angle: registration {shown}°, hand {hand}°.")
-    if errors.instrument.self_aligned:
+    if errors.self_aligned:
         entry = _("Entry: registration {shown} mm, robot {hand} mm.")
         angle = _("Angle: registration {shown}°, robot {hand}°.")
     plunge = "–" if errors.plunge_mm is None else f"{fixed(errors.plunge_mm, 1)} mm"
@@ -271,16 +270,15 @@ def _tip(errors: TrajectoryErrors) -> str:
         _(
             "Radial error {radial} mm, depth error {depth} mm (registration {shown}, hand {hand})."
         ).format(
-            radial=fixed(errors.radial.length_mm, 2),
-            depth=fixed(depth, 2),
-            shown=fixed(depthShown, 2),
-            hand=fixed(depthHand, 2),
+            radial=fixed(errors.radial_error.mm, 2),
+            depth=fixed(errors.depth_error_mm, 2),
+            shown=fixed(errors.depth_error_by_registration_mm, 2),
+            hand=fixed(errors.depth_error_by_hand_mm, 2),
         ),
-        entry.format(
-            shown=fixed(errors.entry.registration_mm, 2), hand=fixed(errors.entry.hand_mm, 2)
-        ),
+        entry.format(shown=fixed(error.by_registration_mm, 2), hand=fixed(error.by_hand_mm, 2)),
         angle.format(
-            shown=fixed(errors.registration_angle_deg, 2), hand=fixed(errors.hand_angle_deg, 2)
+            shown=fixed(errors.angular_deviation_by_registration_deg, 2),
+            hand=fixed(errors.angular_deviation_by_hand_deg, 2),
         ),
         _("Plunge depth {plunge}.").format(plunge=plunge),
         *(

@@ -28,9 +28,8 @@ from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.scene.tables import showCalibration, showLearningCurve
 from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS
 from rastrainer.slicer.translation import _
-from rastrainer.study.database.aborted_trials import StoredAbortedTrial
 from rastrainer.study.database.database import EXAMPLE, study_place
-from rastrainer.study.database.values import StoredTrial, Trainee, day_of
+from rastrainer.study.database.values import StoredAbortedTrial, StoredTrial, Trainee, day_of
 from rastrainer.study.outcomes import short_mode_title, task_title
 
 

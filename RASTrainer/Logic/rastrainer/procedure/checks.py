@@ -36,12 +36,9 @@ class LineMeasures:
     """The measures of one planned line.
 
     Attributes:
-        name: of the trajectory.
-        length_mm: from entry to target.
         skull_angle_deg: to the skull's normal where the line meets it; None if it does not.
         no_go_mm: from the surface of the instrument to each no-go structure, by name; below 0 it
             overlaps the structure.
-        nearest_line: name of the nearest other trajectory; empty where there is no other.
         nearest_line_mm: between the surfaces of both instruments; None where there is no other.
         is_held: whether the robot can hold the guide on the line; None where that was not tried.
     """
@@ -154,9 +151,7 @@ def check_procedure(procedure: Procedure, head: HeadMesh, meshes: ProcedureMeshe
     """Return a sentence for each error of a plan, in the order of its trajectories.
 
     Args:
-        procedure: to check.
         head: the closed skin, RAS mm.
-        meshes: of the procedure.
     """
     wrong = unusable_lines(procedure, head, meshes.skull)
     if wrong:
@@ -179,7 +174,6 @@ def unusable_lines(procedure: Procedure, head: HeadMesh, skull: HeadMesh) -> lis
     """Return a sentence for each trajectory along which nothing can be drilled and placed.
 
     Args:
-        procedure: to check.
         head: the closed skin, RAS mm.
         skull: closed, RAS mm.
     """

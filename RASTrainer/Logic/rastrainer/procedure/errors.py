@@ -22,16 +22,27 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.procedure.geometry import BoneAhead, angle_deg, axis_distance_mm, bone_ahead
-from rastrainer.procedure.plan import Procedure, ProcedureMeshes, ProcedureTrajectory
-from rastrainer.procedure.record import DEPTH_LIMIT_MM, PlacedInstrument, ProcedureRecord
+from rastrainer.json_checks import number, numbers, text, whole_number
+from rastrainer.procedure.geometry import angle_deg, axis_distance_mm, bone_ahead
+from rastrainer.procedure.plan import (
+    Procedure,
+    ProcedureKind,
+    ProcedureMeshes,
+    ProcedureTrajectory,
+)
+from rastrainer.procedure.record import (
+    DEPTH_LIMIT_MM,
+    PhaseTimes,
+    PlacedInstrument,
+    ProcedureRecord,
+    Seconds,
+)
 
 SAME_MM = 1e-3
 """Plans are written with four decimals."""
@@ -43,242 +54,125 @@ and of the errors by registration and hand: the same in every picture. People wh
 or green can distinguish green, yellow and blue, too."""
 
 
-@dataclass(frozen=True, eq=False)
+_LIMIT = 1e6
+_Length = Annotated[float, number(0, _LIMIT, "mm")]
+_Signed = Annotated[float, number(-_LIMIT, _LIMIT, "mm")]
+_Angle = Annotated[float, number(0, 180, "degrees")]
+_Vector = Annotated[tuple[float, float, float], numbers(3, _LIMIT, "mm")]
+_Count = Annotated[int, whole_number(0, 1_000_000)]
+
+
+@dataclass(frozen=True)
 class SplitError:
-    """An error vector from the planned to the reached point, RAS mm.
+    """An error from the planned to the reached point: lengths, and vectors in RAS.
 
     Attributes:
-        by_registration: (3,) float, from the planned point to where the registration put it.
-        by_hand: (3,) float, from there to the point that was reached.
+        mm: length of the sum of both parts.
+        by_registration_ras: from the planned point to where the registration put it.
+        by_hand_ras: from there to the point that was reached.
     """
 
-    by_registration: np.ndarray
-    by_hand: np.ndarray
+    mm: _Length
+    by_registration_mm: _Length
+    by_hand_mm: _Length
+    by_registration_ras: _Vector
+    by_hand_ras: _Vector
 
-    @property
-    def whole(self) -> np.ndarray:
-        """(3,) float, the sum of both."""
-        return self.by_registration + self.by_hand
-
-    @property
-    def length_mm(self) -> float:
-        return float(np.linalg.norm(self.whole))
-
-    @property
-    def registration_mm(self) -> float:
-        """Length of what the registration caused."""
-        return float(np.linalg.norm(self.by_registration))
-
-    @property
-    def hand_mm(self) -> float:
-        """Length of what the hand caused."""
-        return float(np.linalg.norm(self.by_hand))
-
-    def along(self, direction: np.ndarray) -> tuple[float, float, float]:
-        """Return the whole error and both parts along a unit vector (3,), mm, signed."""
-        parts = (self.whole, self.by_registration, self.by_hand)
-        whole, registration, hand = (float(part @ direction) for part in parts)
-        return whole, registration, hand
-
-    def across(self, direction: np.ndarray) -> SplitError:
-        """Return the error without its part along a unit vector (3,)."""
-        return SplitError(
-            *(
-                part - (part @ direction) * direction
-                for part in (self.by_registration, self.by_hand)
-            )
-        )
-
-    def to_json(self) -> dict[str, Any]:
-        """Return lengths and vectors, ready for JSON."""
-        return {
-            "mm": self.length_mm,
-            "byRegistrationMm": self.registration_mm,
-            "byHandMm": self.hand_mm,
-            "byRegistrationRas": self.by_registration.tolist(),
-            "byHandRas": self.by_hand.tolist(),
-        }
+    @classmethod
+    def of(cls, by_registration: np.ndarray, by_hand: np.ndarray) -> SplitError:
+        """Return the error of two parts, (3,) float each, RAS mm."""
+        parts = by_registration + by_hand, by_registration, by_hand
+        whole, registration, hand = (float(np.linalg.norm(part)) for part in parts)
+        vectors = tuple(by_registration.tolist()), tuple(by_hand.tolist())
+        return cls(whole, registration, hand, *vectors)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class TrajectoryErrors:
     """The errors of one instrument against the truth.
 
+    Depths are above 0 where the tip is too deep. An angle is at most the sum of its parts: angles
+    are no vectors.
+
     Attributes:
-        trajectory: as planned.
-        instrument: as recorded.
-        entry: entry point error, across the axis of the instrument.
-        target: target point error.
-        shown_direction: (3,) float, RAS: the true direction of the line that was shown.
-        axis_start: (3,) float, RAS: where the guide's tip truly was.
-        axis_direction: (3,) float, RAS, unit vector: the true direction of the instrument.
-        bone: where the axis truly goes through the skull, from the guide's tip; None if it
-            misses it.
+        trajectory: its name in the plan.
+        entry_point_error: across the axis of the instrument.
+        radial_error: the target point error, across the planned line.
+        angular_deviation_by_registration_deg: by how much the registration turned the shown line.
+        angular_deviation_by_hand_deg: between the shown line and the instrument.
+        outer_table_mm: where the axis truly goes through the skull, from the guide's tip; None
+            where it misses it. Of the inner table likewise.
+        plunge_mm: how deep the drill was past the inner table; None if the axis misses it.
         kept_mm: distances from the surface of the instrument (or of the drill, where it went
             deeper; taken as thick) to each no-go structure, by name; 0 or less is a hit.
+        guide_tip_ras: where the guide's tip truly was.
+        tip_ras: where the tip of the instrument truly is.
+        self_aligned: whether the robot brought the guide onto the line.
     """
 
-    trajectory: ProcedureTrajectory
-    instrument: PlacedInstrument
-    entry: SplitError
-    target: SplitError
-    shown_direction: np.ndarray
-    axis_start: np.ndarray
-    axis_direction: np.ndarray
-    bone: BoneAhead | None
-    kept_mm: Mapping[str, float]
-
-    @property
-    def tip(self) -> np.ndarray:
-        """(3,) float, RAS: where the tip of the instrument truly is."""
-        return self.axis_start + self.instrument.instrument_depth_mm * self.axis_direction
-
-    @property
-    def shown_entry(self) -> np.ndarray:
-        """(3,) float, RAS: where the planned entry, as it was shown, truly lay in the head."""
-        return self.shown_target - self.trajectory.length_mm * self.shown_direction
-
-    @property
-    def shown_target(self) -> np.ndarray:
-        """(3,) float, RAS: the same of the planned target."""
-        return self.trajectory.target_ras + self.target.by_registration
-
-    @property
-    def depth(self) -> tuple[float, float, float]:
-        """Depth error and what registration and hand caused of it, mm; above 0 is too deep."""
-        return self.target.along(self.trajectory.direction)
-
-    @property
-    def radial(self) -> SplitError:
-        return self.target.across(self.trajectory.direction)
-
-    @property
-    def angle_deg(self) -> float:
-        """Angular deviation."""
-        return angle_deg(self.trajectory.direction, self.axis_direction)
-
-    @property
-    def registration_angle_deg(self) -> float:
-        """The angle by which the registration turned the shown line.
-
-        The whole deviation is at most the sum of this and `hand_angle_deg`: angles are no vectors.
-        """
-        return angle_deg(self.trajectory.direction, self.shown_direction)
-
-    @property
-    def hand_angle_deg(self) -> float:
-        """The angle between the shown line and the instrument."""
-        return angle_deg(self.shown_direction, self.axis_direction)
-
-    @property
-    def plunge_mm(self) -> float | None:
-        """How deep the drill was past the inner table; None if the axis misses it."""
-        if self.bone is None or self.bone.inner_mm is None:
-            return None
-        return max(0.0, self.instrument.drill_depth_mm - self.bone.inner_mm)
-
-    @property
-    def hits(self) -> tuple[str, ...]:
-        """Names of the no-go structures that were hit."""
-        return tuple(name for name, distance in self.kept_mm.items() if distance <= 0.0)
-
-    @property
-    def intrusion_mm(self) -> float:
-        """How far the instrument is within its safety distance to a no-go structure; 0 if not."""
-        least = min(self.kept_mm.values(), default=np.inf)
-        return float(max(0.0, self.trajectory.safety_mm - least))
-
-    def to_json(self) -> dict[str, Any]:
-        """Return the errors, ready for JSON."""
-        depth, depth_by_registration, depth_by_hand = self.depth
-        bone = self.bone
-        return {
-            "trajectory": self.trajectory.name,
-            "entryPointError": self.entry.to_json(),
-            "targetPointError": self.target.to_json(),
-            "radialError": self.radial.to_json(),
-            "depthErrorMm": depth,
-            "depthErrorByRegistrationMm": depth_by_registration,
-            "depthErrorByHandMm": depth_by_hand,
-            "angularDeviationDeg": self.angle_deg,
-            "angularDeviationByRegistrationDeg": self.registration_angle_deg,
-            "angularDeviationByHandDeg": self.hand_angle_deg,
-            "outerTableMm": None if bone is None else bone.outer_mm,
-            "innerTableMm": None if bone is None else bone.inner_mm,
-            "plungeMm": self.plunge_mm,
-            "keptMm": dict(self.kept_mm),
-            "guideTipRas": self.axis_start.tolist(),
-            "tipRas": self.tip.tolist(),
-            "alignments": self.instrument.alignments,
-            "selfAligned": self.instrument.self_aligned,
-            "timesS": dict(self.instrument.times_s),
-        }
+    trajectory: Annotated[str, text(60)]
+    entry_point_error: SplitError
+    target_point_error: SplitError
+    radial_error: SplitError
+    depth_error_mm: _Signed
+    depth_error_by_registration_mm: _Signed
+    depth_error_by_hand_mm: _Signed
+    angular_deviation_deg: _Angle
+    angular_deviation_by_registration_deg: _Angle
+    angular_deviation_by_hand_deg: _Angle
+    outer_table_mm: _Signed | None
+    inner_table_mm: _Signed | None
+    plunge_mm: _Length | None
+    kept_mm: Mapping[str, _Signed]
+    guide_tip_ras: _Vector
+    tip_ras: _Vector
+    alignments: _Count
+    self_aligned: bool
+    times_s: PhaseTimes
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class ProcedureAnalysis:
-    """The errors of a whole procedure.
+    """The errors of a whole procedure; those in RMS are over its trajectories.
 
     Attributes:
-        record: what was done.
+        procedure: its name in the scenario.
+        alignments: how often the guide was locked, over all trajectories.
         trajectories: their errors, in the order of the plan.
     """
 
-    record: ProcedureRecord
+    procedure: Annotated[str, text(40)]
+    kind: ProcedureKind
+    target_point_error_rms_mm: _Length
+    target_point_error_by_registration_rms_mm: _Length
+    target_point_error_by_hand_rms_mm: _Length
+    entry_point_error_rms_mm: _Length
+    angular_deviation_rms_deg: _Angle
+    alignments: _Count
+    attempts: _Count
+    duration_s: Seconds
+    phase_times_s: PhaseTimes
     trajectories: tuple[TrajectoryErrors, ...]
 
-    @cached_property
-    def target_rms_mm(self) -> float:
-        """Root mean square of the target point errors."""
-        return _rms([each.target.length_mm for each in self.trajectories])
-
-    @cached_property
-    def entry_rms_mm(self) -> float:
-        """Root mean square of the entry point errors."""
-        return _rms([each.entry.length_mm for each in self.trajectories])
-
-    @cached_property
-    def angle_rms_deg(self) -> float:
-        """Root mean square of the angular deviations."""
-        return _rms([each.angle_deg for each in self.trajectories])
-
     @property
-    def target_by_registration_rms_mm(self) -> float:
-        """Root mean square of what the registration caused of the target point errors."""
-        return _rms([each.target.registration_mm for each in self.trajectories])
-
-    @property
-    def target_by_hand_rms_mm(self) -> float:
-        """Root mean square of what the hand caused of the target point errors."""
-        return _rms([each.target.hand_mm for each in self.trajectories])
+    def self_aligned(self) -> int:
+        """On how many trajectories the robot aligned the guide."""
+        return sum(each.self_aligned for each in self.trajectories)
 
     @property
     def hits(self) -> tuple[tuple[str, str], ...]:
+        """Trajectories and the no-go structures that they hit."""
         return tuple(
-            (each.trajectory.name, name) for each in self.trajectories for name in each.hits
+            (each.trajectory, name)
+            for each in self.trajectories
+            for name, distance in each.kept_mm.items()
+            if distance <= 0.0
         )
 
     @property
     def missed_bone(self) -> tuple[str, ...]:
         """Names of trajectories whose axis does not go through the skull."""
-        return tuple(each.trajectory.name for each in self.trajectories if each.plunge_mm is None)
-
-    def to_json(self) -> dict[str, Any]:
-        """Return the errors, ready for JSON."""
-        return {
-            "procedure": self.record.procedure,
-            "kind": self.record.kind.value,
-            "targetPointErrorRmsMm": self.target_rms_mm,
-            "targetPointErrorByRegistrationRmsMm": self.target_by_registration_rms_mm,
-            "targetPointErrorByHandRmsMm": self.target_by_hand_rms_mm,
-            "entryPointErrorRmsMm": self.entry_rms_mm,
-            "angularDeviationRmsDeg": self.angle_rms_deg,
-            "alignments": self.record.alignments,
-            "attempts": len(self.record.attempts),
-            "durationS": self.record.duration_s,
-            "phaseTimesS": dict(self.record.phase_times_s),
-            "trajectories": [each.to_json() for each in self.trajectories],
-        }
+        return tuple(each.trajectory for each in self.trajectories if each.plunge_mm is None)
 
 
 def analyze_procedure(
@@ -290,18 +184,29 @@ def analyze_procedure(
     """Return the errors of a procedure against the truth.
 
     Args:
-        record: what was done, with the registration that was accepted.
-        procedure: what was planned.
-        meshes: of the procedure, RAS mm.
         head_to_world: (4, 4) float, rigid, mm: where the head really was.
     """
     _check_same(record, procedure)
     world_to_ras = transforms.inverse(head_to_world)
     shown = world_to_ras @ transforms.inverse(record.accepted.world_to_head)
-    pairs = zip(procedure.trajectories, record.instruments, strict=True)
+    errors = tuple(
+        _errors(plan, done, meshes, shown, world_to_ras)
+        for plan, done in zip(procedure.trajectories, record.instruments, strict=True)
+    )
+    targets = [each.target_point_error for each in errors]
     return ProcedureAnalysis(
-        record,
-        tuple(_errors(plan, done, meshes, shown, world_to_ras) for plan, done in pairs),
+        procedure=record.procedure,
+        kind=record.kind,
+        target_point_error_rms_mm=_rms([each.mm for each in targets]),
+        target_point_error_by_registration_rms_mm=_rms([e.by_registration_mm for e in targets]),
+        target_point_error_by_hand_rms_mm=_rms([each.by_hand_mm for each in targets]),
+        entry_point_error_rms_mm=_rms([each.entry_point_error.mm for each in errors]),
+        angular_deviation_rms_deg=_rms([each.angular_deviation_deg for each in errors]),
+        alignments=record.alignments,
+        attempts=len(record.attempts),
+        duration_s=record.duration_s,
+        phase_times_s=record.phase_times_s,
+        trajectories=errors,
     )
 
 
@@ -317,25 +222,79 @@ def _errors(
     direction = world_to_ras[:3, :3] @ np.array(done.guide_direction)
     direction /= np.linalg.norm(direction)
     tip = start + done.instrument_depth_mm * direction
+    shown_direction = shown[:3, :3] @ plan.direction
     shown_entry, shown_target = (
         transforms.apply(shown, point) for point in (plan.entry_ras, plan.target_ras)
     )
+    entry = shown_entry - plan.entry_ras, start - shown_entry
+    target = shown_target - plan.target_ras, tip - shown_target
+    depths = [float(part @ plan.direction) for part in (target[0] + target[1], *target)]
     deepest = start + max(done.instrument_depth_mm, done.drill_depth_mm) * direction
-    radius = done.diameter_mm / 2
+    bone = bone_ahead(meshes.skull, start, direction, DEPTH_LIMIT_MM)
+    inner = None if bone is None else bone.inner_mm
     return TrajectoryErrors(
-        trajectory=plan,
-        instrument=done,
-        entry=SplitError(shown_entry - plan.entry_ras, start - shown_entry).across(direction),
-        target=SplitError(shown_target - plan.target_ras, tip - shown_target),
-        shown_direction=shown[:3, :3] @ plan.direction,
-        axis_start=start,
-        axis_direction=direction,
-        bone=bone_ahead(meshes.skull, start, direction, DEPTH_LIMIT_MM),
+        trajectory=plan.name,
+        entry_point_error=SplitError.of(*(_across(part, direction) for part in entry)),
+        target_point_error=SplitError.of(*target),
+        radial_error=SplitError.of(*(_across(part, plan.direction) for part in target)),
+        depth_error_mm=depths[0],
+        depth_error_by_registration_mm=depths[1],
+        depth_error_by_hand_mm=depths[2],
+        angular_deviation_deg=angle_deg(plan.direction, direction),
+        angular_deviation_by_registration_deg=angle_deg(plan.direction, shown_direction),
+        angular_deviation_by_hand_deg=angle_deg(shown_direction, direction),
+        outer_table_mm=None if bone is None else bone.outer_mm,
+        inner_table_mm=inner,
+        plunge_mm=None if inner is None else max(0.0, done.drill_depth_mm - inner),
         kept_mm={
-            name: axis_distance_mm(mesh, start, deepest) - radius
+            name: axis_distance_mm(mesh, start, deepest) - done.diameter_mm / 2
             for name, mesh in meshes.no_go.items()
         },
+        guide_tip_ras=tuple(start.tolist()),
+        tip_ras=tuple(tip.tolist()),
+        alignments=done.alignments,
+        self_aligned=done.self_aligned,
+        times_s=done.times_s,
     )
+
+
+def _across(part: np.ndarray, direction: np.ndarray) -> np.ndarray:
+    """Return a vector (3,) without its part along a unit vector."""
+    return part - (part @ direction) * direction
+
+
+class TrueLine(NamedTuple):
+    """The line of one instrument in the head, from outside to inside: (2, 3) float each, RAS mm.
+
+    Attributes:
+        planned: from entry to target.
+        shown: where the plan, as it was shown, truly lay.
+        placed: from the guide's tip to the instrument's.
+    """
+
+    trajectory: str
+    planned: np.ndarray
+    shown: np.ndarray
+    placed: np.ndarray
+
+
+def true_lines(record: ProcedureRecord, head_to_world: np.ndarray) -> list[TrueLine]:
+    """Return the lines of a procedure, of which `head_to_world` (4, 4) is the truth, mm."""
+    to_ras = transforms.inverse(head_to_world)
+    shown = to_ras @ transforms.inverse(record.accepted.world_to_head)
+    lines = []
+    for one in record.instruments:
+        planned = np.array([one.entry_ras, one.target_ras])
+        placed = np.array([one.guide_tip_mm, one.at_depth(one.instrument_depth_mm)])
+        lines.append(
+            TrueLine(
+                one.trajectory,
+                planned,
+                transforms.apply(shown, planned),
+                transforms.apply(to_ras, placed),
+            )
+        )
+    return lines
 
 
 def _check_same(record: ProcedureRecord, procedure: Procedure) -> None:

@@ -25,7 +25,6 @@ class BoneAhead(NamedTuple):
     """Where a line goes through the skull, as distances from its start in mm.
 
     Attributes:
-        outer_mm: the outer table.
         inner_mm: the inner table; None if the line does not leave the bone.
     """
 
@@ -42,10 +41,8 @@ def mesh_crossings(
     corner crosses once.
 
     Args:
-        mesh: the surface.
         start: (3,) float, mm, in the frame of the mesh.
         direction: (3,) float, unit vector.
-        length_mm: of the line.
     """
     centers, radii = mesh.triangle_spheres
     to_center = centers - start
@@ -79,10 +76,8 @@ def bone_ahead(
     """Return where a line first goes through bone, or None if it does not.
 
     Args:
-        skull: closed surface.
         start: (3,) float, mm, outside of the skull, in its frame.
         direction: (3,) float, unit vector into the head.
-        length_mm: how far to look.
     """
     outer = inner = None
     for distance, is_entering in mesh_crossings(skull, start, direction, length_mm):
@@ -107,7 +102,6 @@ def skull_angle_deg(skull: HeadMesh, point: np.ndarray, direction: np.ndarray) -
     """Return the angle between a direction into the head and the skull's inward normal, degrees.
 
     Args:
-        skull: closed surface.
         point: (3,) float, mm, where the line enters it.
         direction: (3,) float, unit vector.
     """
@@ -130,7 +124,6 @@ def axis_distance_mm(mesh: HeadMesh, start: np.ndarray, end: np.ndarray) -> floa
     side of the triangle.
 
     Args:
-        mesh: surface of the body.
         start: (3,) float, mm, in the frame of the mesh.
         end: (3,) float, mm.
     """

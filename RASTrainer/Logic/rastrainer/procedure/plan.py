@@ -85,7 +85,6 @@ class ProcedureTrajectory:
         name: for people and records; unique in its procedure.
         entry_ras: (3,) float, mm, near the skin.
         target_ras: (3,) float, mm, where the instrument's tip is to be.
-        diameter_mm: of the instrument.
         safety_mm: least planned distance of the instrument's surface to a no-go structure.
     """
 
@@ -136,12 +135,7 @@ class Procedure:
     """A planned procedure.
 
     Attributes:
-        name: for commands and records.
-        title: for people.
-        kind: what is done.
         source: of the plan: where the coordinates come from.
-        trajectories: in the order to do.
-        no_go: structures to keep away from.
         checkpoints: landmarks for verifying the registration.
     """
 
@@ -166,9 +160,6 @@ class Procedure:
 
         It covers trajectories, checkpoints, no-go structures and the skull, but neither title nor
         source.
-
-        Args:
-            skull: path of the skull's mesh.
 
         Raises:
             OSError: a mesh cannot be read.
@@ -236,12 +227,7 @@ class ProcedureMeshes:
 
 
 def read_procedure_meshes(procedure: Procedure, skull: Path) -> ProcedureMeshes:
-    """Read the meshes of a procedure.
-
-    Args:
-        procedure: names the meshes of its no-go structures.
-        skull: path of the scenario's skull.
-    """
+    """Read the meshes of a procedure."""
     mesh = read_head_mesh(skull)
     if not mesh.is_closed:
         raise InputError(f"The skull {skull} is not closed: it has a hole.")
@@ -250,19 +236,13 @@ def read_procedure_meshes(procedure: Procedure, skull: Path) -> ProcedureMeshes:
 
 
 def read_no_go_mesh(path: Path) -> HeadMesh:
-    """Read the surface of a no-go structure."""
     mesh = read_head_mesh(path)
     check_no_go_mesh(mesh, str(path))
     return mesh
 
 
 def check_no_go_mesh(mesh: HeadMesh, name: str) -> None:
-    """Check that instruments can be kept away from a surface.
-
-    Args:
-        mesh: to check.
-        name: by which an error names it.
-    """
+    """Check that instruments can be kept away from a surface."""
     check_no_go_size(len(mesh.triangles), name)
     if not mesh.is_closed:
         raise InputError(f"The no-go structure {name} is not closed: it has a hole.")
@@ -278,6 +258,5 @@ def check_no_go_size(triangles: int, name: str) -> None:
 
 
 def read_all_no_go(procedures: Iterable[Procedure]) -> dict[str, HeadMesh]:
-    """Return the surfaces of all no-go structures of some procedures, by file name."""
     paths = {structure.file for procedure in procedures for structure in procedure.no_go}
     return {path.name: read_no_go_mesh(path) for path in sorted(paths)}

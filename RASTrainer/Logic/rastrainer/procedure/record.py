@@ -44,7 +44,7 @@ WorldPoint = Annotated[tuple[float, float, float], numbers(3, WORLD_LIMIT_MM, "m
 _RasPoint = Annotated[tuple[float, float, float], numbers(3, RAS_LIMIT_MM, "mm")]
 _Length = Annotated[float, number(0, 1e6, "mm")]
 _Depth = Annotated[float, number(0, DEPTH_LIMIT_MM, "mm")]
-_PhaseTimes = Annotated[
+PhaseTimes = Annotated[
     Mapping[str, Seconds],
     object_of(check_name=one_of(*(each.value for each in (Phase.RUNNING, *PROCEDURE_PHASES)))),
 ]
@@ -116,8 +116,6 @@ class RecordedAttempt:
     Attributes:
         touches: that were registered; may be left out of the accepted one, whose touches are the
             trial's.
-        registration: in use; None if the trainee touched again before there was one.
-        checkpoints: touched with it, in order.
     """
 
     touches: Annotated[tuple[RegisteredTouch, ...], list_of(0, FIDUCIAL_COUNT, "touches")] = ()
@@ -132,12 +130,8 @@ class PlacedInstrument:
     """The instrument of one planned trajectory, as it was placed.
 
     Attributes:
-        trajectory: its name.
-        entry_ras: planned entry, RAS mm.
-        target_ras: planned target, RAS mm.
         guide_tip_mm: tip of the guide as it was locked last, World.
         guide_direction: its axis, a unit vector into the head, World.
-        alignments: how often the guide was locked.
         drill_depth_mm: the deepest that the drill was beyond the guide's tip.
         instrument_depth_mm: where the instrument was released, beyond the guide's tip.
         self_aligned: whether the robot brought the guide onto the line, before hands changed it or
@@ -156,7 +150,7 @@ class PlacedInstrument:
     drill_depth_mm: _Depth
     instrument_depth_mm: _Depth
     self_aligned: bool = False
-    times_s: _PhaseTimes = field(default_factory=dict)
+    times_s: PhaseTimes = field(default_factory=dict)
     feed: Annotated[Mapping[str, Annotated[float, number(0, 1e9)]], object_of(MAX_FEED_METRICS)] = (
         field(default_factory=dict)
     )
@@ -171,7 +165,6 @@ class ProcedureRecord:
     """The procedure of a finished trial.
 
     Attributes:
-        procedure: its name in the scenario.
         sha256: of the procedure's content, from `Procedure.sha256`.
         duration_s: from the start of the trial to the last release, without pauses.
         attempts: at registering, in order; the last one was accepted.
@@ -187,7 +180,7 @@ class ProcedureRecord:
     instruments: Annotated[
         tuple[PlacedInstrument, ...], list_of(1, MAX_TRAJECTORIES, "instruments")
     ]
-    phase_times_s: _PhaseTimes = field(default_factory=dict)
+    phase_times_s: PhaseTimes = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if self.attempts[-1].registration is None:

@@ -19,7 +19,6 @@ from rastrainer.json_records import record_from_json
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.journal_check import check_journal
 from rastrainer.study.protocol.study_progress import StudyProgress
@@ -57,8 +56,6 @@ def store_delivered(
     """Store a trial with its registration, once; known trials are not scored again.
 
     Args:
-        value: the trial as delivered.
-        study: the study.
         analyze: registers a record; may raise `InputError`.
         is_being_scored: whether its registration or score is being sent to the simulator.
 
@@ -67,7 +64,7 @@ def store_delivered(
     """
     record = record_from_json(TrialRecord, value)
     is_new = study.check_trial(record)
-    if not is_new and (is_being_scored or study.is_revealed(record.trial_id)):
+    if not is_new and (is_being_scored or study.has("truths", record.trial_id)):
         return DeliveredTrial(record)
     try:
         analysis = analyze(record)
@@ -85,7 +82,6 @@ def score_references(study: Study) -> Mapping[str, ScoreReference] | None:
 
 
 def checks_journals(study: Study) -> bool:
-    """Return whether the protocol of a study asks for trials with their journals."""
     protocol = StudyProgress(study).protocol()
     return protocol is not None and protocol.check_journals
 
@@ -101,9 +97,6 @@ def scored_with_journal(
     """Score a registered trial, with the feedback of its journal.
 
     Args:
-        analysis: of the trial, as it was registered.
-        truth: what the simulator has revealed.
-        scenario: in which it was played.
         references: those of the trial's study, as `score_references` returns them.
         records: folder of journals; None, or one that is not there, explains less of the touches.
         pause: called again and again while the journal is read; a thread may wait in it.
@@ -128,7 +121,7 @@ def with_progress(analysis: TrialAnalysis, study: Study) -> TrialAnalysis:
     if record.task == TRIAL_RUN or score is None:
         return analysis
     pass_mark = pass_mark_of(StudyProgress(study).protocol(), record.method)
-    return with_progress_among(analysis, AbortedTrials(study).attempts(record.trainee), pass_mark)
+    return with_progress_among(analysis, study.attempts(record.trainee), pass_mark)
 
 
 def with_progress_among(

@@ -9,7 +9,7 @@ nobody knows whose hands moved the sticks.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -43,8 +43,22 @@ def check_journal(
         registered = next(e for e in entries if e["sha256"] == record.journal_sha256)
         _check_record(record, entries[0], registered)
         _check_touches(record, [e for e in entries if e["n"] < registered["n"]])
-        _check_motion(record, entries)
-        _check_pose(truth, registered, scenario)
+        again = trial_motion(Recording.of(entries).trajectory())
+        _require(
+            again.keys() == record.motion.keys()
+            and all(
+                math.isclose(value, record.motion[name], rel_tol=SAME, abs_tol=SAME)
+                for name, value in again.items()
+            ),
+            "the motion",
+        )
+        written = np.reshape(registered["truth"]["headToWorld"], (4, 4))
+        of_seed = scenario.perturbed_head_to_world(registered["seed"])
+        _require(
+            np.allclose(written, truth.matrix, rtol=0.0, atol=SAME)
+            and np.allclose(written, of_seed, rtol=0.0, atol=SAME),
+            "the head's pose",
+        )
     except InputError:
         raise
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
@@ -110,28 +124,6 @@ def _check_touches(record: TrialRecord, entries: Sequence[Entry]) -> None:
     _require(math.isclose(completed_s, record.completion_time_s, abs_tol=SAME), "the time")
     tips = WholeRecording.of(entries).trajectory()
     _require(all(_is_on_path(touch, tips) for touch in tips.touches), "the tip's path")
-
-
-def _check_motion(record: TrialRecord, entries: Iterable[Entry]) -> None:
-    again = trial_motion(Recording.of(entries).trajectory())
-    _require(
-        again.keys() == record.motion.keys()
-        and all(
-            math.isclose(value, record.motion[name], rel_tol=SAME, abs_tol=SAME)
-            for name, value in again.items()
-        ),
-        "the motion",
-    )
-
-
-def _check_pose(truth: RevealedTruth, registered: Entry, scenario: Scenario) -> None:
-    written = np.reshape(registered["truth"]["headToWorld"], (4, 4))
-    of_seed = scenario.perturbed_head_to_world(registered["seed"])
-    _require(
-        np.allclose(written, truth.matrix, rtol=0.0, atol=SAME)
-        and np.allclose(written, of_seed, rtol=0.0, atol=SAME),
-        "the head's pose",
-    )
 
 
 class _Measured(WholeRecording):

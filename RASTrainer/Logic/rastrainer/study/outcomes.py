@@ -37,12 +37,8 @@ class Outcome:
 
     Attributes:
         name: Key in a trial's values, with the unit at its end where it has one.
-        title: For people.
         definition: Of a motion metric, one sentence with every threshold; else "".
-        unit: "" if none.
         better: -1 if less is better, 1 if more is, 0 if neither.
-        digits: Decimals.
-        source: Who defined it.
     """
 
     name: str

@@ -8,12 +8,11 @@ from __future__ import annotations
 import random
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.study.database.database import Connection
+from rastrainer.json_checks import accepted, pseudonym
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.study_trainees import check_pseudonym
-from rastrainer.study.database.values import utc_now
 
 LOWEST, HIGHEST = 1, 5
 MARKS = range(LOWEST, HIGHEST + 1)
@@ -37,7 +36,6 @@ class RatingForm:
     Attributes:
         domains: Those that a replay can show, in their order.
         left_out: Titles of the published domains that it cannot show, with the reason.
-        source: Publication of domains and scale.
     """
 
     name: str
@@ -131,29 +129,24 @@ class RatingStore:
         has already keeps its place.
 
         Args:
-            rater: Pseudonym.
-            trial_ids: Of the trials that can be shown.
             count: How many there shall be at least; fewer if there are no more.
-            chance: Draws and shuffles.
         """
-        rater = check_pseudonym(rater, "The name of a rater")
-        with self._database.writing() as connection:
-            rows = connection.execute("SELECT DISTINCT trial_id FROM rated_replays").fetchall()
+        rater = accepted(pseudonym(), rater, "The name of a rater")
+        with self._database.writing():
+            rows = self._database.rows("SELECT DISTINCT trial_id FROM rated_replays")
             chosen = {trial_id for (trial_id,) in rows}
             # Sorted: the same chance draws the same trials.
             others = sorted(set(trial_ids) - chosen)
             missing = min(max(0, count - len(chosen)), len(others))
             chosen |= set(chance.sample(others, missing))
-            present = _order(connection, rater)
+            present = self._order(rater)
             added = sorted(chosen - set(present))
             chance.shuffle(added)
-            last = connection.execute(
-                "SELECT coalesce(max(number), 0) FROM rated_replays WHERE rater = ?", (rater,)
-            ).fetchone()[0]
+            query = "SELECT coalesce(max(number), 0) FROM rated_replays WHERE rater = ?"
+            last = self._database.row(query, rater)[0]
             for number, trial_id in enumerate(added, start=last + 1):
-                connection.execute(
-                    "INSERT INTO rated_replays VALUES (?, ?, ?, ?)",
-                    (rater, number, trial_id, utc_now()),
+                self._database.insert(
+                    "rated_replays", rater=rater, number=number, trial_id=trial_id
                 )
             return (*present, *added)
 
@@ -170,51 +163,46 @@ class RatingStore:
 
         Args:
             mark_id: UUID of this mark: the same one again changes nothing.
-            rater: Pseudonym.
-            trial_id: Of a trial that the rater was given.
-            form: Which form.
-            domain: Name of one of its domains.
-            mark: 1 to 5.
         """
         if domain not in {each.name for each in form.domains}:
             raise InputError(f"{form.title} has no domain {domain[:40]!r}.")
         if mark is not None and (isinstance(mark, bool) or mark not in MARKS):
             raise InputError(f"A mark is a whole number from {MARKS[0]} to {MARKS[-1]}.")
-        given = (rater, trial_id, form.name, domain, mark)
-        with self._database.writing() as connection:
-            row = connection.execute(
-                "SELECT rater, trial_id, form, domain, mark FROM rating_marks WHERE mark_id = ?",
-                (mark_id,),
-            ).fetchone()
-            if row is not None and row != given:
+        given: dict[str, Any] = {
+            "rater": rater,
+            "trial_id": trial_id,
+            "form": form.name,
+            "domain": domain,
+            "mark": mark,
+        }
+        with self._database.writing():
+            query = f"SELECT {', '.join(given)} FROM rating_marks WHERE mark_id = ?"
+            row = self._database.row(query, mark_id)
+            if row is not None and row != tuple(given.values()):
                 raise InputError(f"Another mark is stored under the UUID {mark_id[:40]}.")
             if row is not None:
                 return False
-            if trial_id not in _order(connection, rater):
+            if trial_id not in self._order(rater):
                 raise InputError(f"The rater {rater[:64]} was not given this replay.")
-            connection.execute(
-                "INSERT INTO rating_marks (mark_id, rater, trial_id, form, domain, mark, "
-                "stored_utc) VALUES (?, ?, ?, ?, ?, ?, ?)",
-                (mark_id, *given, utc_now()),
-            )
+            self._database.insert("rating_marks", mark_id=mark_id, **given)
             return True
 
     def marks(self, rater: str, trial_id: str) -> dict[str, int]:
         """Return the marks that count, by domain, in the order in which they were given."""
-        with self._database.reading() as connection:
-            rows = connection.execute(
+        return _latest(
+            self._database.rows(
                 "SELECT domain, mark FROM rating_marks WHERE rater = ? AND trial_id = ? "
                 "ORDER BY id",
-                (rater, trial_id),
-            ).fetchall()
-        return _latest(rows)
+                rater,
+                trial_id,
+            )
+        )
 
     def ratings(self) -> tuple[Rating, ...]:
         """Return every form that a rater has filled in, by form, rater and trial."""
-        with self._database.reading() as connection:
-            rows = connection.execute(
-                "SELECT form, rater, trial_id, domain, mark FROM rating_marks ORDER BY id"
-            ).fetchall()
+        rows = self._database.rows(
+            "SELECT form, rater, trial_id, domain, mark FROM rating_marks ORDER BY id"
+        )
         given: dict[tuple[str, str, str], list[tuple[str, int | None]]] = {}
         for form, rater, trial_id, domain, mark in rows:
             given.setdefault((form, rater, trial_id), []).append((domain, mark))
@@ -225,12 +213,9 @@ class RatingStore:
                 found.append(Rating(rater, trial_id, form, latest))
         return tuple(found)
 
-
-def _order(connection: Connection, rater: str) -> list[str]:
-    rows = connection.execute(
-        "SELECT trial_id FROM rated_replays WHERE rater = ? ORDER BY number", (rater,)
-    ).fetchall()
-    return [trial_id for (trial_id,) in rows]
+    def _order(self, rater: str) -> list[str]:
+        query = "SELECT trial_id FROM rated_replays WHERE rater = ? ORDER BY number"
+        return [trial_id for (trial_id,) in self._database.rows(query, rater)]
 
 
 def _latest(marks: Sequence[tuple[str, int | None]]) -> dict[str, int]:

@@ -13,17 +13,17 @@ from rastrainer.protocol import TRIAL_RUN, RegistrationMethod
 from rastrainer.registration.fits import RIGID
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import CurriculumStanding
-from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAbortedTrial
 from rastrainer.study.database.cohort_store import CohortStore, IncompleteStudyError
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import StoredProcedure, StoredTrial
+from rastrainer.study.database.values import StoredAbortedTrial, StoredTrial
 from rastrainer.study.protocol.steps import objections_to
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers, StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.ratings import Rating, RatingStore
 from rastrainer.study_messages import StudyStep
 from rastrainer.trial.ctps import StudyNotes, Trial, read_notes, read_trials
+from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore
 
@@ -38,7 +38,6 @@ class TrialRow:
         number: Of the trainee's trials in this mode, from 1; 0 for a trial run.
         values: Measurements by name; see `rastrainer.study.outcomes`.
         acceptable: Whether it was within all limits of its score; False without a score.
-        completed_utc: Time of the last kept touch, ISO 8601.
         procedure: None of touches alone, or if it is not scored.
     """
 
@@ -53,7 +52,7 @@ class TrialRow:
     score_version: str = ""
     acceptable: bool = False
     completed_utc: str = ""
-    procedure: StoredProcedure | None = None
+    procedure: ProcedureOutcome | None = None
     method: str = RegistrationMethod.FIDUCIALS.value
 
 
@@ -64,14 +63,11 @@ class StudyData:
     Attributes:
         trials: Without trial runs; for trainees in a protocol, those of its steps.
         mean_ct_s: Mean completion times for CTPS instead of the trials' own, by mode.
-        notes: On a published study, or None.
         protocol: None if trainees practiced freely.
         skipped: Trainee, step and reason of each skipped step.
         outside_protocol: Number of trials outside the protocol, which are left out.
         objections: Trainee, trial and reasons of those of them that broke a rule of the protocol.
-        without_consent: Number of trainees left out without consent.
         versions: Of the programs that made the records, name → different versions.
-        has_order: Whether the order of the trials is known.
         gap: What is missing of an incomplete virtual cohort, as a sentence; else "".
         aborted: Aborted trials, including trial runs, by trainee in order.
         undelivered: First and last numbers of trials that never arrived, by their simulator's
@@ -130,10 +126,6 @@ def read_study_data(place: StudyPlace, allow_incomplete: bool = False) -> StudyD
     """Read a study's database, or a CSV file with the header `mode,subject,task,ct,rmse`.
 
     Notes beside a CSV file `NAME.csv` are read from `NAME.json`.
-
-    Args:
-        place: Path of the file, or the address of the database.
-        allow_incomplete: Accept an incomplete virtual cohort.
 
     Raises:
         IncompleteStudyError: the cohort is incomplete.
@@ -215,9 +207,7 @@ def _from_database(place: StudyPlace) -> StudyData:
             versions={name: tuple(sorted(found)) for name, found in sorted(versions.items())},
             has_order=True,
             gap="" if cohort is None else cohort.gap,
-            aborted=tuple(
-                stored for name in sorted(consenting) for stored in AbortedTrials(study).of(name)
-            ),
+            aborted=tuple(stored for name in sorted(consenting) for stored in study.aborted(name)),
             undelivered=study.undelivered(),
             standings={
                 name: standing
@@ -261,7 +251,7 @@ def _trial_row(stored: StoredTrial, number: int) -> TrialRow:
         "completion_time_s": record.completion_time_s,
         "refused_touches": record.rejected_touches,
         "undone_touches": record.undone_touches,
-        **stored.motion,
+        **record.motion,
     }
     if rigid is not None:
         values["rmse_mm"] = rigid.fre_mm
@@ -298,28 +288,26 @@ def _trial_row(stored: StoredTrial, number: int) -> TrialRow:
     )
 
 
-def _procedure_values(procedure: StoredProcedure) -> dict[str, float]:
+def _procedure_values(procedure: ProcedureOutcome) -> dict[str, float]:
     """Return the outcomes of a procedure; root mean squares are over its trajectories."""
     analysis, score = procedure.analysis, procedure.score
-    by_hand = [
-        one["targetPointError"]["byHandMm"]
-        for one in procedure.trajectories
-        if not one["selfAligned"]
-    ]
+    lines = analysis.trajectories
+    by_hand = [one.target_point_error.by_hand_mm for one in lines if not one.self_aligned]
     rms = math.sqrt(sum(length**2 for length in by_hand) / len(by_hand)) if by_hand else 0.0
+    by_registration = analysis.target_point_error_by_registration_rms_mm
     return {
         "procedure_score": score.score,
         "procedure_acceptable": float(score.acceptable),
-        "procedure_trajectories": float(len(procedure.trajectories)),
-        "procedure_duration_s": analysis["durationS"],
-        "procedure_target_rms_mm": analysis["targetPointErrorRmsMm"],
-        "procedure_target_by_registration_rms_mm": analysis["targetPointErrorByRegistrationRmsMm"],
+        "procedure_trajectories": float(len(lines)),
+        "procedure_duration_s": analysis.duration_s,
+        "procedure_target_rms_mm": analysis.target_point_error_rms_mm,
+        "procedure_target_by_registration_rms_mm": by_registration,
         **({"procedure_target_by_hand_rms_mm": rms} if by_hand else {}),
-        "procedure_self_aligned": float(procedure.self_aligned),
-        "procedure_entry_rms_mm": analysis["entryPointErrorRmsMm"],
-        "procedure_angle_rms_deg": analysis["angularDeviationRmsDeg"],
-        "procedure_alignments": float(analysis["alignments"]),
-        "procedure_attempts": float(analysis["attempts"]),
+        "procedure_self_aligned": float(analysis.self_aligned),
+        "procedure_entry_rms_mm": analysis.entry_point_error_rms_mm,
+        "procedure_angle_rms_deg": analysis.angular_deviation_rms_deg,
+        "procedure_alignments": float(analysis.alignments),
+        "procedure_attempts": float(analysis.attempts),
         "procedure_plunge_mm": score.measures.plunge_mm,
         "procedure_hits": float(score.measures.hits),
     }

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.writing import write_text
+from rastrainer.procedure.errors import TrajectoryErrors
 from rastrainer.registration.fits import RIGID
-from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAbortedTrial
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import StoredProcedure, StoredTrial
+from rastrainer.study.database.values import StoredAbortedTrial, StoredTrial
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers
 from rastrainer.study.study_data import StudyData, TrialRow, trial_rows
@@ -58,7 +57,7 @@ def write_history(study: Study, pseudonyms: Iterable[str], path: Path | str) -> 
     pseudonyms = tuple(pseudonyms)
     rows = [row for pseudonym in pseudonyms for row in trial_rows(study.history(pseudonym))]
     write_text(path, trials_csv(rows))
-    aborted = [stored for name in pseudonyms for stored in AbortedTrials(study).of(name)]
+    aborted = [stored for name in pseudonyms for stored in study.aborted(name)]
     if aborted:
         path = Path(path)
         write_text(path.with_name(f"{path.stem}-aborted{path.suffix}"), aborted_csv(aborted))
@@ -175,53 +174,45 @@ def procedures_csv(trials: Iterable[TrialRow]) -> str:
     error are lengths of vectors, which do not add up; depth errors do. A plunge depth is empty
     where the instrument missed the skull.
     """
-    rows = []
+    rows: list[list[object]] = []
     for trial in trials:
         done = trial.procedure
-        if done is None:
-            continue
-        for errors in done.trajectories:
-            score = [_number(done.score.score), done.score.version]
-            rows.append([*_trial_cells(trial, done), *_error_cells(errors), *score])
+        for errors in () if done is None else done.analysis.trajectories:
+            assert done is not None
+            analysis, score = done.analysis, done.score
+            about = plain_cell(analysis.procedure), analysis.kind.value
+            shared = [*_who(trial), trial.number, trial.trial_id, *about]
+            rows.append([*shared, *_error_cells(errors), _number(score.score), score.version])
     return csv_text(PROCEDURE_COLUMNS, rows)
 
 
-def _trial_cells(trial: TrialRow, done: StoredProcedure) -> list[object]:
-    return [*_who(trial), trial.number, trial.trial_id, plain_cell(done.name), done.kind]
-
-
-def _error_cells(errors: Mapping[str, Any]) -> list[str]:
-    entry, target = errors["entryPointError"], errors["targetPointError"]
-    kept = errors["keptMm"]
-    nearest = min(kept, key=kept.get, default="")
-    is_robot = errors["selfAligned"]
+def _error_cells(errors: TrajectoryErrors) -> list[str]:
+    entry, target = errors.entry_point_error, errors.target_point_error
+    nearest = min(errors.kept_mm, key=errors.kept_mm.__getitem__, default="")
 
     def parts(whole: float, by_registration: float, others: float) -> list[str]:
-        by_hand, by_robot = (None, others) if is_robot else (others, None)
+        by_hand, by_robot = (None, others) if errors.self_aligned else (others, None)
         return [_number(value) for value in (whole, by_registration, by_hand, by_robot)]
 
-    depth = ("depthErrorMm", "depthErrorByRegistrationMm", "depthErrorByHandMm")
-    times = errors["timesS"]
     return [
-        plain_cell(errors["trajectory"]),
-        "robot" if is_robot else "hand",
-        *(
-            cell
-            for error in (entry, target)
-            for cell in parts(error["mm"], error["byRegistrationMm"], error["byHandMm"])
-        ),
-        _number(errors["radialError"]["mm"]),
-        *(_number(errors[key]) for key in depth),
+        plain_cell(errors.trajectory),
+        "robot" if errors.self_aligned else "hand",
+        *parts(entry.mm, entry.by_registration_mm, entry.by_hand_mm),
+        *parts(target.mm, target.by_registration_mm, target.by_hand_mm),
+        _number(errors.radial_error.mm),
+        _number(errors.depth_error_mm),
+        _number(errors.depth_error_by_registration_mm),
+        _number(errors.depth_error_by_hand_mm),
         *parts(
-            errors["angularDeviationDeg"],
-            errors["angularDeviationByRegistrationDeg"],
-            errors["angularDeviationByHandDeg"],
+            errors.angular_deviation_deg,
+            errors.angular_deviation_by_registration_deg,
+            errors.angular_deviation_by_hand_deg,
         ),
-        _number(errors["plungeMm"]),
+        _number(errors.plunge_mm),
         plain_cell(nearest),
-        _number(kept.get(nearest)),
-        str(errors["alignments"]),
-        *(_number(times.get(phase)) for phase in ("aligning", "drilling", "inserting")),
+        _number(errors.kept_mm.get(nearest)),
+        str(errors.alignments),
+        *(_number(errors.times_s.get(phase)) for phase in ("aligning", "drilling", "inserting")),
     ]
 
 

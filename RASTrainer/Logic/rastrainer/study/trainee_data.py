@@ -10,9 +10,7 @@ from rastrainer.files.writing import write_json
 from rastrainer.journal.folder import SUFFIX, erase_journals
 from rastrainer.json_records import record_to_json
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
-from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.ratings import RatingStore
 
@@ -26,14 +24,31 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
         "format": FORMAT,
         "trainee": asdict(trainee),
         "protocol": _protocol_json(StudyProgress(study), pseudonym),
-        "trials": [_trial_json(trial) for trial in trials],
+        "trials": [
+            {
+                "record": record_to_json(trial.record),
+                "registrations": {
+                    kind: record_to_json(fit) for kind, fit in trial.registrations.items()
+                },
+                "score": None
+                if trial.score is None
+                else record_to_json(trial.score, with_defaults=True),
+                "true_tre_mm": trial.true_tre_mm,
+                "head_to_world": None if trial.truth is None else trial.truth.head_to_world,
+                "motion": trial.record.motion,
+                "procedure": None
+                if trial.procedure is None
+                else record_to_json(trial.procedure, with_defaults=True),
+            }
+            for trial in trials
+        ],
         "aborted_trials": [
             {
                 "record": record_to_json(stored.record),
                 "step": stored.step,
                 "repeat_reason": stored.repeat_reason,
             }
-            for stored in AbortedTrials(study).of(pseudonym)
+            for stored in study.aborted(pseudonym)
         ],
         "curricula": [
             {
@@ -60,24 +75,11 @@ def _protocol_json(progress: StudyProgress, pseudonym: str) -> dict[str, Any] | 
     return {"place": place, "steps": [asdict(e) for e in progress.progress(pseudonym).entries]}
 
 
-def _trial_json(trial: StoredTrial) -> dict[str, Any]:
-    return {
-        "record": record_to_json(trial.record),
-        "registrations": {kind: record_to_json(fit) for kind, fit in trial.registrations.items()},
-        "score": None if trial.score is None else record_to_json(trial.score, with_defaults=True),
-        "true_tre_mm": trial.true_tre_mm,
-        "head_to_world": trial.head_to_world,
-        "motion": trial.motion,
-        "procedure": None if trial.procedure is None else trial.procedure.to_json(),
-    }
-
-
 @dataclass(frozen=True)
 class Erasure:
     """What was deleted, and what may remain.
 
     Attributes:
-        trials: Number of finished trials deleted from the study.
         journals: Number of deleted journals, including those of unfinished trials.
         missing: UUIDs of deleted trials whose journals were not found.
         unreadable: Journals that name no trainee.
@@ -111,12 +113,10 @@ def erase_trainee(study: Study, pseudonym: str, records: Path | None) -> Erasure
     and the deletion can be repeated. Earlier exports must be deleted by the lab.
 
     Args:
-        study: The trainee's study.
-        pseudonym: The trainee.
         records: The simulator's folder of journals; None if they are elsewhere.
     """
     ids = [trial.record.trial_id for trial in study.history(pseudonym)]
-    ids += [aborted.record.trial_id for aborted in AbortedTrials(study).of(pseudonym)]
+    ids += [aborted.record.trial_id for aborted in study.aborted(pseudonym)]
     erased, unreadable = ((), ()) if records is None else erase_journals(records, pseudonym, ids)
     names = [path.name for path in erased if path.suffix == SUFFIX]
     missing = [one for one in ids if not any(name.endswith(f"_{one}{SUFFIX}") for name in names)]

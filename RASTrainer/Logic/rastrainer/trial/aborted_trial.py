@@ -32,7 +32,6 @@ class AbortedTrial(AnyTrial):
             made; without pauses.
         phase: in which it was aborted: `running`, `paused`, or `complete` after all touches.
         reason: an `AbortReason`, or that of a later version.
-        traced: number of points that were traced over the skin.
     """
 
     aborted_utc: Utc

@@ -39,13 +39,10 @@ class TouchFinding:
     """The analysis of one touch.
 
     Attributes:
-        label: Of the fiducial.
-        residual_mm: Distance of the registered touch from its fiducial.
         depth_mm: Part along the skin's outward normal, positive off the skin; None without skin.
         aside_mm: Part along the skin; None likewise.
         share: Of the squared registration error, 0 to 1.
         dwell_s: How long the tip had been within 2 mm; None without a recording.
-        is_outlier: Whether it degraded the registration.
         reasons: The main one first; may be empty.
         replay_s: Start and end for a replay, in trial time; None without a recording.
     """
@@ -87,7 +84,6 @@ def touch_findings(
     """Return a finding for each touch of a registration, in its order.
 
     Args:
-        registration: The scored, rigid one.
         normals: (n, 3) float, outward unit normals of the skin at the fixed points, RAS.
         trajectory: Of the trial; touches are found in it by label.
     """
@@ -193,8 +189,6 @@ class Advice:
     """One improvement.
 
     Attributes:
-        topic: Short, for programs.
-        sentence: For the trainee.
         gain: Approximate gain in points.
     """
 

@@ -50,7 +50,6 @@ class RevealedTruth:
 
     Attributes:
         head_to_world: 16 numbers, row by row, mm, from MRI RAS to World.
-        true_tre_mm: true error of the registration at the target.
         skin: its shift; a study keeps no more of it than the record does.
     """
 
@@ -71,7 +70,6 @@ class PublishedScore:
     Attributes:
         published: 100·(CT score − RMSE penalty), as in the paper's tables.
         equation_3: the paper's equation 3 as printed: half of it.
-        reference: of the cohort.
     """
 
     published: float
@@ -84,12 +82,8 @@ class TrialAnalysis:
     """The results of one trial.
 
     Attributes:
-        record: the trial.
         target_name: of the scenario's target, at which target errors are computed.
         fits: possible registrations by kind; rigid is always included.
-        target_errors: expected error at the target, by kind.
-        truth: revealed by the simulator; None before.
-        score: of the rigid registration; None without the truth.
         published_score: CTPS of the rigid registration; None without a cohort.
         feedback: on this trial alone.
         procedure: errors and score of the procedure; None without the truth, or of touches alone.
@@ -126,8 +120,6 @@ class TrialAnalysis:
         common bias of its touches. A landmark has no exact place, and a trace no bias.
 
         Args:
-            scenario: of the trial.
-            truth: revealed by the simulator.
             references: of the score, by task, from a study's protocol; the scenario's for other
                 tasks.
             trajectory: from the journal; it explains inaccurate touches.
@@ -192,8 +184,6 @@ def analyze_trial(
     """Register a trial by its method, its touches paired by label; score it by its truth.
 
     Args:
-        record: the trial.
-        scenario: in which it was played.
         cohort: trials that CTPS compares with; those of the trial's own mode count.
         references: of the score, by task, as a study's protocol sets them; those of the scenario
             for tasks that it leaves out.

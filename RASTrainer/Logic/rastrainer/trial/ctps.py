@@ -39,8 +39,6 @@ class Trial:
 
     Attributes:
         mode: How the scene was seen, such as `desktop` or `hmd`.
-        subject: Pseudonym of the trainee.
-        task: Name of the task.
         rmse_mm: Fiducial registration error of the rigid fit, in mm.
     """
 
@@ -79,11 +77,9 @@ class CohortScores:
     """CTPS of one mode as the paper tabulates it; where too few trials define a value it is None.
 
     Attributes:
-        reference: What the trials were compared with.
         trials: Published CTPS of each trial, in the order given.
         tasks: Mean published CTPS of each task ("Task Perf.").
         subjects: Mean published CTPS of each subject ("User Perf.").
-        overall: Mean published CTPS of all trials.
         equation_3_overall: The same by equation 3: half of it.
         sd_population: Standard deviation of `trials`, divided by n.
         sd_sample: Standard deviation of `trials`, divided by n − 1.
@@ -118,7 +114,6 @@ def score_cohort(trials: Sequence[Trial], mean_ct_s: float | None = None) -> Coh
     """Return the CTPS table of the trials of one mode.
 
     Args:
-        trials: At least one.
         mean_ct_s: Mean CT to use instead of the trials' own; the paper used a rounded one.
     """
     reference = CohortReference.of(trials, mean_ct_s)
@@ -248,12 +243,7 @@ class StudyNotes:
     """Notes on a study.
 
     Attributes:
-        title: For people.
-        source: Where the numbers come from.
-        participants: Who took part, in a sentence.
-        setting: How it was done, in a sentence.
         mean_ct_s: Mean completion times that the authors used, by mode.
-        printed: Numbers to compare with ours.
     """
 
     title: Annotated[str, text(200)]

@@ -64,9 +64,7 @@ class HowPlayed:
             resumed at another speed, the value farthest from 1.
         pace: Simulated seconds in a second by the clock, while the trial's own time runs: below
             `speed` if the simulator was held up, which no long wait hides.
-        pauses: How often it was paused.
         way_mm: Way of the tip by what moved it, a `MovedBy`.
-        feed_commands: Number of commands to feed drill or instrument.
         view_s: Time that each kind of view was looked at: `desktop`, `page`, `headset`.
     """
 
@@ -90,12 +88,7 @@ class HowPlayed:
         return self.way_mm.get(MovedBy.COMMANDS.value, 0.0) / way if way else 0.0
 
     def objections(self, mode: str, allows: Collection[str]) -> tuple[str, ...]:
-        """Return why the trial does not count for a step of a study, in words.
-
-        Args:
-            mode: Display mode of the step.
-            allows: The `Allowance`s of its protocol.
-        """
+        """Return why the trial does not count for a step of a study, in words."""
         return tuple(why for what, why in self._objections(mode) if what.value not in allows)
 
     def _objections(self, mode: str) -> Iterator[tuple[Allowance, str]]:
@@ -145,7 +138,11 @@ class PlayRecording:
         self._add_time(entry)
         kind = entry["kind"]
         if kind in ("header", "continued"):
-            self._add_session(entry["session"])
+            session = entry["session"]
+            speed = session["speed"] or 0.0
+            self._speed = max(self._speed, speed, key=lambda each: abs(each - 1.0))
+            if session["isSeeded"] and self._seed_source is SeedSource.DRAWN:
+                self._seed_source = SeedSource.SESSION
         elif kind == "command" and entry["name"] == CommandName.START_TASK:
             self._started_by = entry["sender"]
             if entry["arguments"].get("seed") is not None:
@@ -199,9 +196,3 @@ class PlayRecording:
     def _count(self, passed: tuple[float, float]) -> None:
         self._simulated_s += passed[0]
         self._clock_s += passed[1]
-
-    def _add_session(self, session: Mapping[str, Any]) -> None:
-        speed = session["speed"] or 0.0
-        self._speed = max(self._speed, speed, key=lambda each: abs(each - 1.0))
-        if session["isSeeded"] and self._seed_source is SeedSource.DRAWN:
-            self._seed_source = SeedSource.SESSION

@@ -85,19 +85,23 @@ class ProcedureMeasures:
     missed_bone: _Count
 
     @classmethod
-    def of(cls, analysis: ProcedureAnalysis) -> ProcedureMeasures:
-        """Return the measures of an analyzed procedure."""
+    def of(cls, analysis: ProcedureAnalysis, procedure: Procedure) -> ProcedureMeasures:
+        """Return the measures of an analyzed procedure, as it was planned."""
         each = analysis.trajectories
+        intrusions = [
+            max(0.0, plan.safety_mm - min(errors.kept_mm.values(), default=math.inf))
+            for plan, errors in zip(procedure.trajectories, each, strict=True)
+        ]
         return cls(
-            duration_s=analysis.record.duration_s,
-            target_mm=analysis.target_rms_mm,
-            worst_target_mm=max(one.target.length_mm for one in each),
-            entry_mm=analysis.entry_rms_mm,
-            worst_entry_mm=max(one.entry.length_mm for one in each),
-            angle_deg=analysis.angle_rms_deg,
-            worst_angle_deg=max(one.angle_deg for one in each),
+            duration_s=analysis.duration_s,
+            target_mm=analysis.target_point_error_rms_mm,
+            worst_target_mm=max(one.target_point_error.mm for one in each),
+            entry_mm=analysis.entry_point_error_rms_mm,
+            worst_entry_mm=max(one.entry_point_error.mm for one in each),
+            angle_deg=analysis.angular_deviation_rms_deg,
+            worst_angle_deg=max(one.angular_deviation_deg for one in each),
             plunge_mm=max(one.plunge_mm or 0.0 for one in each),
-            intrusion_mm=max(one.intrusion_mm for one in each),
+            intrusion_mm=max(intrusions),
             hits=len(analysis.hits),
             missed_bone=len(analysis.missed_bone),
         )
@@ -133,13 +137,9 @@ class ProcedureScore:
     """The score of a procedure and its parts.
 
     Attributes:
-        score: above 0 up to 100.
         desirabilities: by measure: `time`, `target`, `entry`, `angle`, `plunge` and `distance`.
-        is_accurate: whether errors are within their limits.
         is_safe: whether no no-go structure is hit, and the drill stopped in time.
-        measures: what was scored.
         reference_s: duration of half the range of the time desirability.
-        version: of the formula and the references.
     """
 
     score: Annotated[float, number(0, 100)]
@@ -174,12 +174,7 @@ def reference_duration_s(touching_s: float, procedure: Procedure, self_aligned: 
 
 
 def score_procedure(measures: ProcedureMeasures, reference_s: float) -> ProcedureScore:
-    """Return the score of a procedure.
-
-    Args:
-        measures: what is scored of it.
-        reference_s: from `reference_duration_s`, above 0.
-    """
+    """Return the score of a procedure."""
     measures.check()
     desirabilities = {
         "time": of_time(measures.duration_s, reference_s),
@@ -224,14 +219,9 @@ def _worst_acceptable() -> float:
     return TIME_FLOOR * math.prod([*accuracy.values(), *safety.values()])
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class ProcedureOutcome:
-    """The outcome of a procedure.
-
-    Attributes:
-        analysis: its errors.
-        score: from them.
-    """
+    """The errors of a procedure, and its score from them."""
 
     analysis: ProcedureAnalysis
     score: ProcedureScore
@@ -246,11 +236,11 @@ class ProcedureOutcome:
             "isAccurate": score.is_accurate,
             "isSafe": score.is_safe,
             "desirabilities": dict(score.desirabilities),
-            "targetRmsMm": analysis.target_rms_mm,
-            "targetByRegistrationRmsMm": analysis.target_by_registration_rms_mm,
-            "targetByHandRmsMm": analysis.target_by_hand_rms_mm,
-            "entryRmsMm": analysis.entry_rms_mm,
-            "angleRmsDeg": analysis.angle_rms_deg,
+            "targetRmsMm": analysis.target_point_error_rms_mm,
+            "targetByRegistrationRmsMm": analysis.target_point_error_by_registration_rms_mm,
+            "targetByHandRmsMm": analysis.target_point_error_by_hand_rms_mm,
+            "entryRmsMm": analysis.entry_point_error_rms_mm,
+            "angleRmsDeg": analysis.angular_deviation_rms_deg,
             "hits": [list(hit) for hit in analysis.hits],
             "trajectories": [_summary(each) for each in analysis.trajectories],
         }
@@ -265,8 +255,6 @@ def procedure_outcome(
     """Return the errors and the score of a trial's procedure; None for touches alone.
 
     Args:
-        record: the trial.
-        scenario: in which it was carried out.
         head_to_world: (4, 4) float, mm, the true pose.
         references: of the score of touches, by task, as a study's protocol sets them.
     """
@@ -284,33 +272,32 @@ def procedure_outcome(
         )
     analysis = analyze_procedure(done, procedure, meshes, head_to_world)
     touching = score_reference(scenario, record.task, references, record.method).time_s
-    self_aligned = sum(one.self_aligned for one in done.instruments)
-    reference_s = reference_duration_s(touching, procedure, self_aligned)
-    score = score_procedure(ProcedureMeasures.of(analysis), reference_s)
+    reference_s = reference_duration_s(touching, procedure, analysis.self_aligned)
+    score = score_procedure(ProcedureMeasures.of(analysis, procedure), reference_s)
     return ProcedureOutcome(analysis, score)
 
 
 def _summary(errors: TrajectoryErrors) -> dict[str, Any]:
     nearest = min(errors.kept_mm, key=errors.kept_mm.__getitem__, default=None)
-    depth, depth_by_registration, depth_by_hand = errors.depth
+    target, entry = errors.target_point_error, errors.entry_point_error
     return {
-        "name": errors.trajectory.name,
-        "selfAligned": errors.instrument.self_aligned,
-        "targetMm": errors.target.length_mm,
-        "byRegistrationMm": errors.target.registration_mm,
-        "byHandMm": errors.target.hand_mm,
-        "entryMm": errors.entry.length_mm,
-        "entryByRegistrationMm": errors.entry.registration_mm,
-        "entryByHandMm": errors.entry.hand_mm,
-        "radialMm": errors.radial.length_mm,
-        "radialByRegistrationMm": errors.radial.registration_mm,
-        "radialByHandMm": errors.radial.hand_mm,
-        "depthMm": depth,
-        "depthByRegistrationMm": depth_by_registration,
-        "depthByHandMm": depth_by_hand,
-        "angleDeg": errors.angle_deg,
-        "angleByRegistrationDeg": errors.registration_angle_deg,
-        "angleByHandDeg": errors.hand_angle_deg,
+        "name": errors.trajectory,
+        "selfAligned": errors.self_aligned,
+        "targetMm": target.mm,
+        "byRegistrationMm": target.by_registration_mm,
+        "byHandMm": target.by_hand_mm,
+        "entryMm": entry.mm,
+        "entryByRegistrationMm": entry.by_registration_mm,
+        "entryByHandMm": entry.by_hand_mm,
+        "radialMm": errors.radial_error.mm,
+        "radialByRegistrationMm": errors.radial_error.by_registration_mm,
+        "radialByHandMm": errors.radial_error.by_hand_mm,
+        "depthMm": errors.depth_error_mm,
+        "depthByRegistrationMm": errors.depth_error_by_registration_mm,
+        "depthByHandMm": errors.depth_error_by_hand_mm,
+        "angleDeg": errors.angular_deviation_deg,
+        "angleByRegistrationDeg": errors.angular_deviation_by_registration_deg,
+        "angleByHandDeg": errors.angular_deviation_by_hand_deg,
         "plungeMm": errors.plunge_mm,
         "nearest": nearest,
         "keptMm": None if nearest is None else errors.kept_mm[nearest],

@@ -99,7 +99,6 @@ class AnyTrial:
     """Fields that the records of finished and of aborted trials share.
 
     Attributes:
-        trainee: pseudonym.
         task: name, such as `task-1`; also that of the trial run.
         points: the kept touches, of all fifteen fiducials or of landmarks, in their order; their
             labels differ and their times do not fall.
@@ -149,7 +148,6 @@ class TrialRecord(AnyTrial):
     Attributes:
         completion_time_s: simulated time from the start to the last kept touch, or the last point
             of the trace, without pauses.
-        seed: of the trial, where the simulator reveals it.
         motion: motion metrics by name (`rastrainer.motion`).
         display: what the trainee looked at: `kind`, `device`, `refreshHz`, `shownFrames` and
             `droppedFrames`, the `guidance` to the next point, and the `ghost` that was shown (a

@@ -130,7 +130,6 @@ class Region:
 
 
 def region_of(scenario: Scenario) -> Region:
-    """Return the region of a scenario: the head's target, the planned ones, and the grid."""
     targets = [scenario.target_position, *(target.position_ras for target in scenario.targets)]
     return Region(np.array(targets, dtype=float), computed_once(scenario, brain_grid))
 
@@ -187,10 +186,7 @@ def score_reference(
     protocol hold for fiducials.
 
     Args:
-        scenario: with the task.
-        task_name: of the task.
         of_protocol: references by task from a study's protocol, which take precedence.
-        method: by which the trial is registered.
     """
     is_by_fiducials = method is RegistrationMethod.FIDUCIALS
     if of_protocol and task_name in of_protocol and is_by_fiducials:

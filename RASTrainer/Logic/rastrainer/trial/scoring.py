@@ -81,7 +81,6 @@ class ScoreMeasures:
     """The measures of a trial that count for its score.
 
     Attributes:
-        completion_time_s: above 0.
         tre_mm: RMS true TRE over the region.
         contact_time_s: of unintended contact.
         contact_path_mm: of the tip during that.
@@ -148,12 +147,7 @@ class TrialScore:
         time_desirability: from `TIME_FLOOR` (never done) to 1 (at once).
         accuracy_desirability: from 0 (no registration) to 1 (no error, no common bias).
         safety_desirability: from 0 to 1 (no unintended contact, nothing pressed in).
-        is_accurate: whether the target error is within the limit.
         is_unbiased: whether the common bias is; None if it was not scored.
-        is_safe: whether contact and pressing are.
-        measures: what was scored.
-        reference: that the measures were compared with.
-        version: of the formula and the references.
         unshifted_tre_mm: true TRE at the target, had the skin not shifted; None if it had not.
             It does not count.
     """
@@ -199,11 +193,6 @@ def score_trial(
 
     Methods have references of their own and, but for fiducials, no common bias: their scores are
     compared with those of the same method alone.
-
-    Args:
-        measures: what is scored of it; those of a trial without fiducials have no common bias.
-        reference: of its task in its scenario.
-        method: by which it was registered.
     """
     measures.check(has_bias=method is RegistrationMethod.FIDUCIALS)
     safety_measures = measures.safety

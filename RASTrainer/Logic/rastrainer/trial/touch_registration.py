@@ -59,9 +59,7 @@ class GivenPoints:
     """The points that register a trial.
 
     Attributes:
-        task: name of the trial's task.
         touches: World, mm, labeled.
-        method: by which they are registered.
         trace_mm: (n, 3) float, World, the points that were traced; none where the method has none.
     """
 
@@ -207,7 +205,6 @@ def register_trial(
 
     Args:
         given: the touches are paired by label with the fiducials of the task, or the landmarks.
-        scenario: of the trial.
         pause: called between the steps, every 10 ms or so; a worker may wait in it.
     """
     task = task_by_method(scenario, given.task, given.method)
@@ -288,8 +285,6 @@ def unshifted_tre_mm(
     again.
 
     Args:
-        record: The trial.
-        scenario: In which it was played.
         head_to_world: (4, 4) float, mm, the true pose.
         skin: How the skin lay, with its seed.
 

@@ -42,17 +42,13 @@ class PastTrial:
 
     Attributes:
         score: The latest, above 0 up to 100; 0 of an aborted trial.
-        acceptable: Whether it was within all limits of its score.
         is_aborted: Whether it was aborted after a touch, or can have no score: not passed, without
             time or score.
         method: By which it was registered, or would have been; trials are compared with those of
             the same method.
-        started_utc: ISO 8601.
         parts: Desirability of each part of the score, 0 to 1.
         procedure: That it continued with; "" for touches alone, and for aborted trials, which do
             not say which.
-        procedure_score: None for touches alone.
-        is_in_procedure: Whether it was aborted in a procedure.
     """
 
     trial_id: str
@@ -111,7 +107,6 @@ class TraineeProgress:
         pass_mark: Score that passes; None without one for this method.
         competence: LC-CUSUM over the trainee's trials of all tasks in this mode; aborted ones count
             as not passed. None without a pass mark.
-        sentences: The same in words.
     """
 
     scores: tuple[float, ...]
@@ -128,8 +123,6 @@ def progress_of(
     Args:
         past: All scored trials of the trainee without trial runs, and aborted ones that count as
             not passed, in order; later ones are ignored.
-        trial_id: Of one of them.
-        pass_mark: Score that passes; None without one for the trial's method.
     """
     ids = ["" if other.is_aborted else other.trial_id for other in past]
     if trial_id not in ids:
@@ -206,9 +199,7 @@ class TrialFeedback:
 
     Attributes:
         score: With its parts; None if the trial has none.
-        touches: Every touch, in the order of touching.
         worst: The touch with the largest error; its `replay_s` is what to look at again.
-        advice: Up to three things to improve, the first first.
         progress: None if there is no history.
         paused_s: How long the trial was paused in all, as far as that is known.
         skin: How the skin had shifted, and what that did; None if it had not.
@@ -285,12 +276,8 @@ def trial_feedback(
     """Return the feedback on a trial; what is not known is left out.
 
     Args:
-        score: Of the trial; None if it has none.
-        registration: That was scored.
         normals: (n, 3) float, outward unit normals of the skin at the fiducials, RAS.
         motion: Motion metrics; with `path_efficiency`, detours are advised on too.
-        trajectory: Of the trial, from its journal.
-        bias: That all touches share.
     """
     findings = touch_findings(registration, normals, trajectory)
     return TrialFeedback(

@@ -86,7 +86,6 @@ class Sentence(str):
     """An English sentence with its key and values.
 
     Attributes:
-        key: of its template.
         values: numbers, texts, and partial sentences.
     """
 

@@ -16,9 +16,7 @@ from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
-from rastrainer.study.database.aborted_trials import AbortedTrials
-from rastrainer.study.database.study import Study
-from rastrainer.study.database.study_trainees import DeletedTrialError
+from rastrainer.study.database.study import DeletedTrialError, Study
 from rastrainer.trial.aborted_trial import AbortedTrial
 
 T = TypeVar("T")
@@ -184,5 +182,5 @@ class AbortedTrialLogic:
     def _keep(self, delivery: Delivery) -> AbortedTrial:
         record = record_from_json(AbortedTrial, delivery)
         with self._openStudy() as study:
-            AbortedTrials(study).add(record, delivery)
+            study.add_aborted(record, delivery)
         return record

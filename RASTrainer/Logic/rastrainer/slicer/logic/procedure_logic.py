@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from rastrainer.commands import CommandName
 from rastrainer.igtl.client import Reply
+from rastrainer.procedure.errors import TrueLine, true_lines
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork
@@ -113,6 +114,7 @@ class ProcedureLogic:
         self.answered = Signal()
         self.status = ProcedureStatus()
         self.outcome: ProcedureOutcome | None = None
+        self.lines: tuple[TrueLine, ...] = ()
         self.isRegistrationFailed = False
         self._scene = scene
         self._link = link
@@ -140,16 +142,17 @@ class ProcedureLogic:
 
     def takeScored(self, analysis: TrialAnalysis, isOtherOpen: bool) -> None:
         """Take the errors of a scored trial, and show them unless another trial is played."""
-        if analysis.procedure is not None and not isOtherOpen:
-            self.showOutcome(analysis.procedure)
+        record, truth = analysis.record.procedure, analysis.truth
+        if record is not None and truth is not None and not isOtherOpen:
+            self.showOutcome(analysis.procedure, true_lines(record, truth.matrix))
 
-    def showOutcome(self, outcome: ProcedureOutcome | None) -> None:
+    def showOutcome(self, outcome: ProcedureOutcome | None, lines: Sequence[TrueLine] = ()) -> None:
         """Show lines and errors of a procedure in place of others; None for those of no trial."""
-        self.outcome = outcome
+        self.outcome, self.lines = outcome, tuple(lines)
         if outcome is None:
             showPlannedLines(self._scene, None)
         else:
-            showProcedureErrors(self._scene, outcome.analysis)
+            showProcedureErrors(self._scene, outcome.analysis, self.lines)
         self.changed.emit()
 
     def showPlan(self, scenario: Scenario) -> None:

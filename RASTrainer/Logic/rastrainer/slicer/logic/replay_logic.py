@@ -11,6 +11,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import ReplayTrack
+from rastrainer.procedure.errors import true_lines
 from rastrainer.registration.fits import RIGID
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork, inBackground
@@ -216,7 +217,10 @@ class ReplayLogic:
         showTask(self._scene, scenario, record.task, record.method)
         showTouches(self._scene, record)
         self.shown.emit()
-        self.procedureShown.emit(outcome)
+        lines = []
+        if record.procedure is not None and trial.truth is not None and outcome is not None:
+            lines = true_lines(record.procedure, trial.truth.matrix)
+        self.procedureShown.emit(outcome, lines)
         if track is None:
             goTo(self._scene, 0.0)
         else:

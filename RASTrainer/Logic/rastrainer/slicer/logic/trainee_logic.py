@@ -17,10 +17,9 @@ from rastrainer.slicer.translation import _
 from rastrainer.study.curriculum.curriculum import Curriculum, read_curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import CurriculumStanding
-from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAbortedTrial
 from rastrainer.study.database.database import StudyBusyError
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import StoredTrial, Trainee
+from rastrainer.study.database.values import StoredAbortedTrial, StoredTrial, Trainee
 from rastrainer.study_messages import CurriculumMessage
 from rastrainer.work_progress import Progress, no_progress
 
@@ -130,11 +129,11 @@ class TraineeLogic:
         return trainee
 
     def setConsent(self, consent: bool) -> None:
-        self.study.set_consent(self.chosen, consent)
+        self.study.change_trainee(self.chosen, consent=consent)
         self.changed.emit()
 
     def setArchived(self, archived: bool) -> None:
-        self.study.set_archived(self.chosen, archived)
+        self.study.change_trainee(self.chosen, archived=archived)
         self.changed.emit()
 
     def delete(self, progress: Progress = no_progress) -> Erasure:
@@ -216,7 +215,7 @@ class TraineeLogic:
         return inBackground(read, progress)
 
     def aborted(self) -> tuple[StoredAbortedTrial, ...]:
-        return AbortedTrials(self.study).of(self.chosen) if self.chosenTrainee() else ()
+        return self.study.aborted(self.chosen) if self.chosenTrainee() else ()
 
     def history(self) -> tuple[StoredTrial, ...]:
         return self.study.history(self.chosen) if self.chosenTrainee() else ()

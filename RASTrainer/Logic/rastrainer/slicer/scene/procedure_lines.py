@@ -21,6 +21,7 @@ from rastrainer.procedure.errors import (
     ProcedureAnalysis,
     SplitError,
     TrajectoryErrors,
+    TrueLine,
 )
 from rastrainer.procedure.plan import Checkpoint, Procedure, ProcedureTrajectory
 from rastrainer.slicer.scene.error_colors import arrowPolyData
@@ -223,7 +224,7 @@ def showPlannedLines(scene: Any, procedure: Procedure | None) -> None:
     _showLines(scene, Role.PLANNED_LINE, "{}", [each.name for each in planned], ends)
 
 
-def showProcedureErrors(scene: Any, analysis: ProcedureAnalysis) -> Any:
+def showProcedureErrors(scene: Any, analysis: ProcedureAnalysis, lines: Sequence[TrueLine]) -> Any:
     """Show all lines of a procedure, arrows of its errors, and their table, which is returned.
 
     The registered lines are where the plan, as it was shown, truly lay in the head. The true lines
@@ -231,16 +232,13 @@ def showProcedureErrors(scene: Any, analysis: ProcedureAnalysis) -> Any:
     point to where the registration put it, and from there on to what was reached; they are true to
     scale. All of it is in RAS mm.
     """
-    each = analysis.trajectories
-    names = [errors.trajectory.name for errors in each]
-    planned = [np.array([e.trajectory.entry_ras, e.trajectory.target_ras]) for e in each]
-    shown = [np.array([e.shown_entry, e.shown_target]) for e in each]
-    placed = [np.array([e.axis_start, e.tip]) for e in each]
+    names = [line.trajectory for line in lines]
+    planned = [line.planned for line in lines]
     _showLines(scene, Role.PLANNED_LINE, "{}", names, planned)
-    _showLines(scene, Role.REGISTERED_LINE, _("{}, registered"), names, shown)
-    _showLines(scene, Role.TRUE_LINE, _("{}, true"), names, placed)
-    _showArrows(scene, each)
-    return _showTable(scene, each)
+    _showLines(scene, Role.REGISTERED_LINE, _("{}, registered"), names, [x.shown for x in lines])
+    _showLines(scene, Role.TRUE_LINE, _("{}, true"), names, [line.placed for line in lines])
+    _showArrows(scene, analysis.trajectories, planned)
+    return _showTable(scene, analysis.trajectories)
 
 
 def forgetProcedureErrors(scene: Any) -> None:
@@ -291,20 +289,23 @@ def _newLine(scene: Any, role: str) -> Any:
     return node
 
 
-def _showArrows(scene: Any, each: Sequence[TrajectoryErrors]) -> None:
+def _showArrows(
+    scene: Any, each: Sequence[TrajectoryErrors], planned: Sequence[np.ndarray]
+) -> None:
     for role, name, color in (
         (Role.ERRORS_BY_REGISTRATION, _("Errors due to registration"), REGISTERED_COLOR),
         (Role.ERRORS_BY_HAND, _("Errors due to hand or robot"), PLACED_COLOR),
     ):
         append = vtk.vtkAppendPolyData()
-        for errors in each:
-            for start, split in (
-                (errors.trajectory.entry_ras, errors.entry),
-                (errors.trajectory.target_ras, errors.target),
-            ):
-                byRegistration = role == Role.ERRORS_BY_REGISTRATION
-                begin = start if byRegistration else start + split.by_registration
-                vector = split.by_registration if byRegistration else split.by_hand
+        for errors, ends in zip(each, planned, strict=True):
+            splits = errors.entry_point_error, errors.target_point_error
+            for start, split in zip(ends, splits, strict=True):
+                byRegistration, byHand = map(
+                    np.array, (split.by_registration_ras, split.by_hand_ras)
+                )
+                isFirst = role == Role.ERRORS_BY_REGISTRATION
+                begin = start if isFirst else start + byRegistration
+                vector = byRegistration if isFirst else byHand
                 append.AddInputData(arrowPolyData(begin, vector, THICKNESS))
         append.Update()
         node = findOrAddNode(scene, MODEL, role, name)
@@ -316,37 +317,41 @@ def _showArrows(scene: Any, each: Sequence[TrajectoryErrors]) -> None:
 def _showTable(scene: Any, each: Sequence[TrajectoryErrors]) -> Any:
     def parts(title: str, splits: Sequence[SplitError]) -> list[Column]:
         return [
-            Column(f"{title} (mm)", [split.length_mm for split in splits]),
-            Column(f"{title}, by registration (mm)", [s.registration_mm for s in splits]),
-            Column(f"{title}, by hand or robot (mm)", [split.hand_mm for split in splits]),
+            Column(f"{title} (mm)", [split.mm for split in splits]),
+            Column(f"{title}, by registration (mm)", [s.by_registration_mm for s in splits]),
+            Column(f"{title}, by hand or robot (mm)", [split.by_hand_mm for split in splits]),
         ]
 
-    depths = [errors.depth for errors in each]
+    shownDepths = [errors.depth_error_by_registration_mm for errors in each]
+    shownAngles = [errors.angular_deviation_by_registration_deg for errors in each]
     return showTable(
         scene,
         Role.PROCEDURE_ERRORS,
         "Procedure errors",
         [
-            Column("trajectory", [errors.trajectory.name for errors in each], isText=True),
+            Column("trajectory", [errors.trajectory for errors in each], isText=True),
             Column(
                 "aligned by",
-                ["robot" if errors.instrument.self_aligned else "hand" for errors in each],
+                ["robot" if errors.self_aligned else "hand" for errors in each],
                 isText=True,
             ),
-            *parts("entry point error", [errors.entry for errors in each]),
-            *parts("target point error", [errors.target for errors in each]),
-            Column("radial error (mm)", [errors.radial.length_mm for errors in each]),
-            Column("depth error (mm)", [whole for whole, _shown, _hand in depths]),
-            Column("depth error, by registration (mm)", [shown for _whole, shown, _hand in depths]),
-            Column("depth error, by hand (mm)", [hand for _whole, _shown, hand in depths]),
-            Column("angular deviation (°)", [errors.angle_deg for errors in each]),
-            Column("angle by registration (°)", [errors.registration_angle_deg for errors in each]),
-            Column("angle by hand or robot (°)", [errors.hand_angle_deg for errors in each]),
+            *parts("entry point error", [errors.entry_point_error for errors in each]),
+            *parts("target point error", [errors.target_point_error for errors in each]),
+            Column("radial error (mm)", [errors.radial_error.mm for errors in each]),
+            Column("depth error (mm)", [errors.depth_error_mm for errors in each]),
+            Column(
+                "depth error, by registration (mm)",
+                shownDepths,
+            ),
+            Column("depth error, by hand (mm)", [errors.depth_error_by_hand_mm for errors in each]),
+            Column("angular deviation (°)", [errors.angular_deviation_deg for errors in each]),
+            Column("angle by registration (°)", shownAngles),
+            Column("angle by hand or robot (°)", [e.angular_deviation_by_hand_deg for e in each]),
             Column("plunge depth (mm)", [errors.plunge_mm for errors in each]),
             Column(
                 "distance kept (mm)",
                 [min(errors.kept_mm.values(), default=None) for errors in each],
             ),
-            Column("alignments", [float(errors.instrument.alignments) for errors in each]),
+            Column("alignments", [float(errors.alignments) for errors in each]),
         ],
     )

@@ -15,10 +15,11 @@ from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.tables import Column, showTable
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import StoredProcedure, StoredTrial
+from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.outcomes import MOTION_METRICS
 from rastrainer.trial.analysis import published_score
 from rastrainer.trial.ctps import CTPS_WARNING, Trial
+from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.scoring import (
     COMMON_BIAS_LIMIT_MM,
     CONTACT_LIMIT_S,
@@ -84,7 +85,7 @@ def scoreRows(trial: StoredTrial) -> list[Row]:
     rows = []
     if score is not None:
         rows += _parts(score)
-    paused = trial.motion.get("pause_time_s", 0.0)
+    paused = trial.record.motion.get("pause_time_s", 0.0)
     note = _("{s:.0f} s of pauses are left out").format(s=paused) if paused else ""
     rows.append(Row(_("Completion time"), trial.record.completion_time_s, "s", note))
     if rigid is not None:
@@ -106,23 +107,23 @@ def scoreRows(trial: StoredTrial) -> list[Row]:
     return rows
 
 
-def _procedureRows(procedure: StoredProcedure) -> list[Row]:
+def _procedureRows(procedure: ProcedureOutcome) -> list[Row]:
     """Return the score of a procedure, beside that of the touches, and its errors."""
     score, analysis = procedure.score, procedure.analysis
     version = _("Version {v}") if score.acceptable else _("not acceptable; version {v}")
     split = _("registration {registration} mm, hand {hand} mm")
-    if procedure.self_aligned:
+    if analysis.self_aligned:
         split = _("registration {registration} mm, robot and hand {hand} mm")
     split = split.format(
-        registration=fixed(analysis["targetPointErrorByRegistrationRmsMm"], 2),
-        hand=fixed(analysis["targetPointErrorByHandRmsMm"], 2),
+        registration=fixed(analysis.target_point_error_by_registration_rms_mm, 2),
+        hand=fixed(analysis.target_point_error_by_hand_rms_mm, 2),
     )
-    over = _("RMS over {count} lines").format(count=len(procedure.trajectories))
+    over = _("RMS over {count} lines").format(count=len(analysis.trajectories))
     return [
         Row(_("Score of the procedure"), score.score, "/ 100", version.format(v=score.version)),
-        Row(_("… target point error"), analysis["targetPointErrorRmsMm"], "mm", split, over),
-        Row(_("… entry point error"), analysis["entryPointErrorRmsMm"], "mm", over),
-        Row(_("… angular deviation"), analysis["angularDeviationRmsDeg"], "°", over),
+        Row(_("… target point error"), analysis.target_point_error_rms_mm, "mm", split, over),
+        Row(_("… entry point error"), analysis.entry_point_error_rms_mm, "mm", over),
+        Row(_("… angular deviation"), analysis.angular_deviation_rms_deg, "°", over),
         Row(_("… deepest plunge"), score.measures.plunge_mm, "mm", _("past the inner table")),
     ]
 
@@ -196,9 +197,9 @@ def ctpsRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:
 def motionRows(trial: StoredTrial) -> list[Row]:
     """Return the motion metrics of a trial, each with its definition."""
     return [
-        Row(metric.title, trial.motion[name], metric.unit, metric.definition)
+        Row(metric.title, trial.record.motion[name], metric.unit, metric.definition)
         for name, metric in MOTION_METRICS.items()
-        if name in trial.motion
+        if name in trial.record.motion
     ]
 
 

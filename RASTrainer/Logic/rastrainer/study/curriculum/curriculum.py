@@ -18,12 +18,7 @@ _VERSIONS = {"formatVersion": 1}
 
 @dataclass(frozen=True)
 class Curriculum:
-    """What a trainee should reach.
-
-    Attributes:
-        name: Short; `title` is for people.
-        assignments: In the order of listing; at least one.
-    """
+    """What a trainee should reach."""
 
     name: Annotated[str, identifier]
     title: Annotated[str, text(80)]
@@ -47,10 +42,8 @@ class Curriculum:
 
 
 def read_curriculum(path: Path | str) -> Curriculum:
-    """Read a curriculum's file."""
     return read_plan(Curriculum, path, _VERSIONS)
 
 
 def curriculum_from_json(value: Any) -> Curriculum:
-    """Return the curriculum of a `to_json` object."""
     return plan_from_json(Curriculum, value, _VERSIONS, "The curriculum")

@@ -11,10 +11,9 @@ from dataclasses import dataclass, replace
 from rastrainer.errors import InputError
 from rastrainer.study.curriculum.curriculum import Curriculum, curriculum_from_json
 from rastrainer.study.curriculum.standing import CurriculumStanding, PassMarkOf, standing_in
-from rastrainer.study.database.aborted_trials import AbortedTrials
+from rastrainer.study.database.schema import TRAINEE_ID
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.study_trainees import TRAINEE_ID
-from rastrainer.study.database.values import decoded, json_text, utc_now
+from rastrainer.study.database.values import decoded, json_text
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import pass_mark_of
 from rastrainer.trial.trial_feedback import PastTrial
@@ -65,51 +64,45 @@ class CurriculumStore:
                     "for trials registered by fiducials. Give the assignment its own mark."
                 )
         text = None if curriculum is None else json_text(curriculum.to_json())
-        with self._study.database.writing() as connection:
+        with self._study.database.writing():
             if pseudonym:
                 self._study.trainee(pseudonym)
-            connection.execute(
-                "INSERT INTO curriculum_choices (trainee_id, curriculum_json, stored_utc) "
-                f"VALUES (({TRAINEE_ID}), ?, ?)",
-                (pseudonym, text, utc_now()),
+            self._study.database.insert(
+                "curriculum_choices", trainee=pseudonym, curriculum_json=text
             )
 
     def choices(self) -> tuple[CurriculumChoice, ...]:
         """Return all choices, oldest first."""
-        with self._study.database.reading() as connection:
-            rows = connection.execute(
-                "SELECT coalesce(pseudonym, ''), curriculum_json, curriculum_choices.stored_utc "
-                "FROM curriculum_choices LEFT JOIN trainees ON trainees.id = trainee_id "
-                "ORDER BY curriculum_choices.id"
-            ).fetchall()
+        rows = self._study.database.rows(
+            "SELECT coalesce(pseudonym, ''), curriculum_json, curriculum_choices.stored_utc "
+            "FROM curriculum_choices LEFT JOIN trainees ON trainees.id = trainee_id "
+            "ORDER BY curriculum_choices.id"
+        )
         return tuple(CurriculumChoice(name, _read(text), utc) for name, text, utc in rows)
 
     def standing(self, pseudonym: str) -> CurriculumStanding | None:
         """Return the standing of a trainee; None without a curriculum."""
-        with self._study.database.reading() as connection:
-            row = connection.execute(
+        with self._study.database.reading():
+            row = self._study.database.row(
                 "SELECT curriculum_json FROM curriculum_choices "
                 f"WHERE trainee_id = ({TRAINEE_ID}) OR trainee_id IS NULL ORDER BY id DESC LIMIT 1",
-                (pseudonym,),
-            ).fetchone()
+                pseudonym,
+            )
             curriculum = None if row is None else _read(row[0])
             if curriculum is None:
                 return None
-            trials = AbortedTrials(self._study).attempts(pseudonym)
-            counted = [_as_counted(trial) for trial in trials]
-            return standing_in(curriculum, counted, _marks(self._study))
+            counted = map(_as_counted, self._study.attempts(pseudonym))
+            return standing_in(curriculum, tuple(counted), _marks(self._study))
 
     def stamps(self) -> dict[str, tuple[int | None, ...]]:
         """Return for each active trainee numbers that change with where they may stand.
 
         They cost little: a window need not compute every standing again whenever something is new.
         """
-        with self._study.database.reading() as connection:
-            rows = connection.execute(_STAMPS).fetchall()
+        rows = self._study.database.rows(_STAMPS)
         return {name: tuple(numbers) for name, *numbers in rows}
 
     def standings(self) -> dict[str, CurriculumStanding]:
-        """Return the standing of each active trainee with a curriculum, by pseudonym."""
         names = [trainee.pseudonym for trainee in self._study.trainees()]
         return {name: each for name in names if (each := self.standing(name)) is not None}
 
@@ -124,7 +117,6 @@ def _read(text: str | None) -> Curriculum | None:
 
 
 def _as_counted(trial: PastTrial) -> PastTrial:
-    """Return a trial with the score of its procedure if it has one."""
     done = trial.procedure_score
     if done is None:
         return trial

@@ -31,7 +31,6 @@ class CurriculumStanding:
     """A trainee's standing in a curriculum.
 
     Attributes:
-        standings: In the curriculum's order.
         played: Trials, each once however many assignments it counts for.
     """
 
@@ -89,7 +88,6 @@ def standing_in(
     """Return where a trainee stands.
 
     Args:
-        curriculum: That is meant.
         trials: Of the trainee, in order of starting; the score of one with a procedure is that of
             the procedure.
         pass_mark_of: The study's pass mark, for goals without their own mark.
@@ -109,7 +107,6 @@ def standing_in(
 
 
 def _counts_for(trial: PastTrial, assignment: Assignment) -> bool:
-    """Return whether a trial was played as an assignment asks."""
     procedure = trial.procedure
     if trial.is_aborted and (assignment.procedure or not trial.is_in_procedure):
         procedure = assignment.procedure
@@ -135,7 +132,7 @@ def _standing(
     reached_utc = ""
     if reaching is not None and not missing:
         gates = [reached[name] for name in assignment.after]
-        reached_utc = _reached_utc(reaching.started_utc, gates)
+        reached_utc = max(filter(None, (reaching.started_utc, *gates)), key=moment, default="")
     recent = own[-RECENT:]
     return AssignmentStanding(
         **{**vars(assignment), "mark": mark},
@@ -167,11 +164,6 @@ def _progress(
         if row == assignment.trials and reaching is None:
             reaching = trial
     return reaching, min(row, assignment.trials)
-
-
-def _reached_utc(time: str, gates: Sequence[str]) -> str:
-    """Return a time, or of the gates the last where that was later; "" if unknown."""
-    return max(filter(None, (time, *gates)), key=moment, default="")
 
 
 def _weakest(trials: Sequence[PastTrial]) -> str:

@@ -55,52 +55,52 @@ class CohortStore:
 
     def start(self, plan: Mapping[str, Any], planned_trials: int) -> None:
         """Store the plan, from which all trials follow; the same again changes nothing."""
-        with self._database.writing() as connection:
-            row = connection.execute("SELECT plan_json FROM cohort").fetchone()
-            if row is None:
-                for table in ("trainees", "study_protocol"):
-                    if connection.execute(f"SELECT 1 FROM {table}").fetchone() is not None:
-                        raise InputError(
-                            "The folder contains a study that is no virtual cohort; choose an "
-                            "empty folder."
-                        )
-                connection.execute(
-                    "INSERT INTO cohort VALUES (1, ?, ?, ?, NULL)",
-                    (json_text(plan), planned_trials, utc_now()),
+        text = json_text(plan)
+        with self._database.writing():
+            row = self._database.row("SELECT plan_json FROM cohort")
+            if row is not None and row[0] == text:
+                return
+            if row is not None:
+                stored, new = decode_finite_json(row[0]), decode_finite_json(text)
+                names = [each for each in {**stored, **new} if stored.get(each) != new.get(each)]
+                raise InputError(
+                    "The folder contains a virtual cohort that was started with other options "
+                    f"(different: {', '.join(names)}). Resume it with the options that it was "
+                    "started with, or choose an empty folder."
                 )
-            elif row[0] != json_text(plan):
-                _refuse_other_plan(*map(decode_finite_json, (row[0], json_text(plan))))
+            for table in ("trainees", "study_protocol"):
+                if self._database.row(f"SELECT 1 FROM {table}") is not None:
+                    raise InputError(
+                        "The folder contains a study that is no virtual cohort; choose an "
+                        "empty folder."
+                    )
+            self._database.insert("cohort", id=1, plan_json=text, planned_trials=planned_trials)
 
     def state(self) -> CohortState | None:
         """Return the progress of the cohort, or None if the study is no virtual cohort."""
-        with self._database.reading() as connection:
-            row = connection.execute("SELECT planned_trials, finished_utc FROM cohort").fetchone()
+        with self._database.reading():
+            row = self._database.row("SELECT planned_trials, finished_utc FROM cohort")
             if row is None:
                 return None
             stored, stuck = (
-                connection.execute(f"SELECT count(*) FROM {table}").fetchone()[0]
+                self._database.row(f"SELECT count(*) FROM {table}")[0]
                 for table in ("trials", "stuck_trials")
             )
         return CohortState(row[0], stored, stuck, row[1] is not None)
 
     def has_played(self, trial_id: str) -> bool:
-        """Return whether a trial was played: stored, stuck, or deleted since."""
-        with self._database.reading() as connection:
-            query = "SELECT 1 FROM stuck_trials WHERE trial_id = ?"
-            return (
-                connection.execute(query, (trial_id,)).fetchone() is not None
-                or self._study.is_deleted(trial_id)
-                or self._study.has_trial(trial_id)
-            )
+        with self._database.reading():
+            is_known = any(self._study.has(each, trial_id) for each in ("stuck_trials", "trials"))
+            return is_known or self._study.is_deleted(trial_id)
 
     def add(self, analysis: TrialAnalysis) -> None:
         """Store a finished trial with all results, the truth included, in one transaction."""
-        record, truth = analysis.record, analysis.truth
+        record, truth, study = analysis.record, analysis.truth, self._study
         if truth is None:
             raise ValueError("A virtual trial is stored with its truth.")
-        study = self._study
-        with study.database.writing():
-            study.create_where_missing(record.trainee, consent=True)
+        with self._database.writing():
+            if not study.has_trainee(record.trainee):
+                study.create_trainee(record.trainee, consent=True)
             # Not new where a second process plays the same cohort; its trial is the same.
             if study.add_trial(record):
                 study.add_results(
@@ -114,23 +114,10 @@ class CohortStore:
 
     def add_stuck(self, trial_id: str) -> None:
         """Note that a trial was played but not finished."""
-        with self._database.writing() as connection:
-            connection.execute(
-                "INSERT INTO stuck_trials VALUES (?) ON CONFLICT DO NOTHING", (trial_id,)
-            )
+        self._database.insert("stuck_trials", is_once=True, trial_id=trial_id)
 
     def finish(self) -> None:
         """Note that all trials were played."""
-        with self._database.writing() as connection:
-            connection.execute(
-                "UPDATE cohort SET finished_utc = ? WHERE finished_utc IS NULL", (utc_now(),)
-            )
-
-
-def _refuse_other_plan(stored: Mapping[str, Any], plan: Mapping[str, Any]) -> None:
-    names = [name for name in {**stored, **plan} if stored.get(name) != plan.get(name)]
-    raise InputError(
-        f"The folder contains a virtual cohort that was started with other options (different: "
-        f"{', '.join(names)}). Resume it with the options that it was started with, or choose an "
-        "empty folder."
-    )
+        self._database.change(
+            "UPDATE cohort SET finished_utc = ? WHERE finished_utc IS NULL", utc_now()
+        )

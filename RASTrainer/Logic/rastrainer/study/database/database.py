@@ -18,6 +18,8 @@ from typing import Any, Protocol
 from urllib.parse import parse_qsl, quote, unquote, urlencode, urlsplit
 
 from rastrainer.errors import InputError
+from rastrainer.study.database.schema import TABLES, TRAINEE_ID
+from rastrainer.study.database.values import utc_now
 
 SCHEMES = ("postgresql://", "postgres://")
 EXAMPLE = "postgresql://USER@HOST/DATABASE"
@@ -35,10 +37,8 @@ class PostgresAddress:
 
     Attributes:
         host: name or number of its computer, or the folder of its socket on this one.
-        database: its name.
         user: the role; "" for the name of the system's user.
         port: None for 5432.
-        options: of libpq, such as `sslmode`.
     """
 
     host: str
@@ -117,7 +117,10 @@ def _address(text: str) -> PostgresAddress:
     if not host or not database or "/" in database or "," in host or parts.fragment:
         raise InputError(f"The address of a study names a host and a database: {EXAMPLE}.")
     if "port" in options:
-        port = _port(options.pop("port"))
+        text = options.pop("port")
+        if not text.isdecimal() or not 0 < int(text[:6]) < 65536:
+            raise InputError("The port of a study is a number from 1 to 65535.")
+        port = int(text)
     user = unquote(parts.username or "")
     if not "".join((host, database, user, *options.values())).isprintable():
         raise InputError(f"An address of PostgreSQL is printable text such as {EXAMPLE}.")
@@ -130,28 +133,10 @@ def _address(text: str) -> PostgresAddress:
     return address
 
 
-def _port(text: str) -> int:
-    if not text.isdecimal() or not 0 < int(text[:6]) < 65536:
-        raise InputError("The port of a study is a number from 1 to 65535.")
-    return int(text)
-
-
 BUSY_TIMEOUT_S = 30.0
 INTERACTIVE_TIMEOUT_S = 0.05
 """Not noticeable in a window."""
 REST_S = 1.0
-
-
-class Rows(Protocol):
-    """What a statement returns, row by row."""
-
-    def fetchone(self) -> Any:
-        """Return the next row as a tuple, or None."""
-
-    def fetchall(self) -> list[Any]:
-        """Return all further rows as tuples."""
-
-    def __iter__(self) -> Iterator[Any]: ...
 
 
 class Connection(Protocol):
@@ -161,7 +146,7 @@ class Connection(Protocol):
     `json_extract(column, '$.a.b')` is the one function that differs: its value may be a text.
     """
 
-    def execute(self, sql: str, parameters: Sequence[Any] = ..., /) -> Rows:
+    def execute(self, sql: str, parameters: Sequence[Any] = ..., /) -> Any:
         """Execute a statement."""
 
     def executemany(self, sql: str, parameters: Iterable[Sequence[Any]], /) -> object:
@@ -221,23 +206,14 @@ class StudyUnreachableError(StudyBusyError):
 
 
 class StudyDatabase(ABC):
-    """A connection to a study; each process and thread may have one.
-
-    Attributes:
-        name: of the study, for reports.
-        place: where it is.
-    """
+    """A connection to a study; each process and thread may have one."""
 
     _connection: Any
     _open: tuple[Connection, bool] | None = None
     """The open transaction, and whether it may change the study."""
 
     def __init__(self, name: str, place: StudyPlace, lock_wait: LockWait | None) -> None:
-        """Connect, and make or check the tables; `lock_wait` is half a minute by default.
-
-        Raises:
-            StudyBusyError: another program has locked it.
-        """
+        """Connect, and make or check the tables; `lock_wait` is half a minute by default."""
         self.name, self.place = name, place
         self._lock_wait = lock_wait or LockWait()
         with self._sentences():
@@ -253,6 +229,35 @@ class StudyDatabase(ABC):
         """Close the connection; nothing is pending outside a transaction."""
         self._connection.close()
 
+    def rows(self, sql: str, *parameters: Any) -> list[Any]:
+        """Return all rows that a query finds."""
+        with self.reading() as connection:
+            return connection.execute(sql, parameters).fetchall()
+
+    def row(self, sql: str, *parameters: Any) -> Any:
+        """Return the first row that a query finds, or None."""
+        with self.reading() as connection:
+            return connection.execute(sql, parameters).fetchone()
+
+    def insert(self, table: str, is_once: bool = False, **values: Any) -> None:
+        """Store a row; with `is_once`, not in place of one that has its key.
+
+        `trainee` is a pseudonym; the time of storing is added where the table has it.
+        """
+        if "stored_utc" in TABLES[table].columns:
+            values["stored_utc"] = utc_now()
+        names = ["trainee_id" if name == "trainee" else name for name in values]
+        marks = [f"({TRAINEE_ID})" if name == "trainee" else "?" for name in values]
+        self.change(
+            f"INSERT INTO {table} ({', '.join(names)}) VALUES ({', '.join(marks)})"
+            f"{' ON CONFLICT DO NOTHING' if is_once else ''}",
+            *values.values(),
+        )
+
+    def change(self, sql: str, *parameters: Any) -> None:
+        with self.writing() as connection:
+            connection.execute(sql, parameters)
+
     def reading(self) -> AbstractContextManager[Connection]:
         """Yield the connection for several reads of one state, or of the open transaction."""
         return self._joined(may_change=False)
@@ -261,9 +266,6 @@ class StudyDatabase(ABC):
         """Yield the connection for changes in one transaction, once those of others are done.
 
         Within another one of `writing`, the changes are part of that one.
-
-        Raises:
-            StudyBusyError: another program has locked it.
         """
         return self._joined(may_change=True)
 

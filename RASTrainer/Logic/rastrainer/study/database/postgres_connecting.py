@@ -126,12 +126,6 @@ def postgres_driver() -> ModuleType:
             sys.path.remove(folder)
 
 
-def refuse_infinite_numbers(connection: Any) -> None:
-    """Refuse numbers that SQLite and JSON cannot hold; only other programs store them."""
-    base = importlib.import_module("psycopg.types.numeric").FloatLoader
-    connection.adapters.register_loader("float8", type("FiniteLoader", (base,), {"load": _finite}))
-
-
 def _finite(_loader: Any, data: Any) -> float:
     value = float(bytes(data))
     if not math.isfinite(value):
@@ -154,7 +148,8 @@ def connected(
         client_encoding="UTF8",
         connect_timeout=CONNECT_TIMEOUT_S,
     )
-    refuse_infinite_numbers(connection)
+    base = importlib.import_module("psycopg.types.numeric").FloatLoader
+    connection.adapters.register_loader("float8", type("FiniteLoader", (base,), {"load": _finite}))
     connection.execute(_SESSION)
     return connection
 

@@ -22,7 +22,6 @@ from rastrainer.errors import InputError
 from rastrainer.study.database.database import (
     LockWait,
     PostgresAddress,
-    Rows,
     StudyBusyError,
     StudyDatabase,
     StudyUnreachableError,
@@ -38,9 +37,9 @@ from rastrainer.study.database.schema import (
     APPLICATION_ID,
     SCHEMA_VERSION,
     STATEMENTS,
+    TABLES,
     check_schema_version,
     has_numbered_rows,
-    study_tables,
 )
 
 LOCKED = "UPDATE rastrainer_study SET changes = changes + 1"
@@ -97,7 +96,7 @@ class PostgresStatements:
     def __init__(self, connection: Any) -> None:
         self._connection = connection
 
-    def execute(self, sql: str, parameters: Sequence[Any] = (), /) -> Rows:
+    def execute(self, sql: str, parameters: Sequence[Any] = (), /) -> Any:
         return self._connection.execute(portable_to_postgres(sql), parameters)
 
     def executemany(self, sql: str, parameters: Iterable[Sequence[Any]], /) -> None:
@@ -148,7 +147,7 @@ class PostgresDatabase(StudyDatabase):
         return changes - self._own_changes
 
     def continue_numbers(self) -> None:
-        for table in study_tables():
+        for table in TABLES.values():
             if table.order in ("id", "rowid") and table.name != "trainee_numbers":
                 self._connection.execute(
                     f"SELECT setval(pg_get_serial_sequence('{table.name}', '{table.order}'), "

@@ -78,43 +78,36 @@ class SqliteDatabase(StudyDatabase):
                     self._connection.execute("ROLLBACK")
 
     def _connect(self) -> sqlite3.Connection:
-        self._keep_private()
-        # Transactions are explicit: `isolation_level=None`.
-        return sqlite3.connect(self.path, timeout=self._lock_wait.timeout_s, isolation_level=None)
-
-    def _keep_private(self) -> None:
-        """Make the file and its temporary companions readable by their owner alone."""
         # Only a new file is opened: closing an existing one would release our other locks on it.
         with contextlib.suppress(OSError):
             os.close(open_private(self.path, os.O_RDWR | os.O_CREAT | os.O_EXCL))
         for suffix in ("", "-journal", "-wal", "-shm"):
             keep_others_out(f"{self.path}{suffix}")
+        # Transactions are explicit: `isolation_level=None`.
+        return sqlite3.connect(self.path, timeout=self._lock_wait.timeout_s, isolation_level=None)
 
     def _prepare(self) -> None:
         for pragma in self._pragmas:
             self._connection.execute(f"PRAGMA {pragma}")
         # In one transaction: another process may be creating the tables.
         with self.reading():
-            self._check_origin()
+            tables = self._connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
+            # Triggers and views in a foreign file could run as ours.
+            if self._connection.execute(_COMMANDS).fetchone()[0]:
+                raise InputError(
+                    f"The study {self.path} contains triggers or views, which no study of "
+                    "RASTrainer has."
+                )
+            if self._number("application_id") != (APPLICATION_ID if tables else 0):
+                raise InputError(f"{self.path} is the database of another program.")
+            if tables:
+                check_schema_version(self._number("user_version"), self.path)
             is_new = self._number("user_version") == 0
         if is_new:
             self._create_tables()
         is_whole = self._connection.execute("PRAGMA integrity_check(1)").fetchone() == ("ok",)
         if not is_whole or self._connection.execute("PRAGMA foreign_key_check").fetchone():
             raise sqlite3.DatabaseError("malformed")
-
-    def _check_origin(self) -> None:
-        tables = self._connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
-        # Triggers and views in a foreign file could run as ours.
-        if self._connection.execute(_COMMANDS).fetchone()[0]:
-            raise InputError(
-                f"The study {self.path} contains triggers or views, which no study of RASTrainer "
-                "has."
-            )
-        if self._number("application_id") != (APPLICATION_ID if tables else 0):
-            raise InputError(f"{self.path} is the database of another program.")
-        if tables:
-            check_schema_version(self._number("user_version"), self.path)
 
     def _create_tables(self) -> None:
         with self.writing() as connection:
@@ -170,7 +163,11 @@ class ReadOnlySqliteDatabase(SqliteDatabase):
         if not self.path.is_file():
             raise InputError(f"There is no file {self.path}.")
         if _holds_something(self.path.with_name(f"{self.path.name}-journal")):
-            self._roll_back()
+            connection = sqlite3.connect(self.path, timeout=self._lock_wait.timeout_s)
+            try:
+                connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
+            finally:
+                connection.close()
         return sqlite3.connect(
             read_only_uri(self.path),
             timeout=self._lock_wait.timeout_s,
@@ -184,13 +181,6 @@ class ReadOnlySqliteDatabase(SqliteDatabase):
 
     def _create_tables(self) -> None:
         raise InputError(f"{self.path} holds no study.")
-
-    def _roll_back(self) -> None:
-        connection = sqlite3.connect(self.path, timeout=self._lock_wait.timeout_s)
-        try:
-            connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
-        finally:
-            connection.close()
 
 
 def read_only_uri(path: Path) -> str:

@@ -6,13 +6,13 @@ overwritten; the latest count. Several processes may use one study at the same t
 
 from __future__ import annotations
 
+import hashlib
 import itertools
 import json
 import os
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 from rastrainer import json_checks
@@ -22,21 +22,29 @@ from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import TRIAL_RUN, RegistrationMethod
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
-from rastrainer.study.database.database import LockWait, PostgresAddress, study_place
+from rastrainer.study.database.database import (
+    LockWait,
+    PostgresAddress,
+    StudyDatabase,
+    study_place,
+)
 from rastrainer.study.database.postgres_database import PostgresDatabase
+from rastrainer.study.database.schema import TABLES, TRAINEE_ID
 from rastrainer.study.database.sqlite_database import ReadOnlySqliteDatabase, SqliteDatabase
-from rastrainer.study.database.study_trainees import TRAINEE_ID, StudyTrainees, check_pseudonym
 from rastrainer.study.database.values import (
-    StoredProcedure,
+    StoredAbortedTrial,
     StoredRegistration,
     StoredTrial,
+    Trainee,
     TrialOutcome,
     decoded,
+    decoded_record,
     json_text,
-    record_text,
+    moment,
     utc_now,
 )
 from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore
@@ -45,10 +53,12 @@ from rastrainer.trial.trial_feedback import PastTrial
 STUDY_FILE = "study.db"
 """The usual name."""
 TRUTH_LIMIT = 1e6
-MOTION_LIMIT = 1e9
+RECORD_LIMIT_BYTES = 2**20
 
 METHOD = "coalesce(json_extract(record_json, '$.method'), 'fiducials')"
 """The method by which a trial was registered: its record leaves out fiducials, the default."""
+
+_TRAINEES = "SELECT pseudonym, consent, archived, created_utc FROM trainees"
 
 _STAMPED_TRIALS = f"""
     SELECT trial_id, rowid, stored_utc,
@@ -56,14 +66,17 @@ _STAMPED_TRIALS = f"""
         (SELECT max(id) FROM scores WHERE scores.trial_id = trials.trial_id),
         (SELECT max(id) FROM procedure_outcomes
             WHERE procedure_outcomes.trial_id = trials.trial_id),
-        (SELECT stored_utc FROM truths WHERE truths.trial_id = trials.trial_id),
-        (SELECT stored_utc FROM motions WHERE motions.trial_id = trials.trial_id)
+        (SELECT stored_utc FROM truths WHERE truths.trial_id = trials.trial_id)
     FROM trials WHERE trainee_id = ({TRAINEE_ID}) ORDER BY started_utc, rowid
 """
 """Each trial of a trainee with a stamp that changes with any stored result."""
 
 
-class Study(StudyTrainees):
+class DeletedTrialError(InputError):
+    """The trial was deleted from the study together with its trainee."""
+
+
+class Study:
     """A study; use it in a `with` statement, or call `close`.
 
     Every method raises `InputError` if the study cannot be read or written, `StudyBusyError` if
@@ -72,8 +85,10 @@ class Study(StudyTrainees):
     part of that transaction.
     """
 
-    _read_trials: Mapping[str, tuple[tuple, StoredTrial]] = {}
-    """History of the last trainee, each trial with a stamp that changes with it."""
+    def __init__(self, database: StudyDatabase) -> None:
+        self.database = database
+        self._read_trials: Mapping[str, tuple[tuple, StoredTrial]] = {}
+        """History of the last trainee, each trial with a stamp that changes with it."""
 
     @classmethod
     def open(
@@ -86,7 +101,6 @@ class Study(StudyTrainees):
         """Open the study in a file or a database of PostgreSQL, or create one.
 
         Args:
-            place: Path of the file, or the database's address.
             lock_wait: For locks of others; half a minute by default.
             make_folder: Create a missing folder of the file, private to its user.
             must_exist: Refuse a place that holds no study yet.
@@ -119,6 +133,83 @@ class Study(StudyTrainees):
     def close(self) -> None:
         self.database.close()
 
+    def create_trainee(self, pseudonym: str | None = None, consent: bool = False) -> Trainee:
+        """Add a trainee, by default under the next free pseudonym (`T001`, `T002`, …)."""
+        with self.database.writing():
+            pseudonym = self.next_pseudonym() if pseudonym is None else pseudonym
+            json_checks.accepted(json_checks.pseudonym(), pseudonym, "A pseudonym")
+            if self.has_trainee(pseudonym):
+                raise InputError(f"The pseudonym {json.dumps(pseudonym)} is taken; choose another.")
+            self.database.insert(
+                "trainees",
+                pseudonym=pseudonym,
+                consent=int(consent),
+                archived=0,
+                created_utc=utc_now(),
+            )
+            self.database.change("UPDATE trainee_numbers SET latest = latest + 1")
+            return self.trainee(pseudonym)
+
+    def next_pseudonym(self) -> str:
+        """Return the next free pseudonym, such as `T001`."""
+        with self.database.reading():
+            # Numbers of deleted trainees are not reused, to avoid confusion.
+            number = self.database.row("SELECT latest FROM trainee_numbers")[0] + 1
+            while self.has_trainee(f"T{number:03d}"):
+                number += 1
+        return f"T{number:03d}"
+
+    def has_trainee(self, pseudonym: str) -> bool:
+        return self.database.row(TRAINEE_ID, pseudonym) is not None
+
+    def trainees(self, archived: bool = False) -> tuple[Trainee, ...]:
+        query = f"{_TRAINEES} WHERE archived = ? ORDER BY pseudonym"
+        return tuple(_trainee(*row) for row in self.database.rows(query, int(archived)))
+
+    def trainee(self, pseudonym: str) -> Trainee:
+        """Return a trainee; raise `InputError` if unknown."""
+        row = self.database.row(f"{_TRAINEES} WHERE pseudonym = ?", pseudonym)
+        if row is None:
+            raise InputError(f"The study has no trainee {json.dumps(str(pseudonym)[:64])}.")
+        return _trainee(*row)
+
+    def change_trainee(
+        self, pseudonym: str, consent: bool | None = None, archived: bool | None = None
+    ) -> Trainee:
+        """Store whether a trainee consents to research, or is hidden from the list."""
+        with self.database.writing():
+            self.database.change(
+                "UPDATE trainees SET consent = coalesce(?, consent), "
+                "archived = coalesce(?, archived) WHERE pseudonym = ?",
+                None if consent is None else int(consent),
+                None if archived is None else int(archived),
+                pseudonym,
+            )
+            return self.trainee(pseudonym)
+
+    def delete_trainee(self, pseudonym: str) -> int:
+        """Delete a trainee with all trials and results for good; return the number of trials.
+
+        These trials are refused from now on. Only hashes of the random UUIDs are stored: without
+        the record, no one can learn that a trial existed.
+        """
+        with self.database.writing():
+            self.trainee(pseudonym)
+            finished, aborted = (
+                self.database.rows(
+                    f"SELECT trial_id FROM {table} WHERE trainee_id = ({TRAINEE_ID})", pseudonym
+                )
+                for table in ("trials", "aborted_trials")
+            )
+            for (trial_id,) in (*finished, *aborted):
+                self.database.insert("deleted_trials", is_once=True, trial_sha256=_sha256(trial_id))
+            self.database.change("DELETE FROM trainees WHERE pseudonym = ?", pseudonym)
+        return len(finished)
+
+    def is_deleted(self, trial_id: str) -> bool:
+        query = "SELECT 1 FROM deleted_trials WHERE trial_sha256 = ?"
+        return self.database.row(query, _sha256(trial_id)) is not None
+
     def add_trial(
         self,
         record: TrialRecord | Mapping[str, Any],
@@ -134,9 +225,6 @@ class Study(StudyTrainees):
 
         Args:
             record: The trial, or its untrusted JSON object.
-            registrations: At most one of each kind.
-            target_errors: By kind of registration.
-            score: Our score of the trial.
             delivered: The original object, whose unknown keys are stored too.
 
         Raises:
@@ -145,29 +233,33 @@ class Study(StudyTrainees):
         if not isinstance(record, TrialRecord):
             delivered = record
             record = record_from_json(TrialRecord, delivered)
-        text = record_text(delivered or record_to_json(record))
-        with self.database.writing() as connection:
+        with self.database.writing():
             if not self.check_trial(record):
                 return False
-            self.note_delivery(record)
-            self.create_where_missing(record.trainee)
-            connection.execute(
-                f"INSERT INTO trials VALUES (?, ({TRAINEE_ID}), ?, ?, ?, ?, ?, ?, ?)",
-                (
-                    record.trial_id,
-                    record.trainee,
-                    record.task,
-                    record.mode,
-                    record.scenario,
-                    record.started_utc,
-                    record.completion_time_s,
-                    text,
-                    utc_now(),
-                ),
-            )
-            if record.motion:
-                self.set_motion(record.trial_id, record.motion)
+            self._note_delivery(record)
+            self._store("trials", record, delivered)
             self.add_results(record.trial_id, registrations, target_errors, score)
+        return True
+
+    def add_aborted(
+        self, record: AbortedTrial | Mapping[str, Any], delivered: Mapping[str, Any] | None = None
+    ) -> bool:
+        """Store an aborted trial, as `add_trial`; of one in which nothing was done, its number."""
+        if not isinstance(record, AbortedTrial):
+            delivered = record
+            record = record_from_json(AbortedTrial, delivered)
+        with self.database.writing():
+            self._check_not_deleted(record.trial_id)
+            query = "SELECT record_json FROM aborted_trials WHERE trial_id = ?"
+            row = self.database.row(query, record.trial_id)
+            is_other = row is not None and decoded_record(AbortedTrial, row[0]) != record
+            if is_other or self.has("trials", record.trial_id):
+                raise _other_trial(record.trial_id)
+            if row is None:
+                self._note_delivery(record)
+            if row is not None or not record.is_kept:
+                return False
+            self._store("aborted_trials", record, delivered)
         return True
 
     def check_trial(self, record: TrialRecord) -> bool:
@@ -177,45 +269,51 @@ class Study(StudyTrainees):
             DeletedTrialError: the trial was deleted with its trainee.
         """
         with self.database.reading():
-            self.check_not_deleted(record.trial_id)
-            if self.has_trial(record.trial_id):
+            self._check_not_deleted(record.trial_id)
+            if self.has("trials", record.trial_id):
                 # The seed is the simulator's secret at first and may be revealed later.
                 if replace(self.record(record.trial_id), seed=None) != replace(record, seed=None):
-                    raise other_trial(record.trial_id)
+                    raise _other_trial(record.trial_id)
                 return False
             if not self.has_trainee(record.trainee):
-                check_pseudonym(record.trainee)
+                json_checks.accepted(json_checks.pseudonym(), record.trainee, "A pseudonym")
             return True
 
-    def has_trial(self, trial_id: str) -> bool:
-        return self._has("trials", trial_id)
-
-    def is_revealed(self, trial_id: str) -> bool:
-        """Return whether the truth of a stored trial is known."""
-        return self._has("truths", trial_id)
-
-    def _has(self, table: str, trial_id: str) -> bool:
-        with self.database.reading() as connection:
-            query = f"SELECT 1 FROM {table} WHERE trial_id = ?"
-            return connection.execute(query, (trial_id,)).fetchone() is not None
+    def has(self, table: str, trial_id: str) -> bool:
+        query = f"SELECT 1 FROM {table} WHERE trial_id = ?"
+        return self.database.row(query, trial_id) is not None
 
     def _check_exists(self, trial_id: str) -> None:
-        if not self.has_trial(trial_id):
+        if not self.has("trials", trial_id):
             raise InputError(f"The study has no trial {json.dumps(str(trial_id)[:64])}.")
 
-    def create_where_missing(self, pseudonym: str, consent: bool = False) -> None:
-        """Add the trainee of a record unless they exist."""
-        if not self.has_trainee(pseudonym):
-            self.create_trainee(pseudonym, consent)
+    def _check_not_deleted(self, trial_id: str) -> None:
+        if self.is_deleted(trial_id):
+            raise DeletedTrialError(
+                "The trial was deleted from the study with its trainee and is not stored again."
+            )
 
-    def note_delivery(self, record: AbortedTrial | TrialRecord) -> None:
+    def _note_delivery(self, record: AbortedTrial | TrialRecord) -> None:
         """Note that a trial has arrived; one without a number, from elsewhere, leaves no trace."""
         if record.number and record.series:
-            with self.database.writing() as connection:
-                connection.execute(
-                    "INSERT INTO deliveries VALUES (?, ?) ON CONFLICT DO NOTHING",
-                    (record.series, record.number),
-                )
+            self.database.insert(
+                "deliveries", is_once=True, series=record.series, number=record.number
+            )
+
+    def _store(
+        self,
+        table: str,
+        record: AbortedTrial | TrialRecord,
+        delivered: Mapping[str, Any] | None,
+    ) -> None:
+        text = json_text(delivered or record_to_json(record))
+        if len(text) > RECORD_LIMIT_BYTES:
+            raise InputError("The trial record is larger than 1 MiB, the most that is stored.")
+        if not self.has_trainee(record.trainee):
+            self.create_trainee(record.trainee)
+        fields = {name: getattr(record, name, None) for name in TABLES[table].columns}
+        columns = {name: value for name, value in fields.items() if value is not None}
+        self.database.insert(table, trainee=record.trainee, record_json=text, **columns)
 
     def undelivered(self) -> Mapping[str, tuple[tuple[int, int], ...]]:
         """Return the first and last numbers of each gap in what arrived, by series.
@@ -223,11 +321,9 @@ class Study(StudyTrainees):
         A simulator numbers all trials that are started in its folder, so a gap is a trial that went
         to another study, that still waits there, or that somebody has made vanish.
         """
-        with self.database.reading() as connection:
-            query = "SELECT series, number FROM deliveries ORDER BY series, number"
-            rows = connection.execute(query).fetchall()
+        query = "SELECT series, number FROM deliveries ORDER BY series, number"
         gaps = defaultdict(list)
-        for (series, number), (same, following) in itertools.pairwise(rows):
+        for (series, number), (same, following) in itertools.pairwise(self.database.rows(query)):
             if same == series and following > number + 1:
                 gaps[series].append((number + 1, following - 1))
         return {series: tuple(found) for series, found in gaps.items()}
@@ -241,181 +337,174 @@ class Study(StudyTrainees):
         procedure: ProcedureOutcome | None = None,
     ) -> None:
         """Add results of a stored trial; the latest results count."""
-        with self.database.writing() as connection:
+        with self.database.writing():
             self._check_exists(trial_id)
             for registration in registrations:
                 error = (target_errors or {}).get(registration.kind)
-                stored = json_text(record_to_json(StoredRegistration.of(registration, error)))
-                connection.execute(
-                    "INSERT INTO registrations "
-                    "(trial_id, kind, fre_mm, registration_json, stored_utc) "
-                    "VALUES (?, ?, ?, ?, ?)",
-                    (trial_id, registration.kind, registration.fre_mm, stored, utc_now()),
+                stored = record_to_json(StoredRegistration.of(registration, error))
+                self.database.insert(
+                    "registrations",
+                    trial_id=trial_id,
+                    kind=registration.kind,
+                    fre_mm=registration.fre_mm,
+                    registration_json=json_text(stored),
                 )
             if score is not None:
-                connection.execute(
-                    "INSERT INTO scores (trial_id, score, version, score_json, stored_utc) "
-                    "VALUES (?, ?, ?, ?, ?)",
-                    (
-                        trial_id,
-                        score.score,
-                        score.version,
-                        json_text(record_to_json(score, with_defaults=True)),
-                        utc_now(),
-                    ),
+                self.database.insert(
+                    "scores",
+                    trial_id=trial_id,
+                    score=score.score,
+                    version=score.version,
+                    score_json=json_text(record_to_json(score, with_defaults=True)),
                 )
             if procedure is not None:
-                found, outcome = procedure.score, StoredProcedure.of(procedure).to_json()
-                connection.execute(
-                    "INSERT INTO procedure_outcomes "
-                    "(trial_id, score, version, outcome_json, stored_utc) VALUES (?, ?, ?, ?, ?)",
-                    (trial_id, found.score, found.version, json_text(outcome), utc_now()),
+                self.database.insert(
+                    "procedure_outcomes",
+                    trial_id=trial_id,
+                    score=procedure.score.score,
+                    version=procedure.score.version,
+                    outcome_json=json_text(record_to_json(procedure, with_defaults=True)),
                 )
 
     def set_truth(self, trial_id: str, true_tre_mm: float, head_to_world: Sequence[float]) -> None:
         """Store the truth that the simulator revealed; only the first one counts.
 
         Args:
-            trial_id: UUID of a stored trial.
-            true_tre_mm: True error at the scenario's target.
             head_to_world: 16 numbers row by row, RAS to `World`, mm.
         """
-        with self.database.writing() as connection:
+        what = "What the simulator reveals"
+        error = json_checks.accepted(json_checks.number(0, TRUTH_LIMIT), true_tre_mm, what)
+        pose = json_checks.accepted(json_checks.numbers(16, TRUTH_LIMIT), head_to_world, what)
+        with self.database.writing():
             self._check_exists(trial_id)
-            what = "What the simulator reveals"
-            error = json_checks.accepted(json_checks.number(0, TRUTH_LIMIT), true_tre_mm, what)
-            pose = json_checks.accepted(json_checks.numbers(16, TRUTH_LIMIT), head_to_world, what)
-            connection.execute(
-                "INSERT INTO truths VALUES (?, ?, ?, ?) ON CONFLICT DO NOTHING",
-                (trial_id, error, json_text(pose), utc_now()),
-            )
-
-    def set_motion(self, trial_id: str, motion: Mapping[str, float]) -> None:
-        """Store the motion metrics of a trial by name; later metrics change nothing."""
-        check_value = json_checks.number(-MOTION_LIMIT, MOTION_LIMIT)
-        with self.database.writing() as connection:
-            self._check_exists(trial_id)
-            checked = {
-                json_checks.accepted(json_checks.text(), name, "A motion metric"): (
-                    json_checks.accepted(check_value, value, "A motion metric")
-                )
-                for name, value in motion.items()
-            }
-            connection.execute(
-                "INSERT INTO motions VALUES (?, ?, ?) ON CONFLICT DO NOTHING",
-                (trial_id, json_text(checked), utc_now()),
+            self.database.insert(
+                "truths",
+                is_once=True,
+                trial_id=trial_id,
+                true_tre_mm=error,
+                head_to_world_json=json_text(pose),
             )
 
     def record(self, trial_id: str) -> TrialRecord:
         """Return the record of a trial; raise `InputError` if unknown."""
-        with self.database.reading() as connection:
+        with self.database.reading():
             self._check_exists(trial_id)
-            query = "SELECT record_json FROM trials WHERE trial_id = ?"
-            (text,) = connection.execute(query, (trial_id,)).fetchone()
-        return decoded(text, partial(record_from_json, TrialRecord))
+            return self._records("trial_id = ?", trial_id)[0]
 
     def trial(self, trial_id: str) -> StoredTrial:
         """Return a trial with its latest results; raise `InputError` if unknown."""
-        with self.database.reading() as connection:
+        with self.database.reading():
             record = self.record(trial_id)
-
-            def rows(columns: str, table: str, order: str = "") -> list[Any]:
-                query = f"SELECT {columns} FROM {table} WHERE trial_id = ? {order}"
-                return connection.execute(query, (trial_id,)).fetchall()
-
-            registrations = rows("kind, registration_json", "registrations", "ORDER BY id")
-            scores = rows("score_json", "scores", "ORDER BY id")
-            truths = rows("true_tre_mm, head_to_world_json", "truths")
-            motions = rows("motion_json", "motions")
-            procedures = rows("outcome_json", "procedure_outcomes", "ORDER BY id")
+            registrations, scores, truths, procedures = (
+                self.database.rows(
+                    f"SELECT {columns} FROM {table} WHERE trial_id = ? "
+                    f"ORDER BY {TABLES[table].order}",
+                    trial_id,
+                )
+                for table, columns in (
+                    ("registrations", "kind, registration_json"),
+                    ("scores", "score_json"),
+                    ("truths", "head_to_world_json, true_tre_mm"),
+                    ("procedure_outcomes", "outcome_json"),
+                )
+            )
         return StoredTrial(
-            record=record,
-            registrations={kind: decoded(text, _registration) for kind, text in registrations},
-            score=decoded(scores[-1][0], partial(record_from_json, TrialScore)) if scores else None,
-            true_tre_mm=truths[0][0] if truths else None,
-            head_to_world=decoded(truths[0][1], tuple) if truths else None,
-            motion=decoded(motions[0][0], dict) if motions else {},
-            procedure=(
-                decoded(procedures[-1][0], StoredProcedure.from_json) if procedures else None
-            ),
+            record,
+            {kind: decoded_record(StoredRegistration, text) for kind, text in registrations},
+            decoded_record(TrialScore, scores[-1][0]) if scores else None,
+            RevealedTruth(decoded(truths[0][0], tuple), truths[0][1]) if truths else None,
+            decoded_record(ProcedureOutcome, procedures[-1][0]) if procedures else None,
         )
 
     def history(self, pseudonym: str) -> tuple[StoredTrial, ...]:
         """Return all trials of a trainee in order of starting; unchanged trials are kept."""
-        with self.database.reading() as connection:
+        with self.database.reading():
             self.trainee(pseudonym)
             known = self._read_trials
             self._read_trials = {
                 trial_id: known[trial_id]
                 if trial_id in known and known[trial_id][0] == tuple(stamp)
                 else (tuple(stamp), self.trial(trial_id))
-                for trial_id, *stamp in connection.execute(_STAMPED_TRIALS, (pseudonym,)).fetchall()
+                for trial_id, *stamp in self.database.rows(_STAMPED_TRIALS, pseudonym)
             }
         return tuple(trial for _stamp, trial in self._read_trials.values())
 
+    def aborted(self, pseudonym: str) -> tuple[StoredAbortedTrial, ...]:
+        """Return a trainee's aborted trials in order of starting; `InputError` if unknown."""
+        with self.database.reading():
+            self.trainee(pseudonym)
+            rows = self.database.rows(
+                "SELECT record_json, coalesce(step, ''), coalesce(reason, '') "
+                "FROM aborted_trials LEFT JOIN repeats USING (trial_id) "
+                f"WHERE trainee_id = ({TRAINEE_ID}) ORDER BY aborted_trials.rowid",
+                pseudonym,
+            )
+        found = [StoredAbortedTrial(decoded_record(AbortedTrial, row[0]), *row[1:]) for row in rows]
+        return tuple(sorted(found, key=lambda stored: moment(stored.record.started_utc)))
+
     def past_trials(self, pseudonym: str) -> tuple[PastTrial, ...]:
         """Return a trainee's scored trials without trial runs, in order of starting."""
-        with self.database.reading() as connection:
+        with self.database.reading():
             self.trainee(pseudonym)
-            rows = connection.execute(
+            rows = self.database.rows(
                 "SELECT * FROM ("
                 "SELECT trial_id, task, mode, completion_time_s, scenario, started_utc, "
                 f"{METHOD} AS method, ({_latest('scores', 'score_json')}) AS latest, "
                 f"({_latest('procedure_outcomes', 'outcome_json')}), trials.rowid AS stored "
                 f"FROM trials WHERE trainee_id = ({TRAINEE_ID}) AND task != ?"
                 ") AS played WHERE latest IS NOT NULL ORDER BY started_utc, stored",
-                (pseudonym, TRIAL_RUN),
+                pseudonym,
+                TRIAL_RUN,
             )
-            # Row by row, so that not all records are in memory together.
-            return tuple(_past_trial(*row) for row in rows)
+        return tuple(_past_trial(*row[:-1]) for row in rows)
 
-    def unscored(self, pseudonym: str) -> tuple[TrialRecord, ...]:
-        """Return a trainee's trials that can have no score, since their truth is known.
+    def attempts(self, pseudonym: str) -> tuple[PastTrial, ...]:
+        """Return the trials from which progress is computed, as started: scored and failed.
 
-        Trial runs are left out.
+        Aborted trials with a touch have failed, and trials that can have no score, since their
+        truth is known. Trial runs are left out.
         """
-        return self._records(
-            f"trainee_id = ({TRAINEE_ID}) AND task != ? "
-            "AND trial_id IN (SELECT trial_id FROM truths) "
-            "AND trial_id NOT IN (SELECT trial_id FROM scores)",
-            (pseudonym, TRIAL_RUN),
-        )
+        with self.database.reading():
+            scored = self.past_trials(pseudonym)
+            aborted = [stored.record for stored in self.aborted(pseudonym)]
+            unscored = self._records(
+                f"trainee_id = ({TRAINEE_ID}) AND task != ? "
+                "AND trial_id IN (SELECT trial_id FROM truths) "
+                "AND trial_id NOT IN (SELECT trial_id FROM scores)",
+                pseudonym,
+                TRIAL_RUN,
+            )
+        failed = [PastTrial.failed(record) for record in aborted if record.counts_as_failed]
+        trials = (*scored, *failed, *map(PastTrial.failed, unscored))
+        return tuple(sorted(trials, key=lambda trial: moment(trial.started_utc)))
 
     def unrevealed(self) -> tuple[TrialRecord, ...]:
-        """Return the records of trials without truth, oldest first."""
         return self._records("trial_id NOT IN (SELECT trial_id FROM truths)")
 
-    def _records(self, condition: str, parameters: Sequence[Any] = ()) -> tuple[TrialRecord, ...]:
-        with self.database.reading() as connection:
-            rows = connection.execute(
-                f"SELECT record_json FROM trials WHERE {condition} ORDER BY rowid", parameters
-            ).fetchall()
-        return tuple(decoded(text, partial(record_from_json, TrialRecord)) for (text,) in rows)
+    def _records(self, condition: str, *parameters: Any) -> tuple[TrialRecord, ...]:
+        query = f"SELECT record_json FROM trials WHERE {condition} ORDER BY rowid"
+        rows = self.database.rows(query, *parameters)
+        return tuple(decoded_record(TrialRecord, text) for (text,) in rows)
 
     def outcomes(self, task: str, mode: str) -> tuple[TrialOutcome, ...]:
         """Return the outcomes of all trials of a task and mode, in order of storing."""
-        with self.database.reading() as connection:
-            rows = connection.execute(
-                f"""
-                SELECT trials.trial_id, pseudonym, completion_time_s,
-                    ({_latest("scores", "score")}), {METHOD}, true_tre_mm
-                FROM trials
-                JOIN trainees ON trainees.id = trainee_id
-                LEFT JOIN truths ON truths.trial_id = trials.trial_id
-                WHERE task = ? AND mode = ?
-                ORDER BY trials.rowid
-                """,
-                (task, mode),
-            ).fetchall()
+        rows = self.database.rows(
+            f"""
+            SELECT trials.trial_id, pseudonym, completion_time_s,
+                ({_latest("scores", "score")}), {METHOD}, true_tre_mm
+            FROM trials
+            JOIN trainees ON trainees.id = trainee_id
+            LEFT JOIN truths ON truths.trial_id = trials.trial_id
+            WHERE task = ? AND mode = ?
+            ORDER BY trials.rowid
+            """,
+            task,
+            mode,
+        )
         return tuple(TrialOutcome(*row) for row in rows)
 
 
-def _registration(value: Any) -> StoredRegistration:
-    return record_from_json(StoredRegistration, value, "The stored registration")
-
-
 def _latest(table: str, column: str) -> str:
-    """Return the query for the latest result of a trial."""
     own = f"WHERE {table}.trial_id = trials.trial_id ORDER BY {table}.id DESC LIMIT 1"
     return f"SELECT {column} FROM {table} {own}"
 
@@ -430,20 +519,27 @@ def _past_trial(
     method: str,
     score_json: str,
     outcome_json: str | None,
-    _rowid: int,
 ) -> PastTrial:
-    score = decoded(score_json, partial(record_from_json, TrialScore))
-    done = None if outcome_json is None else decoded(outcome_json, StoredProcedure.from_json)
+    score = decoded_record(TrialScore, score_json)
+    done = None if outcome_json is None else decoded_record(ProcedureOutcome, outcome_json)
     return PastTrial(
         *(trial_id, task, mode, seconds, score.score, score.acceptable),
         method=RegistrationMethod(method),
         scenario=scenario,
         started_utc=started_utc,
         parts=score.parts,
-        procedure="" if done is None else done.name,
+        procedure="" if done is None else done.analysis.procedure,
         procedure_score=None if done is None else done.score,
     )
 
 
-def other_trial(trial_id: str) -> InputError:
+def _trainee(pseudonym: str, consent: int, archived: int, created_utc: str) -> Trainee:
+    return Trainee(pseudonym, bool(consent), bool(archived), created_utc)
+
+
+def _other_trial(trial_id: str) -> InputError:
     return InputError(f"Another trial is stored under the UUID {trial_id}; the stored one is kept.")
+
+
+def _sha256(trial_id: str) -> str:
+    return hashlib.sha256(trial_id.encode()).hexdigest()

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 from datetime import datetime, timezone
+from functools import partial
 from typing import Annotated, Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -16,8 +17,9 @@ from rastrainer.json_checks import decode_finite_json, number, numbers, plain_ob
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
+from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.analysis import RevealedTruth
-from rastrainer.trial.procedure_outcome import ProcedureOutcome, ProcedureScore
+from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore
 
@@ -39,7 +41,6 @@ def moment(utc: str) -> datetime:
     return datetime.fromisoformat(utc.replace("Z", "+00:00"))
 
 
-RECORD_LIMIT_BYTES = 2**20
 _NULL = re.compile(r"(?<!\\)(?:\\\\)*\\u0000")
 
 
@@ -63,20 +64,16 @@ def json_text(value: object) -> str:
     return written
 
 
-def record_text(record: Mapping[str, Any]) -> str:
-    """Return a record as ASCII JSON; raise `InputError` if that is impossible or above 1 MiB."""
-    written = json_text(record)
-    if len(written) > RECORD_LIMIT_BYTES:
-        raise InputError("The trial record is larger than 1 MiB, the most that is stored.")
-    return written
-
-
 def decoded(written: str, read: Callable[[Any], Value]) -> Value:
     """Return decoded stored JSON; raise `InputError` if it is invalid."""
     try:
         return read(decode_finite_json(written))
     except (TypeError, ValueError, KeyError, AttributeError):
         raise InputError("The study contains a value that RASTrainer did not write.") from None
+
+
+def decoded_record(kind: type[Value], written: str) -> Value:
+    return decoded(written, partial(record_from_json, kind))
 
 
 @dataclass(frozen=True)
@@ -98,13 +95,8 @@ class StoredRegistration:
     """A stored registration of a trial.
 
     Attributes:
-        labels: Of the points in the fit.
         matrix: Row by row, `World` to RAS, mm.
-        residuals_mm: One for each label.
-        warnings: Each with `code`, `points` and `message`.
         target_mm: Target in RAS; None with the next two if the fit gives no target error.
-        expected_tre_mm: Expected error there.
-        tre_interval_mm: Its 95 % interval.
         common_bias_sd_mm: Standard deviation on each axis of the common offset included in both.
     """
 
@@ -147,68 +139,29 @@ class TrialOutcome(NamedTuple):
 
 
 @dataclass(frozen=True)
-class StoredProcedure:
-    """The stored outcome of a procedure; its errors are as of `ProcedureAnalysis.to_json`."""
-
-    analysis: Mapping[str, Any]
-    score: ProcedureScore
-
-    @property
-    def self_aligned(self) -> int:
-        """On how many trajectories the robot aligned the guide."""
-        return sum(bool(one["selfAligned"]) for one in self.trajectories)
-
-    @classmethod
-    def of(cls, outcome: ProcedureOutcome) -> StoredProcedure:
-        return cls(outcome.analysis.to_json(), outcome.score)
-
-    def to_json(self) -> dict[str, Any]:
-        return {
-            "analysis": dict(self.analysis),
-            "score": record_to_json(self.score, with_defaults=True),
-        }
-
-    @classmethod
-    def from_json(cls, value: Mapping[str, Any]) -> StoredProcedure:
-        """Return the outcome that `to_json` described."""
-        return cls(dict(value["analysis"]), record_from_json(ProcedureScore, value["score"]))
-
-    @property
-    def name(self) -> str:
-        return str(self.analysis["procedure"])
-
-    @property
-    def kind(self) -> str:
-        return str(self.analysis["kind"])
-
-    @property
-    def trajectories(self) -> tuple[Mapping[str, Any], ...]:
-        """The errors of each trajectory, as `TrajectoryErrors.to_json`."""
-        return tuple(self.analysis["trajectories"])
-
-
-@dataclass(frozen=True)
 class StoredTrial:
-    """A trial with its latest results, as far as they are known.
-
-    Attributes:
-        registrations: By kind.
-        true_tre_mm: True error at the target.
-        head_to_world: 16 numbers row by row, RAS to `World`, mm.
-        motion: Motion metrics by name, with units.
-    """
+    """A trial with its latest results, as far as they are known; registrations by kind."""
 
     record: TrialRecord
     registrations: dict[str, StoredRegistration]
-    score: TrialScore | None
-    true_tre_mm: float | None
-    head_to_world: tuple[float, ...] | None
-    motion: dict[str, float] = field(default_factory=dict)
-    procedure: StoredProcedure | None = None
+    score: TrialScore | None = None
+    truth: RevealedTruth | None = None
+    procedure: ProcedureOutcome | None = None
 
     @property
-    def truth(self) -> RevealedTruth | None:
-        """What the simulator revealed; None until then."""
-        if self.head_to_world is None or self.true_tre_mm is None:
-            return None
-        return RevealedTruth(self.head_to_world, self.true_tre_mm)
+    def true_tre_mm(self) -> float | None:
+        """True error at the target; None until it is revealed."""
+        return None if self.truth is None else self.truth.true_tre_mm
+
+
+@dataclass(frozen=True)
+class StoredAbortedTrial:
+    """An aborted trial, and why it was repeated.
+
+    Attributes:
+        step: The study's step that was repeated because of it; "" if none.
+    """
+
+    record: AbortedTrial
+    step: str = ""
+    repeat_reason: str = ""

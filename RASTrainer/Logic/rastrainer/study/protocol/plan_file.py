@@ -14,7 +14,6 @@ T = TypeVar("T")
 
 
 def read_plan(kind: type[T], path: Path | str, versions: Mapping[str, Any]) -> T:
-    """Read a file with one record; see `plan_from_json`."""
     return plan_from_json(kind, read_json(Path(path), MAX_RECORD_BYTES), versions, str(path))
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from rastrainer.errors import InputError
 
@@ -39,9 +38,6 @@ class Questionnaire:
 
     Attributes:
         name: For files and protocols, such as "sus".
-        lowest, highest: Answers.
-        anchors: Their meaning, except for items with their own.
-        source: Publication of items and scoring.
         formula: From the checked answers to a score for each scale.
         marks_apart: Distance of the marks in a form; answers between them are valid too.
     """
@@ -63,7 +59,6 @@ class Questionnaire:
         return range(self.lowest, self.highest + 1, self.marks_apart)
 
     def score(self, answers: Sequence[int] | Mapping[str, int]) -> dict[str, float]:
-        """Return the score on each scale; answers are in order or by name."""
         values = self.formula(self.checked(answers))
         return {scale.name: value for scale, value in zip(self.scales, values, strict=True)}
 
@@ -77,16 +72,13 @@ class Questionnaire:
         if isinstance(answers, str) or len(answers) != len(names):
             raise InputError(f"{self.title} needs {len(names)} answers, one for each item.")
         for name, answer in zip(names, answers, strict=True):
-            if not self._is_answer(answer):
+            is_whole = isinstance(answer, int) and not isinstance(answer, bool)
+            if not (is_whole and self.lowest <= answer <= self.highest):
                 raise InputError(
                     f"{self.title}: the answer {name} must be a whole number from {self.lowest} "
                     f"to {self.highest}; leave none out."
                 )
         return tuple(answers)
-
-    def _is_answer(self, value: Any) -> bool:
-        is_whole = isinstance(value, int) and not isinstance(value, bool)
-        return is_whole and self.lowest <= value <= self.highest
 
 
 _SUS_TOPICS = (

@@ -53,10 +53,7 @@ def trial_title(task: str, mode: str, method: str, procedure: str) -> str:
     """Return the title of such a trial, such as "Task 3 by a trace over the skin"; "" is any.
 
     Args:
-        task: Its name.
-        mode: Display mode; "" for any.
         method: Of registration; fiducials, the default, are not mentioned.
-        procedure: That it continues with; "" for none.
     """
     name = task.replace("-", " ").capitalize()
     then = f" with the procedure {procedure}" if procedure else ""

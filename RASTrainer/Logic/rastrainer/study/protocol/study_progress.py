@@ -14,10 +14,9 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import StepKind
-from rastrainer.study.database.aborted_trials import AbortedTrials
+from rastrainer.study.database.schema import TRAINEE_ID
 from rastrainer.study.database.study import METHOD, Study
-from rastrainer.study.database.study_trainees import TRAINEE_ID
-from rastrainer.study.database.values import decoded, json_text, moment, utc_now
+from rastrainer.study.database.values import decoded, json_text, moment
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study.protocol.step_progress import DONE, SKIPPED, StepEntry, StepProgress
 from rastrainer.study.protocol.steps import objections_to
@@ -53,11 +52,11 @@ class StudyProgress:
 
     def set_protocol(self, protocol: StudyProtocol) -> None:
         """Set the study's protocol; the same one again changes nothing."""
-        with self._database.writing() as connection:
+        with self._database.writing():
             stored = self.protocol()
             if stored is None:
                 text = json_text(protocol.to_json())
-                connection.execute("INSERT INTO study_protocol VALUES (1, ?, ?)", (text, utc_now()))
+                self._database.insert("study_protocol", id=1, protocol_json=text)
             elif stored != protocol:
                 raise InputError(
                     f"This study was started with another protocol, {stored.title!r}. Changing it "
@@ -66,8 +65,7 @@ class StudyProgress:
 
     def protocol(self) -> StudyProtocol | None:
         """Return the study's protocol, or None if trainees practice freely."""
-        with self._database.reading() as connection:
-            row = connection.execute("SELECT protocol_json FROM study_protocol").fetchone()
+        row = self._database.row("SELECT protocol_json FROM study_protocol")
         return None if row is None else decoded(row[0], study_protocol_from_json)
 
     def _require_protocol(self) -> StudyProtocol:
@@ -82,7 +80,7 @@ class StudyProgress:
         The place determines the order of modes and tasks. The place of a deleted trainee is reused,
         so the orders stay balanced.
         """
-        with self._database.writing() as connection:
+        with self._database.writing():
             self._require_protocol()
             self._study.trainee(pseudonym)
             places = self.enrolled()
@@ -90,49 +88,46 @@ class StudyProgress:
                 return places[pseudonym]
             taken = places.values()
             place = next(number for number in range(len(taken) + 1) if number not in taken)
-            connection.execute(
-                f"INSERT INTO enrollments VALUES (({TRAINEE_ID}), ?, ?)",
-                (pseudonym, place, utc_now()),
-            )
+            self._database.insert("enrollments", trainee=pseudonym, place=place)
             return place
 
     def enrolled(self) -> dict[str, int]:
         """Return the place of each enrolled trainee, in order."""
-        with self._database.reading() as connection:
-            return dict(
-                connection.execute(
-                    "SELECT pseudonym, place FROM enrollments "
-                    "JOIN trainees ON trainees.id = trainee_id ORDER BY place"
-                ).fetchall()
+        return dict(
+            self._database.rows(
+                "SELECT pseudonym, place FROM enrollments "
+                "JOIN trainees ON trainees.id = trainee_id ORDER BY place"
             )
+        )
 
     def progress(self, pseudonym: str) -> StepProgress:
         """Return the progress of a trainee."""
-        with self._database.reading() as connection:
+        with self._database.reading():
             protocol = self._require_protocol()
-            enrolled = connection.execute(
+            enrolled = self._database.row(
                 f"SELECT place, stored_utc FROM enrollments WHERE trainee_id = ({TRAINEE_ID})",
-                (pseudonym,),
-            ).fetchone()
+                pseudonym,
+            )
             if enrolled is None:
                 who = json.dumps(str(pseudonym)[:64])
                 raise InputError(f"{who} is not enrolled in the study yet.")
             place, enrolled_utc = enrolled
-            rows = connection.execute(
+            rows = self._database.rows(
                 "SELECT step, outcome, details_json, stored_utc FROM steps "
                 f"WHERE trainee_id = ({TRAINEE_ID}) ORDER BY id",
-                (pseudonym,),
-            ).fetchall()
+                pseudonym,
+            )
             entries = tuple(
                 StepEntry(step, outcome, decoded(details, dict), utc)
                 for step, outcome, details, utc in rows
             )
             progress = StepProgress(steps_for(protocol, place), entries, enrolled_utc)
             step = progress.next_step
-            practiced = connection.execute(
+            practiced = self._database.row(
                 f"SELECT seconds FROM practice WHERE trainee_id = ({TRAINEE_ID}) AND step = ?",
-                (pseudonym, "" if step is None else step.name),
-            ).fetchone()
+                pseudonym,
+                "" if step is None else step.name,
+            )
             return replace(
                 progress,
                 practiced_s=0.0 if practiced is None else practiced[0],
@@ -145,8 +140,6 @@ class StudyProgress:
         """Store that the next step was done and return the new progress.
 
         Args:
-            pseudonym: Of an enrolled trainee.
-            step: Name of the next step.
             details: `trialId` of a stored trial, `answers` of a questionnaire, or `minutes` of a
                 trial run or break.
         """
@@ -159,7 +152,6 @@ class StudyProgress:
             return self._store(pseudonym, step, DONE, checked)
 
     def skip(self, pseudonym: str, step: str, reason: str) -> StepProgress:
-        """Skip the next step for a reason and return the new progress."""
         with self._database.writing():
             checked = self.progress(pseudonym).check_skipped(step, reason)
             return self._store(pseudonym, step, SKIPPED, checked)
@@ -167,11 +159,10 @@ class StudyProgress:
     def _store(
         self, pseudonym: str, step: str, outcome: str, details: Mapping[str, Any]
     ) -> StepProgress:
-        with self._database.writing() as connection:
-            connection.execute(
-                "INSERT INTO steps (trainee_id, step, outcome, details_json, stored_utc) "
-                f"VALUES (({TRAINEE_ID}), ?, ?, ?, ?)",
-                (pseudonym, step, outcome, json_text(dict(details)), utc_now()),
+        with self._database.writing():
+            text = json_text(dict(details))
+            self._database.insert(
+                "steps", trainee=pseudonym, step=step, outcome=outcome, details_json=text
             )
             return self.progress(pseudonym)
 
@@ -181,20 +172,24 @@ class StudyProgress:
             progress = self.progress(pseudonym)
             step, checked = progress.check_repeat(reason)
             for record in progress.unexplained:
-                AbortedTrials(self._study).explain(record.trial_id, step.name, checked)
+                self._database.insert(
+                    "repeats", trial_id=record.trial_id, step=step.name, reason=checked
+                )
             return self.progress(pseudonym)
 
     def practice(self, pseudonym: str, step: str, seconds: float) -> None:
         """Add to the practiced time of the next step, a trial run."""
-        with self._database.writing() as connection:
+        with self._database.writing():
             due = self.progress(pseudonym).next_step
             if due is None or (due.name, due.kind) != (step, StepKind.TRIAL_RUN):
                 raise InputError(f"{step[:80]} is not the next step, or not a trial run.")
-            connection.execute(
+            self._database.change(
                 f"INSERT INTO practice VALUES (({TRAINEE_ID}), ?, ?) "
                 "ON CONFLICT (trainee_id, step) "
                 "DO UPDATE SET seconds = practice.seconds + excluded.seconds",
-                (pseudonym, step, float(seconds)),
+                pseudonym,
+                step,
+                float(seconds),
             )
 
     def count_played(self, pseudonym: str) -> StepProgress:
@@ -286,7 +281,7 @@ class StudyProgress:
                 and trial not in counted
                 and when >= since
                 and not objections_to(step, self._study.record(trial))
-                and self._can_be_scored(trial)
+                and any(self._study.has(table, trial) for table in ("registrations", "scores"))
             ):
                 aborted = self._aborted_before(pseudonym, progress)
                 if any(moment(record.started_utc) <= when for record in aborted):
@@ -294,31 +289,20 @@ class StudyProgress:
                 return StepEntry(step.name, DONE, {"trialId": trial}, stored_utc)
         return None
 
-    def _can_be_scored(self, trial_id: str) -> bool:
-        """Return whether a trial was registered or scored; else it gets no score."""
-        with self._study.database.reading() as connection:
-            return any(
-                connection.execute(
-                    f"SELECT 1 FROM {table} WHERE trial_id = ?", (trial_id,)
-                ).fetchone()
-                for table in ("registrations", "scores")
-            )
-
     def _trials_of(self, pseudonym: str) -> list[tuple[Any, ...]]:
         """Return a trainee's finished trials, in order.
 
         Each is its start, UUID, time of storing, mode, task, procedure and method, and how far its
         skin had shifted and was indented, mm.
         """
-        with self._database.reading() as connection:
-            rows = connection.execute(
-                "SELECT started_utc, trial_id, stored_utc, mode, task, "
-                f"coalesce(json_extract(record_json, '$.procedure.procedure'), ''), {METHOD}, "
-                "coalesce(json_extract(record_json, '$.skin.shiftMm'), ''), "
-                "coalesce(json_extract(record_json, '$.skin.indentationMm'), '') "
-                f"FROM trials WHERE trainee_id = ({TRAINEE_ID})",
-                (pseudonym,),
-            ).fetchall()
+        rows = self._database.rows(
+            "SELECT started_utc, trial_id, stored_utc, mode, task, "
+            f"coalesce(json_extract(record_json, '$.procedure.procedure'), ''), {METHOD}, "
+            "coalesce(json_extract(record_json, '$.skin.shiftMm'), ''), "
+            "coalesce(json_extract(record_json, '$.skin.indentationMm'), '') "
+            f"FROM trials WHERE trainee_id = ({TRAINEE_ID})",
+            pseudonym,
+        )
         return sorted(
             (moment(started), *others, *(decoded(str(each or 0), float) for each in skin))
             for started, *others, shift, indentation in rows
@@ -339,4 +323,10 @@ class StudyProgress:
         # Skipping a step settles its aborted trials.
         left_out = [moment(entry.stored_utc) for entry in progress.skipped]
         since = max([self._since(pseudonym, progress), *left_out])
-        return AbortedTrials(self._study).unexplained(pseudonym, step.mode, step.task, since)
+        return tuple(
+            stored.record
+            for stored in self._study.aborted(pseudonym)
+            if not stored.repeat_reason
+            and (stored.record.mode, stored.record.task) == (step.mode, step.task)
+            and moment(stored.record.started_utc) >= since
+        )

@@ -64,8 +64,6 @@ def _questionnaire(value: Any) -> str:
 
 
 def _by_task(key: str, check: Callable[[Any], Any]) -> Callable[[Any], dict[str, Any]]:
-    """Accept an object from tasks to values that a check accepts."""
-
     def read(value: Any) -> dict[str, Any]:
         if not isinstance(value, Mapping):
             raise ValueError("an object of tasks")
@@ -103,14 +101,11 @@ class StudyProtocol:
     """What every trainee of a study does.
 
     Attributes:
-        name: Short; `title` is for people.
-        modes: Conditions.
         mode_order, task_order: As listed, or balanced over the trainees.
         repetitions: How often each task is done in each mode, round by round.
         trial_run_min: Length of the trial run at the start of each mode; 0 for none.
         break_between_modes_min, break_between_tasks_min: At least so long; 0 for none.
         references: Of the score, by task; by default, the scenario's.
-        pass_mark: Score that passes; None for the default.
         guidance: To the next point; "" leaves it to the simulator's setting.
         ghost: For the trials; "" for none, even if the simulator's setting has one.
         tutorial: "" leaves it to the simulator's setting.
@@ -199,12 +194,10 @@ def pass_mark_of(
 
 
 def read_study_protocol(path: Path | str) -> StudyProtocol:
-    """Read a protocol file."""
     return read_plan(StudyProtocol, path, _VERSIONS)
 
 
 def study_protocol_from_json(value: Any) -> StudyProtocol:
-    """Return the protocol of a `to_json` object."""
     return plan_from_json(StudyProtocol, value, _VERSIONS, "The protocol")
 
 
