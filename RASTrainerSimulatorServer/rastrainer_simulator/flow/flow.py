@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 from rastrainer.commands import CommandName
 from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, GhostRule, Guidance, Phase
 from rastrainer_simulator.flow.pages.experiment import open_experiment
-from rastrainer_simulator.flow.pages.introduction import PracticedPage, TutorialDonePage
-from rastrainer_simulator.flow.pages.procedure import (
-    ProcedureErrorsPage,
-    ProcedureLinesPage,
-)
-from rastrainer_simulator.flow.pages.result import FinishedPage, ResultPage, WaitingPage
+from rastrainer_simulator.flow.pages.introduction import practiced_page, tutorial_done_page
+from rastrainer_simulator.flow.pages.result import ResultPage, waiting_page
 from rastrainer_simulator.flow.pages.session_page import SessionPage, clickable_hint
-from rastrainer_simulator.flow.pages.start import StartPage
-from rastrainer_simulator.flow.pages.trial import PracticePage, PreparingPage, TrialPage
-from rastrainer_simulator.flow.pages.trial_review import ErrorsPage, ReplayPage
+from rastrainer_simulator.flow.pages.start import start_page
+from rastrainer_simulator.flow.pages.trial import PreparingPage, practice_page, trial_page
+from rastrainer_simulator.flow.pages.trial_review import ReplayPage
 from rastrainer_simulator.flow.procedure_screen import ProcedureScreen
 from rastrainer_simulator.flow.session.chosen_trial import begin_ghost, needs_tutorial
 from rastrainer_simulator.flow.session.session import TrainingSession
@@ -34,7 +31,7 @@ from rastrainer_simulator.texts.texts import key_of
 
 PICTURE_GRACE_S = 0.5
 """A picture that is there so soon is no reason to pause a trial."""
-RESULT_PAGES = (FinishedPage, ReplayPage, ErrorsPage, ProcedureErrorsPage, ProcedureLinesPage)
+RESULT_PAGES = ("waiting", "result", "replay", "errors", "procedure-errors", "procedure-lines")
 
 NOT_RECORDED = "not recorded"
 INTERRUPTED = ("interrupted", "interrupted procedure")
@@ -60,7 +57,7 @@ class Flow:
         self._without_picture_s = 0.0
         self._waits_for_picture = False
         self._unseen = ""
-        session.pages.home = lambda: StartPage(session)
+        session.pages.home = lambda: start_page(session)
         session.pages.show_start()
 
     @property
@@ -136,7 +133,7 @@ class Flow:
         # A view that loads its picture may be too busy to say anything.
         if isinstance(session.pages.top, PreparingPage) and why != "unseen.still":
             self._unseen = why
-            session.pages.replace(TrialPage(session))
+            session.pages.replace(trial_page(session))
         is_running = session.training.is_running
         if (is_running or session.tutorial is not None) and session.pages.top is None:
             self._unseen = why
@@ -225,7 +222,7 @@ class Flow:
             outcome = session.end_tutorial()
             open_experiment(session)
             if outcome is not None:
-                page = PracticedPage if tutorial.practiced else TutorialDonePage
+                page = practiced_page if tutorial.practiced else tutorial_done_page
                 session.pages.open(page(session, outcome), ignore_input_briefly=True)
 
     def _follow(self, before: tuple[str, Phase]) -> None:
@@ -238,19 +235,23 @@ class Flow:
         self._note_trial(before[0])
         is_requested = self._trial_screen.take_menu_request()
         was_working = session.pages.top is None
+        top_name = "" if session.pages.top is None else session.pages.top.name
         if training.phase in (Phase.RUNNING, Phase.COMPLETE, *PROCEDURE_PHASES):
             session.pages.show(None)
         elif training.phase is Phase.PAUSED:
-            page: type[SessionPage] = PreparingPage if self._waits_for_picture else TrialPage
-            page = PracticePage if self._trial_screen.is_practice_over else page
+            page: Callable[[TrainingSession], SessionPage]
+            page = PreparingPage if self._waits_for_picture else trial_page
+            page = practice_page if self._trial_screen.is_practice_over else page
             session.pages.show(page(session), ignore_input_briefly=not is_requested)
         elif training.phase is Phase.REGISTERED:
             session.note_done()
-            session.study.note_registered(training.trainee, training.task, training.mode)
-            session.pages.show(WaitingPage(session), ignore_input_briefly=True)
+            session.services.assigned.note_registered(
+                training.trainee, training.task, training.mode
+            )
+            session.pages.show(waiting_page(session), ignore_input_briefly=True)
         elif training.phase is Phase.SCORED:
             session.pages.show(ResultPage(session), ignore_input_briefly=True)
-        elif before[1] in OPEN_PHASES or isinstance(session.pages.top, RESULT_PAGES):
+        elif before[1] in OPEN_PHASES or top_name in RESULT_PAGES:
             # Another simulation may follow a trial while other pages are open: they stay.
             open_experiment(session, ignore_input_briefly=was_working)
 
@@ -265,14 +266,14 @@ class Flow:
             self._trial_screen.begin(*points_in_world(truth))
             guidance = self._trial_screen.guidance
             self._control_loop.note_display(GuidanceReport(guidance.value))
-            learned = session.tutorials.latest(training.trainee)
+            learned = session.tutorials.latest.get(training.trainee)
             if training.task == TRIAL_RUN and learned is not None:
                 self._control_loop.note_display(learned)
-            session.view.begin(session.setup, truth, session.state)
+            session.view.begin(session.control_loop.setup, truth, session.state)
             is_guided = training.trace is not None and guidance is not Guidance.NONE
             session.places.forget()
             if is_guided:
-                session.places.begin(training.trial_id, session.setup, truth)
+                session.places.begin(training.trial_id, session.control_loop.setup, truth)
             begin_ghost(session, truth.head_to_world)
             session.trainee = training.trainee
             session.mode = training.mode
@@ -302,7 +303,7 @@ class Flow:
 
     def _link_warnings(self) -> tuple[ScreenMessage, ...]:
         """Warn that the connection to Slicer was lost, once there was one."""
-        is_connected = self._session.is_slicer_connected()
+        is_connected = self._session.services.is_slicer_connected()
         self._had_slicer = self._had_slicer or is_connected
         if is_connected or not self._had_slicer:
             return ()

@@ -168,7 +168,7 @@ class FlowPresenter(Presenter):
         """Forget a view; if it was the trainee's, no one sees the trial any more."""
         was_silent = self._views.watched(self.controls.holder) is None
         self._lose_sight(view, "unseen.left")
-        self._session.layouts.pop(view, None)
+        self._session.operator.layouts.pop(view, None)
         self._choose_mode(self._views.leave(view))
         self._pictures.forget(view)
         if was_silent and self._views.is_empty:
@@ -186,7 +186,7 @@ class FlowPresenter(Presenter):
         self._settle()
 
     def on_layout(self, view: int, keys: Mapping[str, str]) -> None:
-        self._session.layouts[view] = keys
+        self._session.operator.layouts[view] = keys
         self._is_changed = True
 
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:

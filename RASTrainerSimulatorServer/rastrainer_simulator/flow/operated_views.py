@@ -173,7 +173,7 @@ class OperatedView:
         if tutorial is not None and not tutorial.has_learned_view:
             return False
         choice = session.preferences.view
-        is_led = session.study.step_of(practiced.trainee) is not None
+        is_led = session.services.assigned.steps.get(practiced.trainee) is not None
         return choice == "always" or (choice == "practice" and not is_led)
 
     def advance(self, dt: float) -> None:

@@ -10,7 +10,7 @@ from rastrainer.commands import CommandName
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.arm_screen import ArmScreen
-from rastrainer_simulator.flow.pages.procedure import ProcedurePage
+from rastrainer_simulator.flow.pages.procedure import procedure_page
 from rastrainer_simulator.flow.pages.session_page import stick_hints
 from rastrainer_simulator.flow.session.plan_marks import checkpoint_marks, depth_ruler, plan_marks
 from rastrainer_simulator.flow.session.session import TrainingSession
@@ -72,7 +72,7 @@ class ProcedureScreen(ArmScreen):
         elif control is ControlName.TOUCH and is_verifying:
             session.do(CommandName.CAPTURE)
         elif control in (ControlName.TOUCH, ControlName.UNDO):
-            session.pages.open(ProcedurePage(session))
+            session.pages.open(procedure_page(session))
         else:
             self._trial_screen.pressed(control)
 
@@ -204,6 +204,6 @@ class ProcedureScreen(ArmScreen):
         own = session.local_scorer
         if own is not None and own.problem:
             return (ScreenMessage(say("waiting.problem", reason=own.problem), Tone.ERROR),)
-        if own is None and not session.is_slicer_connected():
+        if own is None and not session.services.is_slicer_connected():
             return (ScreenMessage(say("warning.nobody registers"), Tone.WARNING),)
         return ()

@@ -26,8 +26,8 @@ from rastrainer_simulator.flow.arm_screen import (
     PathArc,
 )
 from rastrainer_simulator.flow.pages.session_page import stick_hints
-from rastrainer_simulator.flow.pages.start import StartPage
-from rastrainer_simulator.flow.pages.trial import CompletePage, TrialPage
+from rastrainer_simulator.flow.pages.start import start_page
+from rastrainer_simulator.flow.pages.trial import complete_page, trial_page
 from rastrainer_simulator.flow.pages.trial_review import POOR_MM
 from rastrainer_simulator.flow.session.chosen_trial import guidance_of
 from rastrainer_simulator.flow.session.session import TrainingSession
@@ -129,7 +129,7 @@ class TrialScreen(ArmScreen):
             trace = session.training.trace
             session.do(CommandName.TRACE, {"on": trace is None or not trace.is_on})
         elif control is ControlName.TOUCH and phase is Phase.COMPLETE:
-            session.pages.open(CompletePage(session))
+            session.pages.open(complete_page(session))
         elif control is ControlName.TOUCH:
             session.do(CommandName.CAPTURE)
         elif control in (ControlName.MENU, ControlName.PAUSE):
@@ -159,7 +159,7 @@ class TrialScreen(ArmScreen):
         if session.training.is_running:
             session.do(CommandName.PAUSE)
         else:
-            page = TrialPage if phase is Phase.COMPLETE else StartPage
+            page = trial_page if phase is Phase.COMPLETE else start_page
             session.pages.show(page(session))
 
     def instruction(self) -> ScreenMessage:

@@ -9,7 +9,7 @@ from rastrainer.commands import CommandName
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.arm import start_tip
 from rastrainer_simulator.flow.arm_screen import ArmScreen
-from rastrainer_simulator.flow.pages.introduction import TutorialPage
+from rastrainer_simulator.flow.pages.introduction import tutorial_page
 from rastrainer_simulator.flow.pages.session_page import clickable_hint, stick_hints
 from rastrainer_simulator.flow.pages.trial_review import POOR_MM, error_arrow, error_tone
 from rastrainer_simulator.flow.session.session import TrainingSession
@@ -119,7 +119,7 @@ class TutorialScreen(ArmScreen):
         if self._homing is not None and self._is_homing:
             self._homing.advance(dt)
             return
-        tutorial.use(session.operator.learned)
+        tutorial.use(session.operator.learned(session.mode))
         tutorial.practice.end_refusal(session.state.sim_time)
         done = tutorial.advance(dt, self._observation())
         if done is not None:
@@ -143,7 +143,7 @@ class TutorialScreen(ArmScreen):
 
     def open_menu(self) -> None:
         self._has_paused = self._tutorial.step is TutorialStep.PAUSE
-        self._session.pages.show(TutorialPage(self._session))
+        self._session.pages.show(tutorial_page(self._session))
 
     def instruction(self) -> ScreenMessage:
         session, tutorial = self._session, self._tutorial
@@ -221,7 +221,7 @@ class TutorialScreen(ArmScreen):
         return TutorialObservation(
             tip=session.tip,
             axes=self._axes(),
-            is_slow=session.held.fine,
+            is_slow=session.controls.held.fine,
             orbit=session.view.control.orbit,
             yaw_deg=session.view.yaw_deg,
             has_best_view=session.view.has_moved_to(practice.next_point),
@@ -260,7 +260,7 @@ class TutorialScreen(ArmScreen):
             else session.operator.label(controls[0])
         )
         key = f"tutorial.{step.value}"
-        for variant in (session.operator.learned.value, session.preferences.axes):
+        for variant in (session.operator.learned(session.mode).value, session.preferences.axes):
             if f"{key}.{variant}" in session.texts:
                 key = f"{key}.{variant}"
         point = self._tutorial.practice.state.next_point
@@ -284,7 +284,7 @@ class Homing:
 
     def __init__(self, session: TrainingSession) -> None:
         self._session = session
-        goal = start_tip(session.scenario, session.setup.settings.start_height)
+        goal = start_tip(session.scenario, session.control_loop.setup.settings.start_height)
         tip = session.tip
         high = max(tip[2], goal[2])
         self._way: list[Vector] = [(*tip[:2], high), (*goal[:2], high), goal]
@@ -302,7 +302,7 @@ class Homing:
         """Command the next part of the path once the previous one is done."""
         session = self._session
         self._left_s -= dt
-        is_taken_over = max(map(abs, session.held.translation)) > TAKEN_OVER
+        is_taken_over = max(map(abs, session.controls.held.translation)) > TAKEN_OVER
         if self._left_s < 0.0 or is_taken_over:
             self._way.clear()
         while self._way and distance(session.tip, self._way[0]) < NEAR_M / 4.0:

@@ -82,7 +82,7 @@ def test_tutorial_and_trial_run_are_skipped_one_after_the_other(alone):
 
 
 def test_a_study_that_requires_them_offers_no_way_around(alone, outside):
-    outside.services.study.take(
+    outside.services.assigned.take_step(
         StudyStep(FIRST_ID, "trial-run", 2, 9, TRIAL_RUN, "desktop", minutes=8.0)
     )
     trainee = alone()

@@ -181,7 +181,9 @@ def test_in_a_study_the_view_follows_only_where_that_is_configured(trainee):
     session, view = trainee.presenter._session, trainee.presenter._view
     trainee.start("task-1")
     assert view.follows
-    session.study.take(StudyStep(trainee="P07", kind=StepKind.TRIAL.value, task="task-1"))
+    session.services.assigned.take_step(
+        StudyStep(trainee="P07", kind=StepKind.TRIAL.value, task="task-1")
+    )
     assert not view.follows
     session.preferences = session.preferences.__class__(view="always")
     assert view.follows

@@ -55,6 +55,10 @@ class ErrorsPage(SessionPage):
         """Return the arrows; they show the true errors, which the score has already revealed."""
         session = self.session
         touches = session.training.touches if session.training.result is not None else ()
+        fiducials = session.control_loop.truth.fiducials_ras
+        errors = (
+            error_arrow(session.truly_in_world(fiducials[t.label]), t.position) for t in touches
+        )
         back = Hint(session.operator.label(ControlName.BACK), self.say("hint.result"), "back")
         hints: tuple[Hint, ...] = (back,)
         if not session.operator.is_one_of((SourceKind.XR,)):
@@ -66,7 +70,7 @@ class ErrorsPage(SessionPage):
             instruction=ScreenMessage(self.title()),
             hints=hints,
             language=session.preferences.language,
-            errors=tuple(error_arrow(session.fiducial(t.label), t.position) for t in touches),
+            errors=tuple(errors),
         )
 
     def pressed(self, control: ControlName) -> bool:
@@ -124,7 +128,15 @@ class ReplayPage(SessionPage):
         if self._player is None or self.playback is None:
             return None
         session = self.session
-        shown = self._player.screen(session.texts, self._hints(), session.preferences.language)
+        label, pair_label = session.operator.label, session.operator.pair_label
+        hints = (
+            clickable_hint(session, ControlName.ACCEPT, "hint.play"),
+            Hint(pair_label(ControlName.LEFT, ControlName.RIGHT), self.say("hint.seek")),
+            clickable_hint(session, ControlName.UP, "hint.worst"),
+            clickable_hint(session, ControlName.CAMERA, "hint.camera"),
+            Hint(label(ControlName.BACK), self.say("hint.result"), "back"),
+        )
+        shown = self._player.screen(session.texts, hints, session.preferences.language)
         procedure = self.playback.latest.training.procedure
         if procedure is None or procedure.present is None:
             return shown
@@ -148,7 +160,7 @@ class ReplayPage(SessionPage):
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
         """Process inputs without a function in menus: the worst touch, and the camera."""
-        bindings = self.session.bindings
+        bindings = self.session.controls.bindings
         if self._player is None or bindings.control(device, name, ControlContext.MENU) is not None:
             return False
         is_camera = name in bindings.table(device)[ControlName.CAMERA]
@@ -164,7 +176,7 @@ class ReplayPage(SessionPage):
             self.back()
             session.complain(str(error))
             return
-        self.playback = Playback(trial, session.setup)
+        self.playback = Playback(trial, session.control_loop.setup)
         self._player = Player(self.playback, self.back)
         self.playback.subscribe(self._feel)
         if self._begins_at_worst and trial.worst is None:
@@ -183,14 +195,3 @@ class ReplayPage(SessionPage):
             felt = feedback_event(event, result.state.touch)
             if felt is not None:
                 self.session.happened(felt)
-
-    def _hints(self) -> tuple[Hint, ...]:
-        label, say = self.session.operator.label, self.session.texts.say
-        seek = self.session.operator.pair_label(ControlName.LEFT, ControlName.RIGHT)
-        return (
-            clickable_hint(self.session, ControlName.ACCEPT, "hint.play"),
-            Hint(seek, say("hint.seek")),
-            clickable_hint(self.session, ControlName.UP, "hint.worst"),
-            clickable_hint(self.session, ControlName.CAMERA, "hint.camera"),
-            Hint(label(ControlName.BACK), say("hint.result"), "back"),
-        )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -13,7 +13,7 @@ from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import write_private_json
 from rastrainer.json_checks import accepted, text
-from rastrainer.protocol import TRIAL_RUN, GhostRule, Guidance, TouchRule, TutorialRule
+from rastrainer.protocol import GhostRule, Guidance, TouchRule, TutorialRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.ops.instructor_pin import PinAnswer, PinGuesses
@@ -22,8 +22,6 @@ from rastrainer_simulator.texts.texts import LANGUAGES
 
 PREFERENCES_FILE = "preferences.json"
 MAX_BYTES = 2**14
-_ARROW_TASKS = 2
-"""How many tasks after the trial run have an arrow, where guidance fades."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -140,16 +138,6 @@ def read_preferences(path: Path) -> Preferences:
 def write_preferences(path: Path, preferences: Preferences) -> None:
     """Save the preferences."""
     write_private_json(path, dataclasses.asdict(preferences))
-
-
-def faded_guidance(choice: str, task: str, order: Sequence[str]) -> Guidance:
-    """Return the guidance of a task: `choice` is a `Guidance`, `order` names all tasks."""
-    if choice != Guidance.FADING:
-        return Guidance(choice)
-    if task == TRIAL_RUN:
-        return Guidance.WORDS
-    tasks = [name for name in order if name != TRIAL_RUN]
-    return Guidance.ARROW if task in tasks[:_ARROW_TASKS] else Guidance.NONE
 
 
 class InstructorLock:
