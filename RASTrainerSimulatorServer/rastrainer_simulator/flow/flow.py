@@ -16,6 +16,7 @@ from rastrainer_simulator.flow.pages.trial import PreparingPage, practice_page, 
 from rastrainer_simulator.flow.pages.trial_review import ReplayPage
 from rastrainer_simulator.flow.procedure_screen import ProcedureScreen
 from rastrainer_simulator.flow.session.chosen_trial import begin_ghost, needs_tutorial
+from rastrainer_simulator.flow.session.open_pages import Page
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.trial_screen import TrialScreen, points_in_world
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
@@ -23,7 +24,7 @@ from rastrainer_simulator.flow.tutorial_screen import TutorialScreen
 from rastrainer_simulator.input.inputs import ControlContext, ControlName
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.presentation.feedback_event import feedback_event, touch_feedback
-from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage, Tone
+from rastrainer_simulator.presentation.screen import Hint, Menu, Screen, ScreenMessage, Tone
 from rastrainer_simulator.record.trial_context import GhostReport, GuidanceReport
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.state import Answer, SimulationState, StepResult, TouchStage, TrialResult
@@ -103,7 +104,15 @@ class Flow:
             self._seen_result = training.result
             session.history.changed(training.trainee, training.trial_id)
         if session.ghost.has_just_loaded():
-            self._note_ghost()
+            # The journal says that a ghost is shown from now on, or the trainee reads why not.
+            if session.ghost.rule is GhostRule.OFF:
+                session.notices.add(session.texts.say("ghost.none"))
+            elif session.has_open_trial:
+                self._control_loop.note_display(GhostReport(session.ghost.rule.value))
+        is_connected = session.services.is_slicer_connected()
+        self._had_slicer = self._had_slicer or is_connected
+        is_lost = self._had_slicer and not is_connected
+        session.notices.warn("slicer", "warning.slicer" if is_lost else "")
         self._wait_for_picture(dt)
         if session.pages.top is not None:
             session.pages.advance(dt)
@@ -147,23 +156,14 @@ class Flow:
         preparing = ScreenMessage(session.preparing())
         if preparing.text and menu is not None and menu.name != PreparingPage.name:
             lasting = (preparing, *lasting)
-        warnings = (*lasting, *self._link_warnings(), *notices.brief())
+        warnings = (*lasting, *notices.brief())
         shown = None if page is None else page.screen()
         if shown is not None:
             return replace(shown, warnings=(*shown.warnings, *warnings))
         is_at_work = menu is None or session.has_open_trial or session.tutorial is not None
         shown = self._screen_of_work.screen() if is_at_work else Screen()
-        if menu is not None:
-            in_head = shown if self._procedure_screen.is_open else Screen()
-            shown = Screen(
-                menu=menu,
-                warnings=self._pause_warnings(),
-                status=shown.status,
-                hints=self._menu_hints(),
-                errors=in_head.errors,
-                is_head_clear=in_head.is_head_clear,
-                is_private=page is not None and page.is_private,
-            )
+        if page is not None and menu is not None:
+            shown = self._over(shown, page, menu)
         elif preparing.text:
             shown = replace(shown, instruction=preparing)
         return replace(
@@ -171,6 +171,35 @@ class Flow:
             warnings=(*shown.warnings, *warnings),
             language=session.preferences.language,
             is_spoken=session.preferences.speech,
+        )
+
+    def _over(self, shown: Screen, page: Page, menu: Menu) -> Screen:
+        """Return the screen of a menu over another, and why the trial is paused.
+
+        That is said unless the trainee did it.
+        """
+        session, say = self._session, self._session.texts.say
+        said = session.training.instruction
+        why: tuple[ScreenMessage, ...] = ()
+        tones = {**dict.fromkeys(INTERRUPTED, Tone.WARNING), NOT_RECORDED: Tone.ERROR}
+        if self._unseen:
+            why = (ScreenMessage(say(self._unseen), Tone.WARNING),)
+        elif key_of(said) in tones:
+            why = (ScreenMessage(session.texts.again(said), tones[key_of(said)]),)
+        in_head = shown if self._procedure_screen.is_open else Screen()
+        choose = session.operator.pair_label(ControlName.UP, ControlName.DOWN)
+        return Screen(
+            menu=menu,
+            warnings=why,
+            status=shown.status,
+            hints=(
+                Hint(choose, say("hint.choose")),
+                clickable_hint(session, ControlName.ACCEPT, "hint.accept"),
+                clickable_hint(session, ControlName.BACK, "hint.back"),
+            ),
+            errors=in_head.errors,
+            is_head_clear=in_head.is_head_clear,
+            is_private=page.is_private,
         )
 
     def start_tutorial(self, trainee: str, mode: str) -> Answer:
@@ -292,37 +321,3 @@ class Flow:
         if self._without_picture_s > PICTURE_GRACE_S and not self._waits_for_picture:
             self._waits_for_picture = True
             session.do(CommandName.PAUSE)
-
-    def _note_ghost(self) -> None:
-        """Have the journal say that a ghost is shown from now on, or the trainee that none is."""
-        session = self._session
-        if session.ghost.rule is GhostRule.OFF:
-            session.notices.add(session.texts.say("ghost.none"))
-        elif session.has_open_trial:
-            self._control_loop.note_display(GhostReport(session.ghost.rule.value))
-
-    def _link_warnings(self) -> tuple[ScreenMessage, ...]:
-        """Warn that the connection to Slicer was lost, once there was one."""
-        is_connected = self._session.services.is_slicer_connected()
-        self._had_slicer = self._had_slicer or is_connected
-        if is_connected or not self._had_slicer:
-            return ()
-        return (ScreenMessage(self._session.texts.say("warning.slicer"), Tone.WARNING),)
-
-    def _pause_warnings(self) -> tuple[ScreenMessage, ...]:
-        """Say why the trial was paused, unless the trainee did it."""
-        if self._unseen:
-            return (ScreenMessage(self._session.texts.say(self._unseen), Tone.WARNING),)
-        said = self._session.training.instruction
-        tones = {**dict.fromkeys(INTERRUPTED, Tone.WARNING), NOT_RECORDED: Tone.ERROR}
-        tone = tones.get(key_of(said))
-        return () if tone is None else (ScreenMessage(self._session.texts.again(said), tone),)
-
-    def _menu_hints(self) -> tuple[Hint, ...]:
-        session = self._session
-        say = session.texts.say
-        return (
-            Hint(session.operator.pair_label(ControlName.UP, ControlName.DOWN), say("hint.choose")),
-            clickable_hint(session, ControlName.ACCEPT, "hint.accept"),
-            clickable_hint(session, ControlName.BACK, "hint.back"),
-        )
