@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
 
 from rastrainer.commands import CommandName
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.flow.pages.session_page import clickable_hint, slow_hint
+from rastrainer_simulator.flow.pages.session_page import clickable_hint
+from rastrainer_simulator.flow.session.operator_device import SHOW, TILT
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.inputs import ControlName
-from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage, Tone
+from rastrainer_simulator.input.inputs import ControlName, SourceKind
+from rastrainer_simulator.presentation.screen import PRESS, Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.state import Event, EventKind, SimulationState, TouchStage
 from rastrainer_simulator.teleoperation.steering import ROBOT_AXES, Axes, AxesChoice, camera_axes
 from rastrainer_simulator.vectors import (
     Vector,
+    angle,
     cross,
     distance,
     dot,
@@ -104,9 +105,6 @@ class ArmScreen:
             warnings.append(ScreenMessage(say("warning.reach"), Tone.WARNING))
         return tuple(warnings)
 
-    def _forget_arm(self) -> None:
-        self._obstacle, self._is_within_reach = "", True
-
     def _change_camera(self) -> None:
         """Look from the front again; from there already, change between near and far."""
         session = self._session
@@ -124,14 +122,38 @@ class ArmScreen:
             Hint(up_and_down, session.texts.say("hint.up_and_down")),
         )
 
-    def _control_hints(self, names: Mapping[ControlName, str]) -> tuple[Hint, ...]:
-        session = self._session
-        return tuple(
-            slow_hint(session)
-            if control is ControlName.FINE
-            else clickable_hint(session, control, key)
-            for control, key in names.items()
-        )
+    def _hints(
+        self, moving: Iterable[Hint], names: Mapping[ControlName, str], can_tilt: bool = False
+    ) -> tuple[Hint, ...]:
+        """Return hints on movement, hints that press a control, and those on the screen's sticks.
+
+        The sticks are shown to who clicks, and hidden again. Where the tool can be tilted, the
+        right stick does it, or lifts and lowers the tool.
+
+        Args:
+            moving: about movement.
+            names: key of the text of each control.
+            can_tilt: whether the tool can be tilted.
+        """
+        session, operator = self._session, self._session.operator
+        say, sticks = session.texts.say, session.screen_sticks
+        hints = list(moving)
+        for control, key in names.items():
+            if control is not ControlName.FINE:
+                hints.append(clickable_hint(session, control, key))
+            elif operator.steers_by_mouse:
+                # What others hold is switched on and off by a mouse.
+                key = "hint.on" if sticks.is_slow else "hint.off"
+                hints.append(clickable_hint(session, control, key))
+            else:
+                hints.append(Hint(operator.label(control), say("hint.fine")))
+        if operator.is_one_of((SourceKind.MOUSE,)):
+            action = say("hint.hide sticks" if sticks.is_shown else "hint.sticks")
+            hints.append(Hint(say("hint.mouse"), action, PRESS + SHOW))
+            if can_tilt and sticks.is_shown:
+                key = "hint.tilt" if sticks.is_tilting else "hint.up_and_down"
+                hints.append(Hint(say("hint.right stick"), say(key), PRESS + TILT))
+        return tuple(hints)
 
     def _toward(self, name: str, target: Vector, nearest_mm: float = PRACTICED_MM) -> str:
         """Return how far and in which directions a point is (World, m), in words, after its name.
@@ -173,37 +195,19 @@ ABOVE_LEAST = 0.35
 _WORDS = (("left", "right"), ("back", "forward"), ("down", "up"))
 
 
-@dataclass(frozen=True)
-class PathArc:
-    """The path over the head from one point to the next (World, m).
+def off_path(tip: Vector, center: Vector, start: Vector, end: Vector) -> float:
+    """Return the distance of the tip from the path over the head, along the head, in m.
 
-    The tool is lifted, carried around the head and lowered: the path is the arc about the head's
-    center from one to the other, at any height.
+    The tool is lifted, carried around the head and lowered: the path is the shorter arc about the
+    head's center from one point to the next, at any height. World, m.
     """
-
-    center: Vector
-    start: Vector
-    end: Vector
-
-    def beside(self, tip: Vector) -> float:
-        """Return the distance of the tip from the path, along the head, in m."""
-        out = subtract(tip, self.center)
-        first, last, here = (unit(subtract(p, self.center)) for p in (self.start, self.end, tip))
-        return length(out) * _angle_to_arc(here, first, last)
-
-
-def _angle_to_arc(here: Vector, first: Vector, last: Vector) -> float:
-    """Return the angle in rad from a direction to the shorter arc between two others."""
+    first, last, here = (unit(subtract(place, center)) for place in (start, end, tip))
     pole = unit(cross(first, last))
-    to_ends = min(_angle(here, first), _angle(here, last))
-    if length(pole) == 0.0:
-        return to_ends
+    off_rad = min(angle(here, first), angle(here, last))
     is_between = dot(cross(pole, first), here) >= 0.0 and dot(cross(last, pole), here) >= 0.0
-    return abs(math.asin(max(-1.0, min(1.0, dot(here, pole))))) if is_between else to_ends
-
-
-def _angle(a: Vector, b: Vector) -> float:
-    return 2.0 * math.asin(min(1.0, 0.5 * distance(a, b)))
+    if length(pole) > 0.0 and is_between:
+        off_rad = abs(math.asin(max(-1.0, min(1.0, dot(here, pole)))))
+    return length(subtract(tip, center)) * off_rad
 
 
 def direction_words(tip: Vector, target: Vector, axes: Axes) -> tuple[str, ...]:

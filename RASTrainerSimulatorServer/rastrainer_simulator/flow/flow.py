@@ -18,7 +18,7 @@ from rastrainer_simulator.flow.procedure_screen import ProcedureScreen
 from rastrainer_simulator.flow.session.chosen_trial import begin_ghost, needs_tutorial
 from rastrainer_simulator.flow.session.open_pages import Page
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.flow.trial_screen import TrialScreen, points_in_world
+from rastrainer_simulator.flow.trial_screen import TrialScreen
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
 from rastrainer_simulator.flow.tutorial_screen import TutorialScreen
 from rastrainer_simulator.input.inputs import ControlContext, ControlName
@@ -247,7 +247,7 @@ class Flow:
             session.pages.show_start()
             return
         self._tutorial_screen.advance(dt)
-        if tutorial.is_done:
+        if tutorial.step is None and tutorial.praised is None:
             outcome = session.end_tutorial()
             open_experiment(session)
             if outcome is not None:
@@ -292,7 +292,7 @@ class Flow:
             self._unseen = ""
         if training.trial_id and training.trial_id != previous_id:
             truth = self._control_loop.truth
-            self._trial_screen.begin(*points_in_world(truth))
+            self._trial_screen.begin(truth)
             guidance = self._trial_screen.guidance
             self._control_loop.note_display(GuidanceReport(guidance.value))
             learned = session.tutorials.latest.get(training.trainee)

@@ -11,8 +11,7 @@ from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.arm_screen import ArmScreen
 from rastrainer_simulator.flow.pages.procedure import procedure_page
-from rastrainer_simulator.flow.pages.session_page import stick_hints
-from rastrainer_simulator.flow.session.plan_marks import checkpoint_marks, depth_ruler, plan_marks
+from rastrainer_simulator.flow.session.plan_marks import ball, depth_ruler, plan_marks
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.trial_screen import TrialScreen
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
@@ -89,7 +88,14 @@ class ProcedureScreen(ArmScreen):
         session, say = self._session, self._session.texts.say
         training = session.training
         if training.phase is Phase.VERIFYING and self._procedure.registration is None:
-            return self._why_not_registered()
+            # Why the touches are not registered yet, if that will not change by itself.
+            scorer = session.local_scorer
+            if scorer is not None and scorer.problem:
+                reason = say("waiting.problem", reason=scorer.problem)
+                return (ScreenMessage(reason, Tone.ERROR),)
+            if scorer is None and not session.services.is_slicer_connected():
+                return (ScreenMessage(say("warning.nobody registers"), Tone.WARNING),)
+            return ()
         if training.phase not in FED:
             return super().warnings()
         ruler = self._ruler()
@@ -127,8 +133,7 @@ class ProcedureScreen(ArmScreen):
         }
         if phase is not Phase.VERIFYING:
             del names[ControlName.UNDO]
-        on_screen = stick_hints(session, can_tilt=phase is Phase.ALIGNING)
-        return (*self._stick_hints(phase), *self._control_hints(names), *on_screen)
+        return self._hints(self._moving_hints(phase), names, can_tilt=phase is Phase.ALIGNING)
 
     def screen(self) -> Screen:
         """From the alignment on, the trainee looks into the head."""
@@ -139,12 +144,21 @@ class ProcedureScreen(ArmScreen):
         )
 
     def _marks(self) -> tuple[ErrorArrow, ...]:
-        """Return the plan by the registration, and checkpoints as marks on the skin."""
+        """Return the plan by the registration, and checkpoints as named marks on the skin.
+
+        Those touched by this registration are green.
+        """
         session, procedure = self._session, self._procedure
         if procedure.stage is Phase.VERIFYING:
-            checkpoints = session.scenario.procedure(procedure.name).checkpoints
-            places = {each.name: session.truly_in_world(each.position_ras) for each in checkpoints}
-            return checkpoint_marks(procedure, places)
+            touched = {each.name for each in procedure.checkpoints}
+            return tuple(
+                ball(
+                    session.truly_in_world(each.position_ras),
+                    Tone.GOOD if each.name in touched else Tone.WARNING,
+                    each.name,
+                )
+                for each in session.scenario.procedure(procedure.name).checkpoints
+            )
         return plan_marks(procedure, session.planned_bone(procedure.name))
 
     def _ruler(self) -> DepthRuler | None:
@@ -182,7 +196,7 @@ class ProcedureScreen(ArmScreen):
             say("status.stand off", distance=MM_PER_M * alignment.stand_off),
         )
 
-    def _stick_hints(self, phase: Phase) -> tuple[Hint, ...]:
+    def _moving_hints(self, phase: Phase) -> tuple[Hint, ...]:
         """Return the functions of the sticks; in a headset only those not drawn in the hands."""
         session, say = self._session, self._session.texts.say
         up_and_down = session.operator.pair_label(ControlName.MOVE_DOWN, ControlName.MOVE_UP)
@@ -197,13 +211,3 @@ class ProcedureScreen(ArmScreen):
         tilt = session.operator.pair_label(ControlName.TURN_DOWN, ControlName.TURN_UP)
         turning = (Hint(turn, say("hint.turn")), Hint(tilt, say("hint.tilt")))
         return (*self._movement_hints(), *turning)
-
-    def _why_not_registered(self) -> tuple[ScreenMessage, ...]:
-        """Return why the touches are not registered yet, if that will not change by itself."""
-        session, say = self._session, self._session.texts.say
-        own = session.local_scorer
-        if own is not None and own.problem:
-            return (ScreenMessage(say("waiting.problem", reason=own.problem), Tone.ERROR),)
-        if own is None and not session.services.is_slicer_connected():
-            return (ScreenMessage(say("warning.nobody registers"), Tone.WARNING),)
-        return ()

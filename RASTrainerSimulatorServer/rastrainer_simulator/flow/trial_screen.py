@@ -23,9 +23,8 @@ from rastrainer_simulator.flow.arm_screen import (
     LOOKED_AT_MM,
     PRACTICED_MM,
     ArmScreen,
-    PathArc,
+    off_path,
 )
-from rastrainer_simulator.flow.pages.session_page import stick_hints
 from rastrainer_simulator.flow.pages.start import start_page
 from rastrainer_simulator.flow.pages.trial import complete_page, trial_page
 from rastrainer_simulator.flow.pages.trial_review import POOR_MM
@@ -103,16 +102,14 @@ class TrialScreen(ArmScreen):
         self._is_practice_end_shown = self.is_practice_over
         return self._is_practice_end_shown
 
-    def begin(self, points: dict[str, Vector], center: Vector) -> None:
-        """Forget the trial before; points and the head's center are in World, m.
-
-        The trainee is not led to points that are not marked.
-        """
-        self._points = points if self._session.training.is_marked else {}
-        self._count = len(points)
-        self._center = center
+    def begin(self, truth: Truth) -> None:
+        """Forget the trial before; the trainee is not led to points that are not marked."""
+        points = truth.fiducials_ras if self._session.training.is_marked else {}
+        self._points = {name: in_meters(truth.in_world(place)) for name, place in points.items()}
+        self._count = len(truth.fiducials_ras)
+        self._center = in_meters(truth.in_world(truth.target_ras))
         self._is_beside = self._is_practice_end_shown = False
-        self._forget_arm()
+        self._obstacle, self._is_within_reach = "", True
         self._practice_step, self._practice_end_s = None, None
         self.guidance = guidance_of(self._session)
 
@@ -121,8 +118,13 @@ class TrialScreen(ArmScreen):
         phase = session.training.phase
         if control is ControlName.CAMERA:
             self._change_camera()
+        elif control is ControlName.BEST_VIEW and session.training.is_tracing:
+            camera = session.scenario.cameras[session.state.camera]
+            eye, place = session.places.eye(camera), session.places.in_world()
+            if eye is not None and place is not None:
+                session.view.control.go(orbit_to(camera, eye, place))
         elif control is ControlName.BEST_VIEW:
-            self._want_best_view()
+            session.view.want_best()
         elif control is ControlName.UNDO:
             session.do(CommandName.UNDO)
         elif control is ControlName.TOUCH and session.training.is_tracing:
@@ -135,17 +137,6 @@ class TrialScreen(ArmScreen):
         elif control in (ControlName.MENU, ControlName.PAUSE):
             self._has_requested_menu = True
             self.open_menu()
-
-    def _want_best_view(self) -> None:
-        """Look at the next point, or where the skin is traced at the place to draw next."""
-        session = self._session
-        if not session.training.is_tracing:
-            session.view.want_best()
-            return
-        camera = session.scenario.cameras[session.state.camera]
-        eye, place = session.places.eye(camera), session.places.in_world()
-        if eye is not None and place is not None:
-            session.view.control.go(orbit_to(camera, eye, place))
 
     def take_menu_request(self) -> bool:
         """Return whether the trainee has requested the menu since this was last asked."""
@@ -211,15 +202,16 @@ class TrialScreen(ArmScreen):
     def status(self) -> tuple[str, ...]:
         session = self._session
         training = session.training
-        facts = [
-            session.task_title(training.task),
-            self._points_so_far(),
-            self._clock(),
-        ]
+        say, trace = session.texts.say, training.trace
+        done = say("status.points", kept=len(training.touches), count=self._count)
+        if training.is_tracing and trace is not None:
+            limits = {"least": MIN_TRACE_POINTS, "most": MAX_TRACE_POINTS}
+            done = say("status.traced", traced=len(trace.points), **limits)
+        facts = [session.task_title(training.task), done, self._clock()]
         target = self._points.get(training.next_point or "")
-        name = session.texts.say("status.point", point=training.next_point)
+        name = say("status.point", point=training.next_point)
         if training.is_tracing:
-            target, name = session.places.in_world(), session.texts.say("status.next place")
+            target, name = session.places.in_world(), say("status.next place")
         if target is not None and self.guidance is Guidance.WORDS:
             is_practice = training.task == TRIAL_RUN and not training.is_tracing
             nearest_mm = PRACTICED_MM if is_practice else LOOKED_AT_MM
@@ -245,15 +237,7 @@ class TrialScreen(ArmScreen):
             del names[ControlName.BEST_VIEW]
         elif not is_complete:
             movement = self._movement_hints()
-        return (*movement, *self._control_hints(names), *stick_hints(session))
-
-    def _points_so_far(self) -> str:
-        training, say = self._session.training, self._session.texts.say
-        if training.is_tracing and training.trace is not None:
-            traced = len(training.trace.points)
-            limits = {"least": MIN_TRACE_POINTS, "most": MAX_TRACE_POINTS}
-            return say("status.traced", traced=traced, **limits)
-        return say("status.points", kept=len(training.touches), count=self._count)
+        return self._hints(movement, names)
 
     def _clock(self) -> str:
         session = self._session
@@ -273,15 +257,6 @@ class TrialScreen(ArmScreen):
         if self.guidance is Guidance.NONE or not training.touches or target is None:
             self._is_beside = False
             return False
-        way = PathArc(self._center, training.touches[-1].position, target)
-        limit = BACK_WITHIN if self._is_beside else FARTHEST
-        self._is_beside = way.beside(self._session.tip) > limit
+        off = off_path(self._session.tip, self._center, training.touches[-1].position, target)
+        self._is_beside = off > (BACK_WITHIN if self._is_beside else FARTHEST)
         return self._is_beside
-
-
-def points_in_world(truth: Truth) -> tuple[dict[str, Vector], Vector]:
-    """Return the fiducials of a trial and the head's center in World, m."""
-    points = {
-        label: in_meters(truth.in_world(point)) for label, point in truth.fiducials_ras.items()
-    }
-    return points, in_meters(truth.in_world(truth.target_ras))

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from rastrainer_simulator.flow.session.open_pages import Page, PageContent
-from rastrainer_simulator.flow.session.operator_device import SHOW, TILT
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.inputs import ControlName, SourceKind
+from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.screen import PRESS, Hint
 
 T = TypeVar("T")
@@ -86,28 +85,3 @@ def stepped(options: Sequence[T], value: T, direction: int) -> T:
 
 def clickable_hint(session: TrainingSession, control: ControlName, key: str) -> Hint:
     return Hint(session.operator.label(control), session.texts.say(key), PRESS + control.value)
-
-
-def slow_hint(session: TrainingSession) -> Hint:
-    """Return the hint of slow motion, which is held, or by a mouse switched on and off."""
-    say = session.texts.say
-    if not session.operator.steers_by_mouse:
-        return Hint(session.operator.label(ControlName.FINE), say("hint.fine"))
-    key = "hint.on" if session.screen_sticks.is_slow else "hint.off"
-    return clickable_hint(session, ControlName.FINE, key)
-
-
-def stick_hints(session: TrainingSession, can_tilt: bool = False) -> tuple[Hint, ...]:
-    """Return what shows the sticks on the screen to who clicks, and hides them again.
-
-    Where the tool can be tilted, the right stick does it, or lifts and lowers the tool.
-    """
-    say, sticks = session.texts.say, session.screen_sticks
-    if not session.operator.is_one_of((SourceKind.MOUSE,)):
-        return ()
-    action = say("hint.hide sticks" if sticks.is_shown else "hint.sticks")
-    hints = [Hint(say("hint.mouse"), action, PRESS + SHOW)]
-    if can_tilt and sticks.is_shown:
-        key = "hint.tilt" if sticks.is_tilting else "hint.up_and_down"
-        hints.append(Hint(say("hint.right stick"), say(key), PRESS + TILT))
-    return tuple(hints)

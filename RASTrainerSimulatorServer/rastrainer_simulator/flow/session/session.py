@@ -216,7 +216,9 @@ class TrainingSession:
         self.tutorial = Tutorial(self.control_loop.setup, self.state, arguments, point)
         self.practiced = task, point
         practice = self.tutorial.practice
-        self.view.begin(self.control_loop.setup, practice.truth, practice.shown(self.state))
+        self.view.begin(
+            self.control_loop.setup, practice.training.truth, practice.shown(self.state)
+        )
         self.view.control.go(TUTORIAL_VIEW)
         self.pages.show(None)
 
