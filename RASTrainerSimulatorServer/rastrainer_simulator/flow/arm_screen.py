@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 from rastrainer.commands import CommandName
 from rastrainer.transforms import MM_PER_M
@@ -15,6 +17,7 @@ from rastrainer_simulator.presentation.screen import PRESS, Hint, Screen, Screen
 from rastrainer_simulator.state import Event, EventKind, SimulationState, TouchStage
 from rastrainer_simulator.teleoperation.steering import ROBOT_AXES, Axes, AxesChoice, camera_axes
 from rastrainer_simulator.vectors import (
+    ZERO,
     Vector,
     angle,
     cross,
@@ -42,21 +45,41 @@ _LEVEL = (
 )
 
 
+@dataclass
+class ArmEvents:
+    """What events have said of the arm.
+
+    Attributes:
+        obstacle: that stops it; "" for none.
+        refusal: instruction that says why the last touch was refused.
+        refused_at: where the tip was then, World, m.
+        layer: that drill or instrument are in, since the phase began.
+    """
+
+    obstacle: str = ""
+    is_within_reach: bool = True
+    refusal: str = ""
+    refused_at: Vector = ZERO
+    layer: str = ""
+
+    def take(self, event: Event, tip: Vector) -> None:
+        if event.kind is EventKind.REJECTED:
+            self.refusal, self.refused_at = event.data["message"], tip
+        elif event.kind is EventKind.REACH:
+            self.is_within_reach = event.data["isWithinReach"]
+            self.obstacle = event.data["obstacle"]
+        elif event.kind is EventKind.FEED:
+            self.layer = event.data["layer"]
+        elif event.kind is EventKind.PHASE:
+            self.layer = ""
+
+
 class ArmScreen:
     """The warnings about the arm, the directions to a point, and the hints on movement."""
 
-    def __init__(self, session: TrainingSession) -> None:
+    def __init__(self, session: TrainingSession, arm: ArmEvents) -> None:
         self._session = session
-        self._obstacle = ""
-        self._is_within_reach = True
-        self._refusal = ""
-
-    def take(self, event: Event) -> None:
-        if event.kind is EventKind.REJECTED:
-            self._refusal = event.data["message"]
-        if event.kind is EventKind.REACH:
-            self._is_within_reach = event.data["isWithinReach"]
-            self._obstacle = event.data["obstacle"]
+        self._arm = arm
 
     @property
     def _state(self) -> SimulationState:
@@ -66,26 +89,25 @@ class ArmScreen:
     @property
     def _is_refused(self) -> bool:
         """Whether the instruction still says why the last touch was refused."""
-        return self._refusal != "" and self._state.training.instruction == self._refusal
+        refusal = self._arm.refusal
+        return refusal != "" and self._state.training.instruction == refusal
 
-    def screen(self) -> Screen:
+    def _shown(
+        self,
+        instruction: ScreenMessage,
+        status: Sequence[str],
+        hints: tuple[Hint, ...],
+        **others: Any,
+    ) -> Screen:
+        """Return a screen; `status` is the short facts at the edge."""
         return Screen(
-            instruction=self.instruction(),
+            instruction=instruction,
             warnings=self.warnings(),
-            status=self.status(),
-            hints=self.hints(),
+            status=tuple(status),
+            hints=hints,
             has_sticks=self._session.screen_sticks.is_shown,
+            **others,
         )
-
-    def instruction(self) -> ScreenMessage:
-        raise NotImplementedError
-
-    def status(self) -> tuple[str, ...]:
-        """Return the short facts at the edge."""
-        raise NotImplementedError
-
-    def hints(self) -> tuple[Hint, ...]:
-        raise NotImplementedError
 
     def warnings(self) -> tuple[ScreenMessage, ...]:
         say = self._session.texts.say
@@ -99,9 +121,10 @@ class ArmScreen:
             warnings.append(ScreenMessage(say("warning.shaft"), Tone.ERROR))
         elif state.touch is TouchStage.ELSEWHERE:
             warnings.append(ScreenMessage(say("warning.elsewhere"), Tone.ERROR))
-        if self._obstacle:
-            warnings.append(ScreenMessage(say(f"warning.obstacle.{self._obstacle}"), Tone.ERROR))
-        elif not self._is_within_reach:
+        if self._arm.obstacle:
+            obstacle = say(f"warning.obstacle.{self._arm.obstacle}")
+            warnings.append(ScreenMessage(obstacle, Tone.ERROR))
+        elif not self._arm.is_within_reach:
             warnings.append(ScreenMessage(say("warning.reach"), Tone.WARNING))
         return tuple(warnings)
 
@@ -173,6 +196,12 @@ class ArmScreen:
             distance=f"{step_mm * round(away / step_mm):.0f}",
             direction=session.texts.listed(session.texts.say(f"way.{word}") for word in words),
         )
+
+    def _slipped(self, label: str, error_mm: float, key: str = "tutorial.slipped") -> str:
+        """Return how far a touch is off its point, and what comes next."""
+        undo = self._session.operator.label(ControlName.UNDO)
+        point, say = self._state.training.next_point, self._session.texts.say
+        return say(key, label=label, error=error_mm, point=point, undo=undo)
 
     def _axes(self) -> Axes:
         """Return right, forward and up as the sticks mean them now."""

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from rastrainer.commands import CommandName
 from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, GhostRule, Guidance, Phase
+from rastrainer_simulator.flow.arm_screen import ArmEvents
 from rastrainer_simulator.flow.pages.experiment import open_experiment
 from rastrainer_simulator.flow.pages.introduction import practiced_page, tutorial_done_page
 from rastrainer_simulator.flow.pages.result import ResultPage, waiting_page
@@ -48,9 +49,10 @@ class Flow:
     def __init__(self, session: TrainingSession, control_loop: ControlLoop) -> None:
         self._session = session
         self._control_loop = control_loop
-        self._trial_screen = TrialScreen(session)
+        self._arm = ArmEvents()
+        self._trial_screen = TrialScreen(session, self._arm)
         self._procedure_screen = ProcedureScreen(session, self._trial_screen)
-        self._tutorial_screen = TutorialScreen(session)
+        self._tutorial_screen = TutorialScreen(session, self._arm)
         self._seen = ("", Phase.IDLE)
         self._seen_result: TrialResult | None = None
         self._touch = TouchStage.FAR
@@ -83,9 +85,7 @@ class Flow:
             felt = feedback_event(event, touch, is_back)
             if felt is not None:
                 self._session.happened(felt)
-            self._trial_screen.take(event)
-            self._procedure_screen.take(event)
-            self._tutorial_screen.take(event)
+            self._arm.take(event, self._session.tip)
         self._touch = touch
 
     def advance(self, dt: float, state: SimulationState) -> None:
@@ -103,8 +103,22 @@ class Flow:
         if training.result is not self._seen_result:
             self._seen_result = training.result
             session.history.changed(training.trainee, training.trial_id)
+        self._note_ghost_and_slicer()
+        self._wait_for_picture(dt)
+        if session.pages.top is not None:
+            session.pages.advance(dt)
+        elif session.tutorial is not None:
+            self._advance_tutorial(dt, session.tutorial)
+        elif self._trial_screen.has_practice_just_ended():
+            self._trial_screen.open_menu()
+
+    def _note_ghost_and_slicer(self) -> None:
+        """Have the journal say that a ghost is shown from now on, or the trainee that none is.
+
+        A connection to Slicer that was lost is lasting news.
+        """
+        session = self._session
         if session.ghost.has_just_loaded():
-            # The journal says that a ghost is shown from now on, or the trainee reads why not.
             if session.ghost.rule is GhostRule.OFF:
                 session.notices.add(session.texts.say("ghost.none"))
             elif session.has_open_trial:
@@ -113,13 +127,6 @@ class Flow:
         self._had_slicer = self._had_slicer or is_connected
         is_lost = self._had_slicer and not is_connected
         session.notices.warn("slicer", "warning.slicer" if is_lost else "")
-        self._wait_for_picture(dt)
-        if session.pages.top is not None:
-            session.pages.advance(dt)
-        elif session.tutorial is not None:
-            self._advance_tutorial(dt, session.tutorial)
-        elif self._trial_screen.has_practice_just_ended():
-            self._trial_screen.open_menu()
 
     def pressed(self, control: ControlName) -> None:
         if self._session.pages.top is None:
@@ -262,7 +269,8 @@ class Flow:
         # Another client started or ended a trial: leave the tutorial.
         session.end_tutorial()
         self._note_trial(before[0])
-        is_requested = self._trial_screen.take_menu_request()
+        is_requested = self._trial_screen.has_requested_menu
+        self._trial_screen.has_requested_menu = False
         was_working = session.pages.top is None
         top_name = "" if session.pages.top is None else session.pages.top.name
         if training.phase in (Phase.RUNNING, Phase.COMPLETE, *PROCEDURE_PHASES):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
 
 from rastrainer.commands import CommandName
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
@@ -23,7 +22,6 @@ from rastrainer_simulator.presentation.screen import (
     ScreenMessage,
     Tone,
 )
-from rastrainer_simulator.state import Event, EventKind
 from rastrainer_simulator.training.feed import FeedLayer
 from rastrainer_simulator.trial_state import ProcedureState
 
@@ -42,9 +40,8 @@ class ProcedureScreen(ArmScreen):
     """The instructions, the figures and the controls of the phases after the touches."""
 
     def __init__(self, session: TrainingSession, trial_screen: TrialScreen) -> None:
-        super().__init__(session)
+        super().__init__(session, trial_screen._arm)
         self._trial_screen = trial_screen
-        self._layer = ""
 
     @property
     def is_open(self) -> bool:
@@ -54,13 +51,6 @@ class ProcedureScreen(ArmScreen):
         return training.phase in PROCEDURE_PHASES or (
             training.phase is Phase.PAUSED and stage in PROCEDURE_PHASES
         )
-
-    def take(self, event: Event) -> None:
-        super().take(event)
-        if event.kind is EventKind.FEED:
-            self._layer = event.data["layer"]
-        elif event.kind is EventKind.PHASE:
-            self._layer = ""
 
     def pressed(self, control: ControlName) -> None:
         """Carry out a control: Undo opens the phase's menu, and so does Touch except at first."""
@@ -77,11 +67,6 @@ class ProcedureScreen(ArmScreen):
 
     def open_menu(self) -> None:
         self._trial_screen.open_menu()
-
-    def instruction(self) -> ScreenMessage:
-        session = self._session
-        text = session.texts.again(session.training.instruction)
-        return ScreenMessage(text, Tone.WARNING if self._is_refused else Tone.GOOD)
 
     def warnings(self) -> tuple[ScreenMessage, ...]:
         """Return the warnings, and the layer that drill or instrument feels."""
@@ -102,11 +87,11 @@ class ProcedureScreen(ArmScreen):
         past = 0.0 if ruler is None else MM_PER_M * session.state.feed - ruler.target_mm
         if past > PAST_TARGET_MM:
             return (ScreenMessage(say("warning.past target", past=past), Tone.ERROR),)
-        if self._layer not in _FELT:
+        if self._arm.layer not in _FELT:
             return ()
-        return (ScreenMessage(say(f"felt.{self._layer}"), _FELT[self._layer]),)
+        return (ScreenMessage(say(f"felt.{self._arm.layer}"), _FELT[self._arm.layer]),)
 
-    def status(self) -> tuple[str, ...]:
+    def _status(self) -> tuple[str, ...]:
         session, say = self._session, self._session.texts.say
         procedure = self._procedure
         facts = [session.task_title(session.training.task)]
@@ -121,7 +106,7 @@ class ProcedureScreen(ArmScreen):
         facts.append(say("status.procedure time", time=took))
         return (*facts, *self._figures())
 
-    def hints(self) -> tuple[Hint, ...]:
+    def _all_hints(self) -> tuple[Hint, ...]:
         session = self._session
         phase = session.training.phase
         names = {
@@ -137,10 +122,15 @@ class ProcedureScreen(ArmScreen):
 
     def screen(self) -> Screen:
         """From the alignment on, the trainee looks into the head."""
-        is_head_clear = self._procedure.present is not None
-        shown = super().screen()
-        return replace(
-            shown, errors=self._marks(), is_head_clear=is_head_clear, ruler=self._ruler()
+        session = self._session
+        text = session.texts.again(session.training.instruction)
+        return self._shown(
+            ScreenMessage(text, Tone.WARNING if self._is_refused else Tone.GOOD),
+            self._status(),
+            self._all_hints(),
+            errors=self._marks(),
+            is_head_clear=self._procedure.present is not None,
+            ruler=self._ruler(),
         )
 
     def _marks(self) -> tuple[ErrorArrow, ...]:

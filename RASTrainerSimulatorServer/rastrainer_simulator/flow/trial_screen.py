@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 from rastrainer.commands import CommandName
 from rastrainer.protocol import (
@@ -22,6 +21,7 @@ from rastrainer_simulator.flow.arm_screen import (
     FARTHEST,
     LOOKED_AT_MM,
     PRACTICED_MM,
+    ArmEvents,
     ArmScreen,
     off_path,
 )
@@ -32,9 +32,9 @@ from rastrainer_simulator.flow.session.chosen_trial import guidance_of
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
 from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage, Tone
-from rastrainer_simulator.state import Event, EventKind, TouchStage
+from rastrainer_simulator.state import TouchStage
 from rastrainer_simulator.training.head_pose import Truth
-from rastrainer_simulator.vectors import Vector, distance, in_meters
+from rastrainer_simulator.vectors import ZERO, Vector, distance, in_meters
 from rastrainer_simulator.viewpoint.view_control import orbit_to
 
 TRIAL_RUN_S = 300.0
@@ -49,17 +49,17 @@ class TrialScreen(ArmScreen):
 
     Attributes:
         guidance: to the next point, in the present trial.
+        has_requested_menu: whether the trainee has, since that was last looked at.
     """
 
-    def __init__(self, session: TrainingSession) -> None:
-        super().__init__(session)
+    def __init__(self, session: TrainingSession, arm: ArmEvents) -> None:
+        super().__init__(session, arm)
         self.guidance = Guidance.NONE
         self._points: dict[str, Vector] = {}
         self._count = FIDUCIAL_COUNT
-        self._center: Vector = (0.0, 0.0, 0.0)
+        self._center = ZERO
         self._is_beside = False
-        self._refused_at: Vector = (0.0, 0.0, 0.0)
-        self._has_requested_menu = False
+        self.has_requested_menu = False
         self._is_practice_end_shown = False
         self._practice_step: StudyStep | None = None
         self._practice_end_s: float | None = None
@@ -69,12 +69,13 @@ class TrialScreen(ArmScreen):
         covered = session.places.guidance(session.state).covered_mm
         legend = session.texts.say("coverage", distance=f"{covered:.0f}") if covered else ""
         has_arrow = self.guidance is not Guidance.NONE
-        return replace(super().screen(), has_arrow=has_arrow, coverage=legend)
-
-    def take(self, event: Event) -> None:
-        super().take(event)
-        if event.kind is EventKind.REJECTED:
-            self._refused_at = self._session.tip
+        return self._shown(
+            self._instruction(),
+            self._status(),
+            self._all_hints(),
+            has_arrow=has_arrow,
+            coverage=legend,
+        )
 
     @property
     def is_practice_over(self) -> bool:
@@ -109,7 +110,7 @@ class TrialScreen(ArmScreen):
         self._count = len(truth.fiducials_ras)
         self._center = in_meters(truth.in_world(truth.target_ras))
         self._is_beside = self._is_practice_end_shown = False
-        self._obstacle, self._is_within_reach = "", True
+        self._arm.obstacle, self._arm.is_within_reach = "", True
         self._practice_step, self._practice_end_s = None, None
         self.guidance = guidance_of(self._session)
 
@@ -135,13 +136,8 @@ class TrialScreen(ArmScreen):
         elif control is ControlName.TOUCH:
             session.do(CommandName.CAPTURE)
         elif control in (ControlName.MENU, ControlName.PAUSE):
-            self._has_requested_menu = True
+            self.has_requested_menu = True
             self.open_menu()
-
-    def take_menu_request(self) -> bool:
-        """Return whether the trainee has requested the menu since this was last asked."""
-        has_requested, self._has_requested_menu = self._has_requested_menu, False
-        return has_requested
 
     def open_menu(self) -> None:
         """Open the menu; a trial that runs is paused, and the menu opens when it is."""
@@ -153,7 +149,7 @@ class TrialScreen(ArmScreen):
             page = trial_page if phase is Phase.COMPLETE else start_page
             session.pages.show(page(session))
 
-    def instruction(self) -> ScreenMessage:
+    def _instruction(self) -> ScreenMessage:
         session = self._session
         training = session.training
         if training.is_tracing and not self._is_refused:
@@ -166,7 +162,7 @@ class TrialScreen(ArmScreen):
             )
             return ScreenMessage(text, Tone.GOOD)
         is_on_skin = session.state.touch is TouchStage.ON_SKIN
-        has_gone_on = is_on_skin and distance(session.tip, self._refused_at) > ELSEWHERE_M
+        has_gone_on = is_on_skin and distance(session.tip, self._arm.refused_at) > ELSEWHERE_M
         if self._is_refused and not has_gone_on:
             return ScreenMessage(session.texts.again(training.instruction), Tone.WARNING)
         if is_on_skin:
@@ -177,29 +173,16 @@ class TrialScreen(ArmScreen):
                 "work.off the way", trainee=training.trainee, point=training.next_point
             )
             return ScreenMessage(text, Tone.WARNING)
-        slip = self._slip()
-        if slip:
-            return ScreenMessage(slip, Tone.WARNING)
+        last = training.touches[-1] if training.touches else None
+        if training.task == TRIAL_RUN and last is not None and last.label in self._points:
+            # Where touches are scored, nothing says how exact they are before the registration.
+            error_mm = MM_PER_M * distance(last.position, self._points[last.label])
+            if error_mm >= POOR_MM:
+                return ScreenMessage(self._slipped(last.label, error_mm), Tone.WARNING)
         tone = Tone.GOOD if training.touches else Tone.PLAIN
         return ScreenMessage(session.texts.again(training.instruction), tone)
 
-    def _slip(self) -> str:
-        """Return that the last touch of the trial run was poor; "" else.
-
-        Where touches are scored, nothing says how exact they are before the registration.
-        """
-        session, training = self._session, self._session.training
-        last = training.touches[-1] if training.touches else None
-        if training.task != TRIAL_RUN or last is None or last.label not in self._points:
-            return ""
-        error_mm = MM_PER_M * distance(last.position, self._points[last.label])
-        if error_mm < POOR_MM:
-            return ""
-        undo = session.operator.label(ControlName.UNDO)
-        said = {"label": last.label, "error": error_mm, "undo": undo, "point": training.next_point}
-        return session.texts.say("tutorial.slipped", **said)
-
-    def status(self) -> tuple[str, ...]:
+    def _status(self) -> list[str]:
         session = self._session
         training = session.training
         say, trace = session.texts.say, training.trace
@@ -216,9 +199,9 @@ class TrialScreen(ArmScreen):
             is_practice = training.task == TRIAL_RUN and not training.is_tracing
             nearest_mm = PRACTICED_MM if is_practice else LOOKED_AT_MM
             facts.append(self._toward(name, target, nearest_mm))
-        return tuple(facts)
+        return facts
 
-    def hints(self) -> tuple[Hint, ...]:
+    def _all_hints(self) -> tuple[Hint, ...]:
         session = self._session
         training = session.training
         is_complete = training.phase is Phase.COMPLETE and not training.is_tracing

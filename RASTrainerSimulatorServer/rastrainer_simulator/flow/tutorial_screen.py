@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from rastrainer.commands import CommandName
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.arm import start_tip
-from rastrainer_simulator.flow.arm_screen import ArmScreen
+from rastrainer_simulator.flow.arm_screen import ArmEvents, ArmScreen
 from rastrainer_simulator.flow.pages.introduction import tutorial_page
 from rastrainer_simulator.flow.pages.trial_review import POOR_MM, error_arrow, error_tone
 from rastrainer_simulator.flow.session.session import TrainingSession
@@ -44,8 +42,8 @@ TAKEN_OVER = 0.2
 class TutorialScreen(ArmScreen):
     """The present step of the session's tutorial, its progress and its controls."""
 
-    def __init__(self, session: TrainingSession) -> None:
-        super().__init__(session)
+    def __init__(self, session: TrainingSession, arm: ArmEvents) -> None:
+        super().__init__(session, arm)
         self._seen: Tutorial | None = None
         self._homing: Homing | None = None
         self._has_paused = False
@@ -67,7 +65,13 @@ class TutorialScreen(ArmScreen):
         if self._tutorial.step in (TutorialStep.GUIDED, None):
             points, touches = self._tutorial.points, practice.training.state.touches
             errors = tuple(error_arrow(points[t.label], t.position) for t in touches)
-        return replace(super().screen(), has_arrow=practice.has_points, errors=errors)
+        return self._shown(
+            self._instruction(),
+            self._status(),
+            self._all_hints(),
+            has_arrow=practice.has_points,
+            errors=errors,
+        )
 
     def advance(self, dt: float) -> None:
         """Advance by `dt` seconds: bring the arm to its start, then check the progress."""
@@ -108,7 +112,7 @@ class TutorialScreen(ArmScreen):
         self._has_paused = self._tutorial.step is TutorialStep.PAUSE
         self._session.pages.show(tutorial_page(self._session))
 
-    def instruction(self) -> ScreenMessage:
+    def _instruction(self) -> ScreenMessage:
         session, tutorial = self._session, self._tutorial
         say = session.texts.say
         if self._homing is not None:
@@ -132,16 +136,14 @@ class TutorialScreen(ArmScreen):
             return ScreenMessage(text, Tone.WARNING)
         practice, errors = tutorial.practice.training.state, tutorial.practice.errors_mm()
         if tutorial.step is TutorialStep.GUIDED and errors:
-            touched, point = practice.touches[-1].label, practice.next_point
-            undo = session.operator.label(ControlName.UNDO)
             key = "tutorial.slipped" if errors[-1] >= POOR_MM else "tutorial.touched"
-            text = say(key, label=touched, error=errors[-1], point=point, undo=undo)
-            return ScreenMessage(text, _banner(errors[-1]))
+            slip = self._slipped(practice.touches[-1].label, errors[-1], key)
+            return ScreenMessage(slip, _banner(errors[-1]))
         is_on_point = self._state.touch in (TouchStage.ON_SKIN, TouchStage.PRESSED)
         is_lifted = tutorial.step is TutorialStep.TOUCH and not is_on_point
         return ScreenMessage(self._sentence(TutorialStep.LOWER if is_lifted else tutorial.step))
 
-    def status(self) -> tuple[str, ...]:
+    def _status(self) -> list[str]:
         tutorial, say = self._tutorial, self._session.texts.say
         step, steps = tutorial.place
         place = () if tutorial.practiced else (say("tutorial.place", step=step, steps=steps),)
@@ -154,9 +156,9 @@ class TutorialScreen(ArmScreen):
         label = tutorial.practice.training.state.next_point
         if tutorial.may_touch and label is not None:
             facts.append(self._toward(say("status.point", point=label), tutorial.points[label]))
-        return tuple(facts)
+        return facts
 
-    def hints(self) -> tuple[Hint, ...]:
+    def _all_hints(self) -> tuple[Hint, ...]:
         session, step = self._session, self._tutorial.step
         say, operator = session.texts.say, session.operator
         if step is None:
@@ -200,7 +202,7 @@ class TutorialScreen(ArmScreen):
         """Play the sound of a touch's outcome, and show why it was refused."""
         session = self._session
         for event in reply.events:
-            self.take(event)
+            self._arm.take(event, session.tip)
             felt = feedback_event(event, self._state.touch)
             if felt is not None:
                 session.happened(felt)
