@@ -83,7 +83,6 @@ class ArmScreen:
 
     @property
     def _state(self) -> SimulationState:
-        """The state that the trainee sees."""
         return self._session.state
 
     @property
@@ -99,7 +98,6 @@ class ArmScreen:
         hints: tuple[Hint, ...],
         **others: Any,
     ) -> Screen:
-        """Return a screen; `status` is the short facts at the edge."""
         return Screen(
             instruction=instruction,
             warnings=self.warnings(),
@@ -198,13 +196,11 @@ class ArmScreen:
         )
 
     def _slipped(self, label: str, error_mm: float, key: str = "tutorial.slipped") -> str:
-        """Return how far a touch is off its point, and what comes next."""
         undo = self._session.operator.label(ControlName.UNDO)
         point, say = self._state.training.next_point, self._session.texts.say
         return say(key, label=label, error=error_mm, point=point, undo=undo)
 
     def _axes(self) -> Axes:
-        """Return right, forward and up as the sticks mean them now."""
         session = self._session
         if session.preferences.axes == AxesChoice.ROBOT:
             return ROBOT_AXES

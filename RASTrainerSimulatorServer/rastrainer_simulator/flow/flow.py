@@ -69,7 +69,6 @@ class Flow:
 
     @property
     def playback(self) -> Playback | None:
-        """The replay that is shown in place of the arm."""
         page = self._session.pages.top
         return page.playback if isinstance(page, ReplayPage) else None
 
@@ -262,7 +261,6 @@ class Flow:
                 session.pages.open(page(session, outcome), ignore_input_briefly=True)
 
     def _follow(self, before: tuple[str, Phase]) -> None:
-        """Show what belongs to the trial's new phase."""
         session = self._session
         training = session.training
         session.history.changed(training.trainee, training.trial_id)
@@ -293,7 +291,6 @@ class Flow:
             open_experiment(session, ignore_input_briefly=was_working)
 
     def _note_trial(self, previous_id: str) -> None:
-        """Note a new trial, and a trial run whose points are all touched."""
         session = self._session
         training = session.training
         if training.phase is not Phase.PAUSED:

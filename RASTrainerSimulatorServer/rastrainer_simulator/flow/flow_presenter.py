@@ -273,7 +273,6 @@ class FlowPresenter(Presenter):
             drawn.task, drawn.share, drawn.waited_s = task, share, 0.0
 
     def on_visibility(self, view: int, is_visible: bool) -> None:
-        """Pause the trial when the operator no longer sees it, and release control."""
         if not is_visible:
             self._lose_sight(view, "unseen.hidden")
             self._settle()
@@ -303,7 +302,6 @@ class FlowPresenter(Presenter):
         self._is_changed = True
 
     def refused(self, _source: Source) -> None:
-        """Explain how to take control to an operator who tries."""
         holder, say = self.controls.holder, self._session.texts.say
         if holder is None:
             return
@@ -340,7 +338,6 @@ class FlowPresenter(Presenter):
             self.controls.forget(self._views.source(kind, view))
 
     def _await_picture(self, dt: float, newest: SimulationState) -> None:
-        """Have the flow wait for the picture of what the trainee's view is to show."""
         session, watched = self._session, self._views.watched(self.controls.holder)
         if watched is None and self._views.joined:
             return
@@ -407,7 +404,6 @@ class FlowPresenter(Presenter):
                 self._results.append(result)
 
     def _settle(self) -> None:
-        """Pass on the shown state, the situation, the sticks and the holder of control."""
         self.shown.show(self._flow.playback)
         self.shown.alter = None if self._session.tutorial is None else self._flow.shown
         self.controls.enter(self._flow.situation)

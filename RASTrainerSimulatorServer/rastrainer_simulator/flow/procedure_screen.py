@@ -45,7 +45,6 @@ class ProcedureScreen(ArmScreen):
 
     @property
     def is_open(self) -> bool:
-        """Whether the trial is in one of its phases, or paused in one."""
         training = self._session.training
         stage = None if training.procedure is None else training.procedure.stage
         return training.phase in PROCEDURE_PHASES or (
@@ -69,7 +68,6 @@ class ProcedureScreen(ArmScreen):
         self._trial_screen.open_menu()
 
     def warnings(self) -> tuple[ScreenMessage, ...]:
-        """Return the warnings, and the layer that drill or instrument feels."""
         session, say = self._session, self._session.texts.say
         training = session.training
         if training.phase is Phase.VERIFYING and self._procedure.registration is None:

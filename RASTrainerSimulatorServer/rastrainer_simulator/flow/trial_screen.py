@@ -97,7 +97,6 @@ class TrialScreen(ArmScreen):
         return TRIAL_RUN_S if self._practice_end_s is None else self._practice_end_s
 
     def has_practice_just_ended(self) -> bool:
-        """Return whether the trial run's minutes have just passed; true once a trial."""
         if self._is_practice_end_shown or self._session.training.phase is not Phase.RUNNING:
             return False
         self._is_practice_end_shown = self.is_practice_over

@@ -95,7 +95,6 @@ class TutorialScreen(ArmScreen):
                 session.happened(FeedbackEvent.STEP)
 
     def pressed(self, control: ControlName) -> None:
-        """Carry out a control; those not learned yet do nothing."""
         session, tutorial = self._session, self._tutorial
         if control is ControlName.CAMERA:
             self._change_camera()
@@ -253,7 +252,6 @@ class Homing:
             self.way.clear()
 
     def advance(self, dt: float) -> None:
-        """Command the next part of the path once the previous one is done."""
         session = self._session
         self._left_s -= dt
         is_taken_over = max(map(abs, session.controls.held.translation)) > TAKEN_OVER

@@ -96,7 +96,6 @@ class PadTestPage(SessionPage):
         return PageContent(self.say("test.title"), (text,), facts, (*axes, self.button("back")))
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """Show an input, and let it be felt."""
         if name in self.session.controls.bindings.table(device)[ControlName.MENU]:
             return False
         self._pressed = [(device, name), *self._pressed][:REMEMBERED]
@@ -152,7 +151,6 @@ class BindingsPage(SessionPage):
             session.notices.add(self.say("bindings.are default"))
 
         def control_row(control: ControlName) -> PageRow:
-            """Return a control with its inputs; accepting it waits for a new one."""
             table = session.controls.bindings.table(device)
             inputs = (session.operator.input_label(device, name) for name in table[control])
             listen = self.open_page(ListenPage, device, control)
@@ -189,7 +187,6 @@ class ListenPage(SessionPage):
         return PageContent(title, (text,), rows=(self.button("cancel"),))
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """Assign the input, or ask what to do about the control that has it now."""
         if device is not self._device:
             return False
         session, wanted = self.session, (device, self._control, name)
@@ -201,7 +198,6 @@ class ListenPage(SessionPage):
         return True
 
     def advance(self, dt: float) -> None:
-        """Give up after some time."""
         self._left -= dt
         if self._left <= 0.0:
             self.back()

@@ -167,7 +167,6 @@ class ExperimentPage(SessionPage):
         session.pages.focus(self._next_task())
 
     def _task(self, name: str) -> PageRow:
-        """Return a task's button: a disabled one says why."""
         session = self.session
         reason = obstacle(session, name)
         outcome = session.outcome_of(name)
@@ -230,7 +229,6 @@ class ScenarioPage(SessionPage):
         self._wanted = ""
 
     def content(self) -> PageContent:
-        """Return the list, as far as it is known."""
         listed = self._listing.result() if self._listing.done() else []
         text = self.say("scenario.text" if self._listing.done() else "scenario.looking")
         rows = (*map(self._head, listed), self.button("back"))
@@ -272,7 +270,6 @@ class AssignmentsPage(SessionPage):
     name = "assignments"
 
     def content(self) -> PageContent:
-        """Return the list that Slicer sent last."""
         session, curriculum = self.session, self.session.curriculum
         title, back, words = (
             self.say("assignments.title"),
@@ -303,6 +300,5 @@ class AssignmentsPage(SessionPage):
         return PageContent(title, said, rows=rows, first=_ASSIGNMENT + curriculum.next)
 
     def advance(self, dt: float) -> None:  # noqa: ARG002
-        """Close where the trainee has no curriculum any more."""
         if self.session.curriculum is None:
             self.back()

@@ -28,7 +28,6 @@ def own_trials_page(page: SessionPage) -> PageContent:
             session.pages.open(ReplayPage(session, loading, begins_at_worst=False))
 
     def row(each: OwnTrial) -> PageRow:
-        """Return a trial; one on another head cannot be shown on this one."""
         past = each.past
         is_shown = each.scenario == session.scenario.name and not past.is_aborted
         verdict = say(_VERDICTS[each.is_passed])

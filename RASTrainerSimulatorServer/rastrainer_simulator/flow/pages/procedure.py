@@ -64,7 +64,6 @@ def procedure_page(page: SessionPage) -> PageContent:
     can_align = session.control_loop.setup.settings.procedure.self_alignment
 
     def carry_out(name: str) -> None:
-        """Carry out a step; a refusal is shown over the picture."""
         page.back()
         session.do(_COMMANDS[name], {"standOffMm": STAND_OFF_MM} if name == "align" else {})
 
@@ -151,7 +150,6 @@ class ProcedureErrorsPage(SessionPage):
         return PageContent(title, (text,), self._facts(details), rows)
 
     def _facts(self, details: Mapping[str, Any]) -> list[Fact]:
-        """Return the errors, how deep the drill plunged, and the distance to a structure."""
         facts = []
         for name, whole, registration, hand, limit in _SPLIT:
             numbers = [detail_number(details, member) for member in (whole, registration, hand)]

@@ -70,7 +70,6 @@ def _following(session: TrainingSession) -> str:
 
 
 def _onward(page: SessionPage) -> tuple[PageRow, ...]:
-    """Return where the trainee can go after a trial, scored or not."""
     session = page.session
     best, words = session.next_assignment, session.assignment_texts
     following, task = _following(session), session.training.task
@@ -258,7 +257,6 @@ def _worded(texts: Texts, said: Any) -> str:
 
 
 def _value(texts: Texts, value: Any) -> Any:
-    """Return a number as it is, and a text or a part of a sentence worded."""
     if _is_number(value):
         return value
     if isinstance(value, dict):
@@ -268,7 +266,6 @@ def _value(texts: Texts, value: Any) -> Any:
 
 
 def _plain(values: Any) -> dict[str, Any]:
-    """Return those values that are numbers or texts."""
     items = values.items() if isinstance(values, dict) else ()
     return {name: value for name, value in items if isinstance(value, str) or _is_number(value)}
 

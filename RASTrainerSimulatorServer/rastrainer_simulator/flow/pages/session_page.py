@@ -27,7 +27,6 @@ class SessionPage(Page):
         return self.session.texts.say(key, **values)
 
     def open_page(self, page: Callable[..., Page], *arguments: object) -> Callable[[], None]:
-        """Return a function that opens a page of this kind."""
         return lambda: self.session.pages.open(page(self.session, *arguments))
 
 

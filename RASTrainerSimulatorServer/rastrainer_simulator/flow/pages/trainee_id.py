@@ -22,7 +22,6 @@ Write = Callable[[str], None]
 
 
 def _id_content(page: SessionPage, name: str, rows: Iterable[PageRow]) -> PageContent:
-    """Show the ID as far as it is entered."""
     entered = Fact(page.say("experiment.trainee"), page.session.trainee + "_")
     return PageContent(page.say(f"{name}.title"), (), (entered,), tuple(rows))
 
@@ -47,7 +46,6 @@ class KeyboardPage(SessionPage):
         return _id_content(self, "keyboard", (*rows, *others))
 
     def _row(self, number: int) -> PageRow:
-        """Return a row of characters, with the chosen one in brackets."""
         chosen = self._chosen[number]
 
         def step(direction: int) -> None:

@@ -49,7 +49,6 @@ class MatchReport:
 
 
 def match_report(training: TrainingState, scenario: Scenario) -> MatchReport:
-    """Return the figures of the match of a trial's trace."""
     answer = {"task": training.task, "method": training.method.value, **given(training)}
     registered = register_trial(GivenPoints.of_answer(answer), scenario)
     match, error = registered.match, registered.target_errors[RIGID]

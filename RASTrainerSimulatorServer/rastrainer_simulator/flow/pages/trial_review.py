@@ -48,7 +48,6 @@ class ErrorsPage(SessionPage):
     name = "errors"
 
     def content(self) -> PageContent:
-        """Return what a view that draws no arrows would show."""
         return PageContent(self.title(), rows=(self.button("back"),))
 
     def screen(self) -> Screen:
@@ -74,7 +73,6 @@ class ErrorsPage(SessionPage):
         )
 
     def pressed(self, control: ControlName) -> bool:
-        """Turn the view around the head."""
         if control not in _TURNS:
             return False
         session = self.session
@@ -144,14 +142,12 @@ class ReplayPage(SessionPage):
         return replace(shown, errors=marks, is_head_clear=True)
 
     def advance(self, dt: float) -> None:
-        """Play, as soon as the trial is loaded."""
         if self.playback is not None:
             self.playback.advance(dt)
         elif self._loading.loaded.done():
             self._begin()
 
     def pressed(self, control: ControlName) -> bool:
-        """Steer the playback; while it is being loaded, the menu is steered."""
         if self._player is None:
             return False
         if control in ACTIONS:
@@ -159,7 +155,6 @@ class ReplayPage(SessionPage):
         return True
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """Process inputs without a function in menus: the worst touch, and the camera."""
         bindings = self.session.controls.bindings
         if self._player is None or bindings.control(device, name, ControlContext.MENU) is not None:
             return False
@@ -185,7 +180,6 @@ class ReplayPage(SessionPage):
             self._do(self._player, PlayerAction.WORST)
 
     def _do(self, player: Player, action: PlayerAction) -> None:
-        """Carry out an action; the worst touch is shown from where it is seen best."""
         player.do(action)
         if action is PlayerAction.WORST and player.playback.trial.worst is not None:
             self.session.view.want_best()

@@ -119,7 +119,6 @@ class AssignmentTexts:
         return " · ".join(filter(None, (self._task_title(each.task), special)))
 
     def progress(self, each: AssignmentStanding) -> str:
-        """Return the trainee's progress, in few characters."""
         if each.is_reached:
             return self._say("assignments.reached")
         if each.is_locked:
@@ -136,7 +135,6 @@ class AssignmentTexts:
         return self._say(key, needed=each.needed, mark=each.mark)
 
     def gate(self, curriculum: CurriculumMessage, each: AssignmentStanding) -> str:
-        """Return what a locked assignment waits for."""
         missing = [found for name in each.missing if (found := curriculum.find(name)) is not None]
         names = self._texts.listed(self.title(one) for one in missing) or "–"
         return self._say("assignments.gate", assignments=names)
@@ -156,7 +154,6 @@ class AssignmentTexts:
         return f"{self.summary(curriculum)} · {following}"
 
     def advice(self, curriculum: CurriculumMessage) -> str:
-        """Return what to practice next, and why."""
         best = curriculum.find(curriculum.next)
         if best is None:
             return self._say("assignments.all reached")

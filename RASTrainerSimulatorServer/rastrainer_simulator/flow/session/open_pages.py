@@ -75,7 +75,6 @@ class Page:
         raise NotImplementedError
 
     def say(self, key: str, **values: object) -> str:
-        """Return a sentence in the chosen language."""
         raise NotImplementedError
 
     def back(self) -> None:
@@ -92,7 +91,6 @@ class Page:
     def choice(
         self, name: str, value: str, step: Callable[[int], object], label: str = "", **others: Any
     ) -> PageRow:
-        """Return a choice; accepting it steps on."""
         row = self.button(name, lambda: step(1), label, kind=ItemKind.CHOICE, value=value, **others)
         return dataclasses.replace(row, step=step)
 
@@ -140,7 +138,6 @@ class OpenPages:
         return self._open[-1] if self._open else None
 
     def show(self, page: Page | None, ignore_input_briefly: bool = False) -> None:
-        """Close all pages and open one, or none."""
         while self._open:
             self.close()
         if page is not None:
@@ -152,7 +149,6 @@ class OpenPages:
             self.top.advance(dt)
 
     def show_start(self) -> None:
-        """Close all pages except the first."""
         self.show(self.home())
 
     def open(self, page: Page, ignore_input_briefly: bool = False) -> None:

@@ -69,13 +69,11 @@ class OperatorDevice:
 
     @property
     def picture(self) -> ControlsPicture:
-        """Which drawing shows what the operator uses."""
         if self.is_one_of((SourceKind.XR,)):
             return "controllers"
         return "gamepad" if self.kind is InputDevice.GAMEPAD else "keyboard"
 
     def is_one_of(self, kinds: tuple[SourceKind, ...]) -> bool:
-        """Return whether what the operator uses is one of these."""
         holder = self.controls.holder
         return holder is not None and holder.kind in kinds
 
@@ -146,7 +144,6 @@ class ScreenSticks:
     def moved(
         self, translation: tuple[float, float, float], rotation: tuple[float, float]
     ) -> OperatorInput:
-        """Return what the sticks mean, as `OperatorInput` has it."""
         right, forward, up = translation
         if self.is_tilting:
             rotation, up = (rotation[0], up), 0.0

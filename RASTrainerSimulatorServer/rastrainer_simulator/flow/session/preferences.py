@@ -88,7 +88,6 @@ class Preferences:
         return dataclasses.replace(self, **{name: options[place]})
 
     def applied_to(self, settings: SimulationSettings) -> SimulationSettings:
-        """Return the simulation's settings as preferred."""
         teleoperation = settings.teleoperation
         return dataclasses.replace(
             settings,
@@ -125,13 +124,11 @@ OF_A_TRIAL = (*OF_THE_SIMULATION, "guidance", "ghost")
 
 
 def read_preferences(path: Path) -> Preferences:
-    """Return the preferences of a file; missing ones have their defaults."""
     values = read_json(path, MAX_BYTES)
     return record_from_json(Preferences, values, str(path), only_known=True)
 
 
 def write_preferences(path: Path, preferences: Preferences) -> None:
-    """Save the preferences."""
     write_private_json(path, record_to_json(preferences, with_defaults=True))
 
 
@@ -156,7 +153,6 @@ class InstructorLock:
 
     @property
     def is_locked(self) -> bool:
-        """Whether the PIN has to be entered first."""
         return self.has_pin and not self._is_open
 
     def guess(self, pin: str) -> None:
@@ -176,7 +172,6 @@ class InstructorLock:
         return answer
 
     def forget_guess(self) -> None:
-        """Unlock nothing by a PIN that is still being checked."""
         self._asked = None
 
     def lock(self) -> None:

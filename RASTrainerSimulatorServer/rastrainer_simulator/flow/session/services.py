@@ -52,7 +52,6 @@ class SimulationReload:
     def __init__(
         self, services: FlowServices, control_loop: ControlLoop, complain: Callable[[str], None]
     ) -> None:
-        """`complain` is called with the reason for a failure."""
         self._services = services
         self._control_loop = control_loop
         self._complain = complain

@@ -128,7 +128,6 @@ class TrainingSession:
 
     @property
     def step(self) -> StudyStep | None:
-        """The next step of the trainee's study; None without a study."""
         return self.services.assigned.steps.get(self.trainee_id)
 
     @property
@@ -170,7 +169,6 @@ class TrainingSession:
         return AssignmentTexts(self.texts, self.task_title, self.procedure_title)
 
     def advance(self, dt: float, state: SimulationState) -> None:
-        """Process the newest state, and the answers of the last `dt` seconds."""
         self.notices.advance(dt)
         self.state = state
         self.places.advance(dt, state)
@@ -247,7 +245,6 @@ class TrainingSession:
         return in_meters(self.control_loop.truth.in_world(point))
 
     def planned_bone(self, procedure: str) -> tuple[BoneAhead | None, ...]:
-        """Return where the lines of a procedure go through bone, as planned."""
         return self.control_loop.planned_bone.get(procedure, ())
 
     def load_trial(self, trial_id: str) -> TrialLoading:
@@ -299,7 +296,6 @@ class TrainingSession:
         return self.texts.say(key, task=self.task_title(task), point=point)
 
     def preparing(self) -> str:
-        """Return how far the awaited picture is; "" where none is awaited."""
         share = self.picture_share
         if share is None:
             return ""
@@ -321,7 +317,6 @@ class TrainingSession:
         )
 
     def duration(self, seconds: float) -> str:
-        """Return minutes and seconds, such as 03:21."""
         whole = int(seconds)
         return f"{whole // 60:02d}:{whole % 60:02d}"
 

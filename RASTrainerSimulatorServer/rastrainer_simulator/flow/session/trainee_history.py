@@ -70,7 +70,6 @@ class DoneTasks:
         return head in self.skipped or bool(self._done.get(head))
 
     def latest_trainees(self, count: int) -> tuple[str, ...]:
-        """Return at most this many trainees, the most recent first."""
         known = (trainee for trainee, journals in self.journals.items() if journals)
         latest = sorted(known, key=lambda trainee: self.journals[trainee][-1].name, reverse=True)
         return tuple(latest[:count])
@@ -84,7 +83,6 @@ class DoneTasks:
         return next((name for name in order[: order.index(task)] if name not in done), None)
 
     def _take(self, path: Path) -> None:
-        """Add a journal; ignore it if it cannot be read."""
         try:
             with path.open("rb") as file:
                 header = decode_line(file.readline(MAX_LINE_BYTES).rstrip(b"\n"), 1, NO_LINE)
@@ -130,11 +128,9 @@ class FinishedTutorials:
                 self._note(record_from_json(TutorialOutcome, read_json(path, _MAX_TUTORIAL_BYTES)))
 
     def has_done(self, trainee: str, device: SourceKind) -> bool:
-        """Return whether a trainee has finished the tutorial with a device."""
         return device.value in self._devices.get(trainee, ())
 
     def keep(self, outcome: TutorialOutcome) -> None:
-        """Count a finished tutorial, and write its file."""
         self._note(outcome)
         utc = iso(datetime.now(timezone.utc))
         path = self._records / f"{file_stamp(utc)}_{uuid.uuid4()}{TUTORIAL_SUFFIX}"
@@ -203,7 +199,6 @@ class ScoreHistory:
         return tuple(trial for trial in found if trial is not None)
 
     def of(self, trainee: str) -> tuple[PastTrial, ...]:
-        """Return the same as progress is computed from it."""
         return tuple(trial.past for trial in self.own(trainee))
 
     def best(self, trainee: str, task: str) -> tuple[Path, ...]:

@@ -85,13 +85,11 @@ class TouchPractice:
         self._shown = self._present()
 
     def handle(self, command: str, state: SimulationState) -> TrainingReply:
-        """Carry out a touch or its undo."""
         reply = self.training.handle(OperatorCommand(command), _moment(state))
         self._shown = self._present()
         return reply
 
     def show_points(self) -> None:
-        """Have the views mark the next point from now on."""
         self.has_points = True
         self._shown = self._present()
 
@@ -217,7 +215,6 @@ class Tutorial:
 
     @property
     def amount(self) -> tuple[float, float]:
-        """How much of the step is done, and how much there is to do."""
         if self.step is None or self._first_seen is None:
             return 0.0, 1.0
         goal = STEPS[self.step].goal
@@ -233,11 +230,9 @@ class Tutorial:
         return self.step in _MAY_TOUCH
 
     def use(self, device: SourceKind) -> None:
-        """Teach the controls of a device from now on."""
         self.steps = OF_PRACTICE if self.practiced else steps_for(device, self.mode)
 
     def advance(self, dt: float, now: TutorialObservation) -> TutorialStep | None:
-        """Advance by `dt` seconds; return the step that has just been done."""
         before, self._before = self._before or now, now
         if self.praised is not None:
             self._praise_s -= dt
