@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from rastrainer.commands import CommandName
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.flow.pages.session_page import clickable_hint, slow_hint
+from rastrainer_simulator.flow.pages.session_page import clickable_hint
+from rastrainer_simulator.flow.session.operator_device import SHOW, TILT
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.inputs import ControlName
-from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage, Tone
+from rastrainer_simulator.input.inputs import ControlName, SourceKind
+from rastrainer_simulator.presentation.screen import PRESS, Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.state import Event, EventKind, SimulationState, TouchStage
 from rastrainer_simulator.teleoperation.steering import ROBOT_AXES, Axes, AxesChoice, camera_axes
 from rastrainer_simulator.vectors import (
+    ZERO,
     Vector,
+    angle,
     cross,
     distance,
     dot,
@@ -41,50 +45,67 @@ _LEVEL = (
 )
 
 
+@dataclass
+class ArmEvents:
+    """What events have said of the arm.
+
+    Attributes:
+        obstacle: that stops it; "" for none.
+        refusal: instruction that says why the last touch was refused.
+        refused_at: where the tip was then, World, m.
+        layer: that drill or instrument are in, since the phase began.
+    """
+
+    obstacle: str = ""
+    is_within_reach: bool = True
+    refusal: str = ""
+    refused_at: Vector = ZERO
+    layer: str = ""
+
+    def take(self, event: Event, tip: Vector) -> None:
+        if event.kind is EventKind.REJECTED:
+            self.refusal, self.refused_at = event.data["message"], tip
+        elif event.kind is EventKind.REACH:
+            self.is_within_reach = event.data["isWithinReach"]
+            self.obstacle = event.data["obstacle"]
+        elif event.kind is EventKind.FEED:
+            self.layer = event.data["layer"]
+        elif event.kind is EventKind.PHASE:
+            self.layer = ""
+
+
 class ArmScreen:
     """The warnings about the arm, the directions to a point, and the hints on movement."""
 
-    def __init__(self, session: TrainingSession) -> None:
+    def __init__(self, session: TrainingSession, arm: ArmEvents) -> None:
         self._session = session
-        self._obstacle = ""
-        self._is_within_reach = True
-        self._refusal = ""
-
-    def take(self, event: Event) -> None:
-        if event.kind is EventKind.REJECTED:
-            self._refusal = event.data["message"]
-        if event.kind is EventKind.REACH:
-            self._is_within_reach = event.data["isWithinReach"]
-            self._obstacle = event.data["obstacle"]
+        self._arm = arm
 
     @property
     def _state(self) -> SimulationState:
-        """The state that the trainee sees."""
         return self._session.state
 
     @property
     def _is_refused(self) -> bool:
         """Whether the instruction still says why the last touch was refused."""
-        return self._refusal != "" and self._state.training.instruction == self._refusal
+        refusal = self._arm.refusal
+        return refusal != "" and self._state.training.instruction == refusal
 
-    def screen(self) -> Screen:
+    def _shown(
+        self,
+        instruction: ScreenMessage,
+        status: Sequence[str],
+        hints: tuple[Hint, ...],
+        **others: Any,
+    ) -> Screen:
         return Screen(
-            instruction=self.instruction(),
+            instruction=instruction,
             warnings=self.warnings(),
-            status=self.status(),
-            hints=self.hints(),
+            status=tuple(status),
+            hints=hints,
             has_sticks=self._session.screen_sticks.is_shown,
+            **others,
         )
-
-    def instruction(self) -> ScreenMessage:
-        raise NotImplementedError
-
-    def status(self) -> tuple[str, ...]:
-        """Return the short facts at the edge."""
-        raise NotImplementedError
-
-    def hints(self) -> tuple[Hint, ...]:
-        raise NotImplementedError
 
     def warnings(self) -> tuple[ScreenMessage, ...]:
         say = self._session.texts.say
@@ -98,14 +119,12 @@ class ArmScreen:
             warnings.append(ScreenMessage(say("warning.shaft"), Tone.ERROR))
         elif state.touch is TouchStage.ELSEWHERE:
             warnings.append(ScreenMessage(say("warning.elsewhere"), Tone.ERROR))
-        if self._obstacle:
-            warnings.append(ScreenMessage(say(f"warning.obstacle.{self._obstacle}"), Tone.ERROR))
-        elif not self._is_within_reach:
+        if self._arm.obstacle:
+            obstacle = say(f"warning.obstacle.{self._arm.obstacle}")
+            warnings.append(ScreenMessage(obstacle, Tone.ERROR))
+        elif not self._arm.is_within_reach:
             warnings.append(ScreenMessage(say("warning.reach"), Tone.WARNING))
         return tuple(warnings)
-
-    def _forget_arm(self) -> None:
-        self._obstacle, self._is_within_reach = "", True
 
     def _change_camera(self) -> None:
         """Look from the front again; from there already, change between near and far."""
@@ -124,14 +143,38 @@ class ArmScreen:
             Hint(up_and_down, session.texts.say("hint.up_and_down")),
         )
 
-    def _control_hints(self, names: Mapping[ControlName, str]) -> tuple[Hint, ...]:
-        session = self._session
-        return tuple(
-            slow_hint(session)
-            if control is ControlName.FINE
-            else clickable_hint(session, control, key)
-            for control, key in names.items()
-        )
+    def _hints(
+        self, moving: Iterable[Hint], names: Mapping[ControlName, str], can_tilt: bool = False
+    ) -> tuple[Hint, ...]:
+        """Return hints on movement, hints that press a control, and those on the screen's sticks.
+
+        The sticks are shown to who clicks, and hidden again. Where the tool can be tilted, the
+        right stick does it, or lifts and lowers the tool.
+
+        Args:
+            moving: about movement.
+            names: key of the text of each control.
+            can_tilt: whether the tool can be tilted.
+        """
+        session, operator = self._session, self._session.operator
+        say, sticks = session.texts.say, session.screen_sticks
+        hints = list(moving)
+        for control, key in names.items():
+            if control is not ControlName.FINE:
+                hints.append(clickable_hint(session, control, key))
+            elif operator.steers_by_mouse:
+                # What others hold is switched on and off by a mouse.
+                key = "hint.on" if sticks.is_slow else "hint.off"
+                hints.append(clickable_hint(session, control, key))
+            else:
+                hints.append(Hint(operator.label(control), say("hint.fine")))
+        if operator.is_one_of((SourceKind.MOUSE,)):
+            action = say("hint.hide sticks" if sticks.is_shown else "hint.sticks")
+            hints.append(Hint(say("hint.mouse"), action, PRESS + SHOW))
+            if can_tilt and sticks.is_shown:
+                key = "hint.tilt" if sticks.is_tilting else "hint.up_and_down"
+                hints.append(Hint(say("hint.right stick"), say(key), PRESS + TILT))
+        return tuple(hints)
 
     def _toward(self, name: str, target: Vector, nearest_mm: float = PRACTICED_MM) -> str:
         """Return how far and in which directions a point is (World, m), in words, after its name.
@@ -152,8 +195,12 @@ class ArmScreen:
             direction=session.texts.listed(session.texts.say(f"way.{word}") for word in words),
         )
 
+    def _slipped(self, label: str, error_mm: float, key: str = "tutorial.slipped") -> str:
+        undo = self._session.operator.label(ControlName.UNDO)
+        point, say = self._state.training.next_point, self._session.texts.say
+        return say(key, label=label, error=error_mm, point=point, undo=undo)
+
     def _axes(self) -> Axes:
-        """Return right, forward and up as the sticks mean them now."""
         session = self._session
         if session.preferences.axes == AxesChoice.ROBOT:
             return ROBOT_AXES
@@ -173,37 +220,19 @@ ABOVE_LEAST = 0.35
 _WORDS = (("left", "right"), ("back", "forward"), ("down", "up"))
 
 
-@dataclass(frozen=True)
-class PathArc:
-    """The path over the head from one point to the next (World, m).
+def off_path(tip: Vector, center: Vector, start: Vector, end: Vector) -> float:
+    """Return the distance of the tip from the path over the head, along the head, in m.
 
-    The tool is lifted, carried around the head and lowered: the path is the arc about the head's
-    center from one to the other, at any height.
+    The tool is lifted, carried around the head and lowered: the path is the shorter arc about the
+    head's center from one point to the next, at any height. World, m.
     """
-
-    center: Vector
-    start: Vector
-    end: Vector
-
-    def beside(self, tip: Vector) -> float:
-        """Return the distance of the tip from the path, along the head, in m."""
-        out = subtract(tip, self.center)
-        first, last, here = (unit(subtract(p, self.center)) for p in (self.start, self.end, tip))
-        return length(out) * _angle_to_arc(here, first, last)
-
-
-def _angle_to_arc(here: Vector, first: Vector, last: Vector) -> float:
-    """Return the angle in rad from a direction to the shorter arc between two others."""
+    first, last, here = (unit(subtract(place, center)) for place in (start, end, tip))
     pole = unit(cross(first, last))
-    to_ends = min(_angle(here, first), _angle(here, last))
-    if length(pole) == 0.0:
-        return to_ends
+    off_rad = min(angle(here, first), angle(here, last))
     is_between = dot(cross(pole, first), here) >= 0.0 and dot(cross(last, pole), here) >= 0.0
-    return abs(math.asin(max(-1.0, min(1.0, dot(here, pole))))) if is_between else to_ends
-
-
-def _angle(a: Vector, b: Vector) -> float:
-    return 2.0 * math.asin(min(1.0, 0.5 * distance(a, b)))
+    if length(pole) > 0.0 and is_between:
+        off_rad = abs(math.asin(max(-1.0, min(1.0, dot(here, pole)))))
+    return length(subtract(tip, center)) * off_rad
 
 
 def direction_words(tip: Vector, target: Vector, axes: Axes) -> tuple[str, ...]:

@@ -2,31 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 from rastrainer.commands import CommandName
 from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, GhostRule, Guidance, Phase
+from rastrainer_simulator.flow.arm_screen import ArmEvents
 from rastrainer_simulator.flow.pages.experiment import open_experiment
-from rastrainer_simulator.flow.pages.introduction import PracticedPage, TutorialDonePage
-from rastrainer_simulator.flow.pages.procedure import (
-    ProcedureErrorsPage,
-    ProcedureLinesPage,
-)
-from rastrainer_simulator.flow.pages.result import FinishedPage, ResultPage, WaitingPage
+from rastrainer_simulator.flow.pages.introduction import practiced_page, tutorial_done_page
+from rastrainer_simulator.flow.pages.result import ResultPage, waiting_page
 from rastrainer_simulator.flow.pages.session_page import SessionPage, clickable_hint
-from rastrainer_simulator.flow.pages.start import StartPage
-from rastrainer_simulator.flow.pages.trial import PracticePage, PreparingPage, TrialPage
-from rastrainer_simulator.flow.pages.trial_review import ErrorsPage, ReplayPage
+from rastrainer_simulator.flow.pages.start import start_page
+from rastrainer_simulator.flow.pages.trial import PreparingPage, practice_page, trial_page
+from rastrainer_simulator.flow.pages.trial_review import ReplayPage
 from rastrainer_simulator.flow.procedure_screen import ProcedureScreen
 from rastrainer_simulator.flow.session.chosen_trial import begin_ghost, needs_tutorial
+from rastrainer_simulator.flow.session.open_pages import Page
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.flow.trial_screen import TrialScreen, points_in_world
+from rastrainer_simulator.flow.trial_screen import TrialScreen
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
 from rastrainer_simulator.flow.tutorial_screen import TutorialScreen
 from rastrainer_simulator.input.inputs import ControlContext, ControlName
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.presentation.feedback_event import feedback_event, touch_feedback
-from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage, Tone
+from rastrainer_simulator.presentation.screen import Hint, Menu, Screen, ScreenMessage, Tone
 from rastrainer_simulator.record.trial_context import GhostReport, GuidanceReport
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.state import Answer, SimulationState, StepResult, TouchStage, TrialResult
@@ -34,7 +33,7 @@ from rastrainer_simulator.texts.texts import key_of
 
 PICTURE_GRACE_S = 0.5
 """A picture that is there so soon is no reason to pause a trial."""
-RESULT_PAGES = (FinishedPage, ReplayPage, ErrorsPage, ProcedureErrorsPage, ProcedureLinesPage)
+RESULT_PAGES = ("waiting", "result", "replay", "errors", "procedure-errors", "procedure-lines")
 
 NOT_RECORDED = "not recorded"
 INTERRUPTED = ("interrupted", "interrupted procedure")
@@ -50,9 +49,10 @@ class Flow:
     def __init__(self, session: TrainingSession, control_loop: ControlLoop) -> None:
         self._session = session
         self._control_loop = control_loop
-        self._trial_screen = TrialScreen(session)
+        self._arm = ArmEvents()
+        self._trial_screen = TrialScreen(session, self._arm)
         self._procedure_screen = ProcedureScreen(session, self._trial_screen)
-        self._tutorial_screen = TutorialScreen(session)
+        self._tutorial_screen = TutorialScreen(session, self._arm)
         self._seen = ("", Phase.IDLE)
         self._seen_result: TrialResult | None = None
         self._touch = TouchStage.FAR
@@ -60,7 +60,7 @@ class Flow:
         self._without_picture_s = 0.0
         self._waits_for_picture = False
         self._unseen = ""
-        session.pages.home = lambda: StartPage(session)
+        session.pages.home = lambda: start_page(session)
         session.pages.show_start()
 
     @property
@@ -69,7 +69,6 @@ class Flow:
 
     @property
     def playback(self) -> Playback | None:
-        """The replay that is shown in place of the arm."""
         page = self._session.pages.top
         return page.playback if isinstance(page, ReplayPage) else None
 
@@ -85,9 +84,7 @@ class Flow:
             felt = feedback_event(event, touch, is_back)
             if felt is not None:
                 self._session.happened(felt)
-            self._trial_screen.take(event)
-            self._procedure_screen.take(event)
-            self._tutorial_screen.take(event)
+            self._arm.take(event, self._session.tip)
         self._touch = touch
 
     def advance(self, dt: float, state: SimulationState) -> None:
@@ -105,8 +102,7 @@ class Flow:
         if training.result is not self._seen_result:
             self._seen_result = training.result
             session.history.changed(training.trainee, training.trial_id)
-        if session.ghost.has_just_loaded():
-            self._note_ghost()
+        self._note_ghost_and_slicer()
         self._wait_for_picture(dt)
         if session.pages.top is not None:
             session.pages.advance(dt)
@@ -114,6 +110,22 @@ class Flow:
             self._advance_tutorial(dt, session.tutorial)
         elif self._trial_screen.has_practice_just_ended():
             self._trial_screen.open_menu()
+
+    def _note_ghost_and_slicer(self) -> None:
+        """Have the journal say that a ghost is shown from now on, or the trainee that none is.
+
+        A connection to Slicer that was lost is lasting news.
+        """
+        session = self._session
+        if session.ghost.has_just_loaded():
+            if session.ghost.rule is GhostRule.OFF:
+                session.notices.add(session.texts.say("ghost.none"))
+            elif session.has_open_trial:
+                self._control_loop.note_display(GhostReport(session.ghost.rule.value))
+        is_connected = session.services.is_slicer_connected()
+        self._had_slicer = self._had_slicer or is_connected
+        is_lost = self._had_slicer and not is_connected
+        session.notices.warn("slicer", "warning.slicer" if is_lost else "")
 
     def pressed(self, control: ControlName) -> None:
         if self._session.pages.top is None:
@@ -136,7 +148,7 @@ class Flow:
         # A view that loads its picture may be too busy to say anything.
         if isinstance(session.pages.top, PreparingPage) and why != "unseen.still":
             self._unseen = why
-            session.pages.replace(TrialPage(session))
+            session.pages.replace(trial_page(session))
         is_running = session.training.is_running
         if (is_running or session.tutorial is not None) and session.pages.top is None:
             self._unseen = why
@@ -150,23 +162,14 @@ class Flow:
         preparing = ScreenMessage(session.preparing())
         if preparing.text and menu is not None and menu.name != PreparingPage.name:
             lasting = (preparing, *lasting)
-        warnings = (*lasting, *self._link_warnings(), *notices.brief())
+        warnings = (*lasting, *notices.brief())
         shown = None if page is None else page.screen()
         if shown is not None:
             return replace(shown, warnings=(*shown.warnings, *warnings))
         is_at_work = menu is None or session.has_open_trial or session.tutorial is not None
         shown = self._screen_of_work.screen() if is_at_work else Screen()
-        if menu is not None:
-            in_head = shown if self._procedure_screen.is_open else Screen()
-            shown = Screen(
-                menu=menu,
-                warnings=self._pause_warnings(),
-                status=shown.status,
-                hints=self._menu_hints(),
-                errors=in_head.errors,
-                is_head_clear=in_head.is_head_clear,
-                is_private=page is not None and page.is_private,
-            )
+        if page is not None and menu is not None:
+            shown = self._over(shown, page, menu)
         elif preparing.text:
             shown = replace(shown, instruction=preparing)
         return replace(
@@ -174,6 +177,35 @@ class Flow:
             warnings=(*shown.warnings, *warnings),
             language=session.preferences.language,
             is_spoken=session.preferences.speech,
+        )
+
+    def _over(self, shown: Screen, page: Page, menu: Menu) -> Screen:
+        """Return the screen of a menu over another, and why the trial is paused.
+
+        That is said unless the trainee did it.
+        """
+        session, say = self._session, self._session.texts.say
+        said = session.training.instruction
+        why: tuple[ScreenMessage, ...] = ()
+        tones = {**dict.fromkeys(INTERRUPTED, Tone.WARNING), NOT_RECORDED: Tone.ERROR}
+        if self._unseen:
+            why = (ScreenMessage(say(self._unseen), Tone.WARNING),)
+        elif key_of(said) in tones:
+            why = (ScreenMessage(session.texts.again(said), tones[key_of(said)]),)
+        in_head = shown if self._procedure_screen.is_open else Screen()
+        choose = session.operator.pair_label(ControlName.UP, ControlName.DOWN)
+        return Screen(
+            menu=menu,
+            warnings=why,
+            status=shown.status,
+            hints=(
+                Hint(choose, say("hint.choose")),
+                clickable_hint(session, ControlName.ACCEPT, "hint.accept"),
+                clickable_hint(session, ControlName.BACK, "hint.back"),
+            ),
+            errors=in_head.errors,
+            is_head_clear=in_head.is_head_clear,
+            is_private=page.is_private,
         )
 
     def start_tutorial(self, trainee: str, mode: str) -> Answer:
@@ -221,58 +253,61 @@ class Flow:
             session.pages.show_start()
             return
         self._tutorial_screen.advance(dt)
-        if tutorial.is_done:
+        if tutorial.step is None and tutorial.praised is None:
             outcome = session.end_tutorial()
             open_experiment(session)
             if outcome is not None:
-                page = PracticedPage if tutorial.practiced else TutorialDonePage
+                page = practiced_page if tutorial.practiced else tutorial_done_page
                 session.pages.open(page(session, outcome), ignore_input_briefly=True)
 
     def _follow(self, before: tuple[str, Phase]) -> None:
-        """Show what belongs to the trial's new phase."""
         session = self._session
         training = session.training
         session.history.changed(training.trainee, training.trial_id)
         # Another client started or ended a trial: leave the tutorial.
         session.end_tutorial()
         self._note_trial(before[0])
-        is_requested = self._trial_screen.take_menu_request()
+        is_requested = self._trial_screen.has_requested_menu
+        self._trial_screen.has_requested_menu = False
         was_working = session.pages.top is None
+        top_name = "" if session.pages.top is None else session.pages.top.name
         if training.phase in (Phase.RUNNING, Phase.COMPLETE, *PROCEDURE_PHASES):
             session.pages.show(None)
         elif training.phase is Phase.PAUSED:
-            page: type[SessionPage] = PreparingPage if self._waits_for_picture else TrialPage
-            page = PracticePage if self._trial_screen.is_practice_over else page
+            page: Callable[[TrainingSession], SessionPage]
+            page = PreparingPage if self._waits_for_picture else trial_page
+            page = practice_page if self._trial_screen.is_practice_over else page
             session.pages.show(page(session), ignore_input_briefly=not is_requested)
         elif training.phase is Phase.REGISTERED:
             session.note_done()
-            session.study.note_registered(training.trainee, training.task, training.mode)
-            session.pages.show(WaitingPage(session), ignore_input_briefly=True)
+            session.services.assigned.note_registered(
+                training.trainee, training.task, training.mode
+            )
+            session.pages.show(waiting_page(session), ignore_input_briefly=True)
         elif training.phase is Phase.SCORED:
             session.pages.show(ResultPage(session), ignore_input_briefly=True)
-        elif before[1] in OPEN_PHASES or isinstance(session.pages.top, RESULT_PAGES):
+        elif before[1] in OPEN_PHASES or top_name in RESULT_PAGES:
             # Another simulation may follow a trial while other pages are open: they stay.
             open_experiment(session, ignore_input_briefly=was_working)
 
     def _note_trial(self, previous_id: str) -> None:
-        """Note a new trial, and a trial run whose points are all touched."""
         session = self._session
         training = session.training
         if training.phase is not Phase.PAUSED:
             self._unseen = ""
         if training.trial_id and training.trial_id != previous_id:
             truth = self._control_loop.truth
-            self._trial_screen.begin(*points_in_world(truth))
+            self._trial_screen.begin(truth)
             guidance = self._trial_screen.guidance
             self._control_loop.note_display(GuidanceReport(guidance.value))
-            learned = session.tutorials.latest(training.trainee)
+            learned = session.tutorials.latest.get(training.trainee)
             if training.task == TRIAL_RUN and learned is not None:
                 self._control_loop.note_display(learned)
-            session.view.begin(session.setup, truth, session.state)
+            session.view.begin(session.control_loop.setup, truth, session.state)
             is_guided = training.trace is not None and guidance is not Guidance.NONE
             session.places.forget()
             if is_guided:
-                session.places.begin(training.trial_id, session.setup, truth)
+                session.places.begin(training.trial_id, session.control_loop.setup, truth)
             begin_ghost(session, truth.head_to_world)
             session.trainee = training.trainee
             session.mode = training.mode
@@ -291,37 +326,3 @@ class Flow:
         if self._without_picture_s > PICTURE_GRACE_S and not self._waits_for_picture:
             self._waits_for_picture = True
             session.do(CommandName.PAUSE)
-
-    def _note_ghost(self) -> None:
-        """Have the journal say that a ghost is shown from now on, or the trainee that none is."""
-        session = self._session
-        if session.ghost.rule is GhostRule.OFF:
-            session.notices.add(session.texts.say("ghost.none"))
-        elif session.has_open_trial:
-            self._control_loop.note_display(GhostReport(session.ghost.rule.value))
-
-    def _link_warnings(self) -> tuple[ScreenMessage, ...]:
-        """Warn that the connection to Slicer was lost, once there was one."""
-        is_connected = self._session.is_slicer_connected()
-        self._had_slicer = self._had_slicer or is_connected
-        if is_connected or not self._had_slicer:
-            return ()
-        return (ScreenMessage(self._session.texts.say("warning.slicer"), Tone.WARNING),)
-
-    def _pause_warnings(self) -> tuple[ScreenMessage, ...]:
-        """Say why the trial was paused, unless the trainee did it."""
-        if self._unseen:
-            return (ScreenMessage(self._session.texts.say(self._unseen), Tone.WARNING),)
-        said = self._session.training.instruction
-        tones = {**dict.fromkeys(INTERRUPTED, Tone.WARNING), NOT_RECORDED: Tone.ERROR}
-        tone = tones.get(key_of(said))
-        return () if tone is None else (ScreenMessage(self._session.texts.again(said), tone),)
-
-    def _menu_hints(self) -> tuple[Hint, ...]:
-        session = self._session
-        say = session.texts.say
-        return (
-            Hint(session.operator.pair_label(ControlName.UP, ControlName.DOWN), say("hint.choose")),
-            clickable_hint(session, ControlName.ACCEPT, "hint.accept"),
-            clickable_hint(session, ControlName.BACK, "hint.back"),
-        )

@@ -9,7 +9,7 @@ import numpy as np
 
 from rastrainer.protocol import Mode
 from rastrainer_simulator.flow.flow import Flow
-from rastrainer_simulator.flow.operated_views import AwaitedPictures, OperatedView, ViewSources
+from rastrainer_simulator.flow.operated_views import OperatedView, OperatedViews
 from rastrainer_simulator.flow.seat import instruct, seat_of
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.flow.session.services import FlowServices
@@ -37,7 +37,7 @@ from rastrainer_simulator.presentation.presenter import (
     TraceGuidance,
 )
 from rastrainer_simulator.presentation.screen import PRESS, Tone
-from rastrainer_simulator.record.trial_context import DisplayReport
+from rastrainer_simulator.record.trial_context import DisplayReport, ViewReport
 from rastrainer_simulator.replay.playback import PlaybackSwitch
 from rastrainer_simulator.state import (
     NEUTRAL_STICKS,
@@ -46,10 +46,13 @@ from rastrainer_simulator.state import (
     SimulationState,
     StepResult,
 )
-from rastrainer_simulator.viewpoint.view_control import Pictures
+from rastrainer_simulator.viewpoint.view_control import Pictures, ViewMotion
 
 REFRESH_S = 0.1
 """How often a screen is rebuilt though nothing was pressed: its clock, distances and axes."""
+
+NOTED_S = 0.2
+"""How often a moving view is noted in the journal."""
 
 _IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlName.BACK}
 """Meanings of a view's own buttons while a menu is open: a headset's buttons have no bindings."""
@@ -83,13 +86,13 @@ class FlowPresenter(Presenter):
             control_loop, self.controls, services, preferences, self.happened
         )
         self._flow = Flow(self._session, control_loop)
-        self._view = OperatedView(self._session, self.controls, control_loop, self.shown)
         self.rumble: Callable[[float, float], None] = lambda _strength, _seconds: None
         self._arriving = threading.Lock()
         self._newest = control_loop.latest
         self._results: list[StepResult] = []
-        self._views = ViewSources()
-        self._pictures = AwaitedPictures()
+        self._views = OperatedViews()
+        self._noted_view: tuple[str, ViewReport] | None = None
+        self._since_noted_s = 0.0
         self._number = 0
         self._sent_sticks = NEUTRAL_STICKS
         self._is_changed = True
@@ -117,7 +120,7 @@ class FlowPresenter(Presenter):
         self.controls.advance(dt)
         self._await_picture(dt, newest)
         self._flow.advance(dt, newest)
-        self._view.advance(dt)
+        self._advance_view(dt)
         self._settle()
         self._since_refresh += dt
         if self._is_changed or self._since_refresh >= REFRESH_S:
@@ -129,7 +132,7 @@ class FlowPresenter(Presenter):
                 self.publish(screen)
 
     def pictures(self, now: SimulationState) -> Pictures:
-        return self._view.pictures(now)
+        return self._session.view.pictures(now, self.shown.setup.scenario.cameras)
 
     def ghost(self, now: SimulationState) -> tuple[np.ndarray, ...] | None:
         return None if self._flow.playback is not None else self._session.ghost.poses(now)
@@ -161,17 +164,18 @@ class FlowPresenter(Presenter):
 
     def view_joined(self, view: int, hello: Hello) -> None:
         """Register a view; with a headset the next trial is one in a headset."""
-        self._views.join(view, hello)
+        self._views.joined[view] = OperatedView(hello)
         self._choose_mode(hello)
 
     def view_left(self, view: int) -> None:
         """Forget a view; if it was the trainee's, no one sees the trial any more."""
         was_silent = self._views.watched(self.controls.holder) is None
         self._lose_sight(view, "unseen.left")
-        self._session.layouts.pop(view, None)
-        self._choose_mode(self._views.leave(view))
-        self._pictures.forget(view)
-        if was_silent and self._views.is_empty:
+        self._session.operator.layouts.pop(view, None)
+        left = self._views.joined.pop(view, None)
+        if left is not None:
+            self._choose_mode(left.hello)
+        if was_silent and not self._views.joined:
             # The trial may wait for the picture of this view.
             self._flow.pause("unseen.left")
         self._settle()
@@ -179,14 +183,17 @@ class FlowPresenter(Presenter):
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
         """Process a key: it types if a text has the focus, otherwise it has its function."""
         source = self._views.source(SourceKind.KEYBOARD, view)
-        if is_down and self._types(source, code, text):
-            self._is_changed = True
+        typed = self._session.pages.typed(code, text) if is_down else None
+        if typed is None:
+            self.controls.set_key(source, code, is_down)
+            self._settle()
             return
-        self.controls.set_key(source, code, is_down)
-        self._settle()
+        if self.controls.allows(source):
+            self._session.pages.write(*typed)
+        self._is_changed = True
 
     def on_layout(self, view: int, keys: Mapping[str, str]) -> None:
-        self._session.layouts[view] = keys
+        self._session.operator.layouts[view] = keys
         self._is_changed = True
 
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
@@ -204,8 +211,8 @@ class FlowPresenter(Presenter):
     ) -> None:
         """Process XR controllers' sticks and the gaze above them, or sticks on a screen."""
         source = self._views.sticks_source(view, self._session.screen_sticks.is_shown)
-        if source.kind is SourceKind.XR:
-            self._views.look(view, yaw_deg)
+        if source.kind is SourceKind.XR and view in self._views.joined:
+            self._views.joined[view].yaw_deg = yaw_deg
         sticks = OperatorInput(translation, rotation, is_fine)
         if source.kind is SourceKind.MOUSE:
             sticks = self._session.screen_sticks.moved(translation, rotation)
@@ -213,8 +220,9 @@ class FlowPresenter(Presenter):
         self._settle()
 
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
-        source = self._views.source(SourceKind.MOUSE, view)
-        self._view.turn(source, around_deg, higher_deg, zoom)
+        if self.controls.is_operator(self._views.source(SourceKind.MOUSE, view)):
+            camera = self.shown.setup.scenario.cameras[self.shown.latest.camera]
+            self._session.view.control.turn(camera, around_deg, higher_deg, zoom)
 
     def on_press(self, view: int, control: str) -> None:
         if control not in ControlName._value2member_map_:
@@ -247,10 +255,12 @@ class FlowPresenter(Presenter):
 
     def on_frames(self, view: int, frames: Frames) -> None:
         """Process how smoothly a view draws; the journal notes it of the trainee's view."""
-        self._views.hear(view, True)
-        hello = self._views.hello(view)
-        if hello is None or view != self._views.watched(self.controls.holder):
+        if view not in self._views.joined:
             return
+        self._views.joined[view].is_silent = False
+        if view != self._views.watched(self.controls.holder):
+            return
+        hello = self._views.joined[view].hello
         report = DisplayReport(
             hello.kind, hello.device, frames.refresh_hz, frames.shown, frames.dropped
         )
@@ -258,10 +268,11 @@ class FlowPresenter(Presenter):
 
     def on_picture(self, view: int, task: str, share: float) -> None:
         """Note how much of its picture a view has: a task waits for the trainee's view."""
-        self._pictures.take(view, task, share)
+        if view in self._views.joined:
+            drawn = self._views.joined[view]
+            drawn.task, drawn.share, drawn.waited_s = task, share, 0.0
 
     def on_visibility(self, view: int, is_visible: bool) -> None:
-        """Pause the trial when the operator no longer sees it, and release control."""
         if not is_visible:
             self._lose_sight(view, "unseen.hidden")
             self._settle()
@@ -269,7 +280,8 @@ class FlowPresenter(Presenter):
     def on_silence(self, view: int) -> None:
         """Pause the trial when its picture freezes, and release control."""
         self._lose_sight(view, "unseen.still")
-        self._views.hear(view, False)
+        if view in self._views.joined:
+            self._views.joined[view].is_silent = True
         self._settle()
 
     def pressed(self, control: ControlName) -> None:
@@ -283,20 +295,19 @@ class FlowPresenter(Presenter):
         return page is not None and page.input_pressed(device, name)
 
     def taken_over(self, source: Source) -> None:
-        name = self._session.texts.say(f"source.{source.kind.value}")
-        self._session.notices.add(self._session.texts.say("control.taken", source=name))
+        say = self._session.texts.say
+        name = say(f"source.{source.kind.value}")
+        self._session.notices.add(say("control.taken", source=name))
         self._flow.taken_over()
         self._is_changed = True
 
     def refused(self, _source: Source) -> None:
-        """Explain how to take control to an operator who tries."""
-        holder = self.controls.holder
+        holder, say = self.controls.holder, self._session.texts.say
         if holder is None:
             return
-        name = self._session.texts.say(f"source.{holder.kind.value}")
-        menu = self._session.texts.say("control.menu")
+        name, menu = say(f"source.{holder.kind.value}"), say("control.menu")
         key = "control.locked" if self._session.lock.is_locked else "control.held"
-        text = self._session.texts.say(key, source=name, menu=menu, seconds=IDLE_S)
+        text = say(key, source=name, menu=menu, seconds=IDLE_S)
         self._session.notices.add(text, Tone.WARNING)
         self._is_changed = True
 
@@ -327,23 +338,63 @@ class FlowPresenter(Presenter):
             self.controls.forget(self._views.source(kind, view))
 
     def _await_picture(self, dt: float, newest: SimulationState) -> None:
-        """Have the flow wait for the picture of what the trainee's view is to show."""
-        session, view = self._session, self._views.watched(self.controls.holder)
-        if view is None and not self._views.is_empty:
+        session, watched = self._session, self._views.watched(self.controls.holder)
+        if watched is None and self._views.joined:
             return
+        view = None if watched is None else self._views.joined.get(watched)
         # The views show the newest state only when it has been processed.
         is_replayed = self._flow.playback is not None
-        shown = self.shown.latest if is_replayed else self._flow.shown(newest)
-        training = shown.training
+        training = (self.shown.latest if is_replayed else self._flow.shown(newest)).training
         task = training.task if training.is_marked else ""
-        share = self._pictures.advance(dt, view, task)
+        share = None if view is None else view.awaited_share(dt, task)
         is_blind = session.goes_on_blind == session.training.trial_id != ""
         session.picture_share = None if is_blind else share
 
-    def _choose_mode(self, changed: Hello | None) -> None:
+    @property
+    def _follows(self) -> bool:
+        """Whether the view goes automatically to the best view of each next point."""
+        session, tutorial = self._session, self._session.tutorial
+        practiced = session.training if tutorial is None else tutorial
+        # In a headset the trainee looks around by turning the head.
+        has_not_learned = tutorial is not None and not tutorial.has_learned_view
+        if practiced.mode == Mode.HMD.value or has_not_learned:
+            return False
+        choice = session.preferences.view
+        is_led = practiced.trainee in session.services.assigned.steps
+        return choice == "always" or (choice == "practice" and not is_led)
+
+    def _advance_view(self, dt: float) -> None:
+        """Move the view by `dt` seconds, and have the trial's journal say where it is."""
+        session, view, follows = self._session, self._session.view, self._follows
+        view.advance(
+            dt,
+            self.shown.latest,
+            self.shown.setup.scenario,
+            ViewMotion(*self.controls.view),
+            self.controls.sticks,
+            follows and self.controls.situation is ControlContext.WORK,
+        )
+        self._since_noted_s += dt
+        if not session.has_open_trial or self._since_noted_s < NOTED_S:
+            return
+        orbit = view.control.orbit
+        report = ViewReport(
+            round(orbit.azimuth_deg, 2),
+            round(orbit.elevation_deg, 2),
+            round(orbit.zoom, 2),
+            view.control.is_automatic,
+            follows,
+        )
+        if self._noted_view != (session.training.trial_id, report):
+            self._noted_view = session.training.trial_id, report
+            self._since_noted_s = 0.0
+            self._control_loop.note_display(report)
+
+    def _choose_mode(self, changed: Hello) -> None:
         """Let the next trial be one in a headset while there is one; people may choose again."""
-        if changed is not None and changed.kind == "headset":
-            self._session.mode = (Mode.HMD if self._views.has_headset else Mode.DESKTOP).value
+        if changed.kind == "headset":
+            kinds = {view.hello.kind for view in self._views.joined.values()}
+            self._session.mode = (Mode.HMD if "headset" in kinds else Mode.DESKTOP).value
 
     def _take_tick(self, result: StepResult) -> None:
         """Note a tick, and queue what happened in it; called in the control loop's thread."""
@@ -352,17 +403,7 @@ class FlowPresenter(Presenter):
             if result.events:
                 self._results.append(result)
 
-    def _types(self, source: Source, code: str, text: str) -> bool:
-        """Let a key type into the text that has the focus; return whether it did."""
-        typed = self._session.pages.typed(code, text)
-        if typed is None:
-            return False
-        if self.controls.allows(source):
-            self._session.pages.write(*typed)
-        return True
-
     def _settle(self) -> None:
-        """Pass on the shown state, the situation, the sticks and the holder of control."""
         self.shown.show(self._flow.playback)
         self.shown.alter = None if self._session.tutorial is None else self._flow.shown
         self.controls.enter(self._flow.situation)

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
 
 from rastrainer.commands import CommandName
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.arm_screen import ArmScreen
-from rastrainer_simulator.flow.pages.procedure import ProcedurePage
-from rastrainer_simulator.flow.pages.session_page import stick_hints
-from rastrainer_simulator.flow.session.plan_marks import checkpoint_marks, depth_ruler, plan_marks
+from rastrainer_simulator.flow.pages.procedure import procedure_page
+from rastrainer_simulator.flow.session.plan_marks import ball, depth_ruler, plan_marks
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.trial_screen import TrialScreen
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
@@ -24,7 +22,6 @@ from rastrainer_simulator.presentation.screen import (
     ScreenMessage,
     Tone,
 )
-from rastrainer_simulator.state import Event, EventKind
 from rastrainer_simulator.training.feed import FeedLayer
 from rastrainer_simulator.trial_state import ProcedureState
 
@@ -43,25 +40,16 @@ class ProcedureScreen(ArmScreen):
     """The instructions, the figures and the controls of the phases after the touches."""
 
     def __init__(self, session: TrainingSession, trial_screen: TrialScreen) -> None:
-        super().__init__(session)
+        super().__init__(session, trial_screen._arm)
         self._trial_screen = trial_screen
-        self._layer = ""
 
     @property
     def is_open(self) -> bool:
-        """Whether the trial is in one of its phases, or paused in one."""
         training = self._session.training
         stage = None if training.procedure is None else training.procedure.stage
         return training.phase in PROCEDURE_PHASES or (
             training.phase is Phase.PAUSED and stage in PROCEDURE_PHASES
         )
-
-    def take(self, event: Event) -> None:
-        super().take(event)
-        if event.kind is EventKind.FEED:
-            self._layer = event.data["layer"]
-        elif event.kind is EventKind.PHASE:
-            self._layer = ""
 
     def pressed(self, control: ControlName) -> None:
         """Carry out a control: Undo opens the phase's menu, and so does Touch except at first."""
@@ -72,35 +60,36 @@ class ProcedureScreen(ArmScreen):
         elif control is ControlName.TOUCH and is_verifying:
             session.do(CommandName.CAPTURE)
         elif control in (ControlName.TOUCH, ControlName.UNDO):
-            session.pages.open(ProcedurePage(session))
+            session.pages.open(procedure_page(session))
         else:
             self._trial_screen.pressed(control)
 
     def open_menu(self) -> None:
         self._trial_screen.open_menu()
 
-    def instruction(self) -> ScreenMessage:
-        session = self._session
-        text = session.texts.again(session.training.instruction)
-        return ScreenMessage(text, Tone.WARNING if self._is_refused else Tone.GOOD)
-
     def warnings(self) -> tuple[ScreenMessage, ...]:
-        """Return the warnings, and the layer that drill or instrument feels."""
         session, say = self._session, self._session.texts.say
         training = session.training
         if training.phase is Phase.VERIFYING and self._procedure.registration is None:
-            return self._why_not_registered()
+            # Why the touches are not registered yet, if that will not change by itself.
+            scorer = session.local_scorer
+            if scorer is not None and scorer.problem:
+                reason = say("waiting.problem", reason=scorer.problem)
+                return (ScreenMessage(reason, Tone.ERROR),)
+            if scorer is None and not session.services.is_slicer_connected():
+                return (ScreenMessage(say("warning.nobody registers"), Tone.WARNING),)
+            return ()
         if training.phase not in FED:
             return super().warnings()
         ruler = self._ruler()
         past = 0.0 if ruler is None else MM_PER_M * session.state.feed - ruler.target_mm
         if past > PAST_TARGET_MM:
             return (ScreenMessage(say("warning.past target", past=past), Tone.ERROR),)
-        if self._layer not in _FELT:
+        if self._arm.layer not in _FELT:
             return ()
-        return (ScreenMessage(say(f"felt.{self._layer}"), _FELT[self._layer]),)
+        return (ScreenMessage(say(f"felt.{self._arm.layer}"), _FELT[self._arm.layer]),)
 
-    def status(self) -> tuple[str, ...]:
+    def _status(self) -> tuple[str, ...]:
         session, say = self._session, self._session.texts.say
         procedure = self._procedure
         facts = [session.task_title(session.training.task)]
@@ -115,7 +104,7 @@ class ProcedureScreen(ArmScreen):
         facts.append(say("status.procedure time", time=took))
         return (*facts, *self._figures())
 
-    def hints(self) -> tuple[Hint, ...]:
+    def _all_hints(self) -> tuple[Hint, ...]:
         session = self._session
         phase = session.training.phase
         names = {
@@ -127,24 +116,37 @@ class ProcedureScreen(ArmScreen):
         }
         if phase is not Phase.VERIFYING:
             del names[ControlName.UNDO]
-        on_screen = stick_hints(session, can_tilt=phase is Phase.ALIGNING)
-        return (*self._stick_hints(phase), *self._control_hints(names), *on_screen)
+        return self._hints(self._moving_hints(phase), names, can_tilt=phase is Phase.ALIGNING)
 
     def screen(self) -> Screen:
         """From the alignment on, the trainee looks into the head."""
-        is_head_clear = self._procedure.present is not None
-        shown = super().screen()
-        return replace(
-            shown, errors=self._marks(), is_head_clear=is_head_clear, ruler=self._ruler()
+        session = self._session
+        text = session.texts.again(session.training.instruction)
+        return self._shown(
+            ScreenMessage(text, Tone.WARNING if self._is_refused else Tone.GOOD),
+            self._status(),
+            self._all_hints(),
+            errors=self._marks(),
+            is_head_clear=self._procedure.present is not None,
+            ruler=self._ruler(),
         )
 
     def _marks(self) -> tuple[ErrorArrow, ...]:
-        """Return the plan by the registration, and checkpoints as marks on the skin."""
+        """Return the plan by the registration, and checkpoints as named marks on the skin.
+
+        Those touched by this registration are green.
+        """
         session, procedure = self._session, self._procedure
         if procedure.stage is Phase.VERIFYING:
-            checkpoints = session.scenario.procedure(procedure.name).checkpoints
-            places = {each.name: session.truly_in_world(each.position_ras) for each in checkpoints}
-            return checkpoint_marks(procedure, places)
+            touched = {each.name for each in procedure.checkpoints}
+            return tuple(
+                ball(
+                    session.truly_in_world(each.position_ras),
+                    Tone.GOOD if each.name in touched else Tone.WARNING,
+                    each.name,
+                )
+                for each in session.scenario.procedure(procedure.name).checkpoints
+            )
         return plan_marks(procedure, session.planned_bone(procedure.name))
 
     def _ruler(self) -> DepthRuler | None:
@@ -182,7 +184,7 @@ class ProcedureScreen(ArmScreen):
             say("status.stand off", distance=MM_PER_M * alignment.stand_off),
         )
 
-    def _stick_hints(self, phase: Phase) -> tuple[Hint, ...]:
+    def _moving_hints(self, phase: Phase) -> tuple[Hint, ...]:
         """Return the functions of the sticks; in a headset only those not drawn in the hands."""
         session, say = self._session, self._session.texts.say
         up_and_down = session.operator.pair_label(ControlName.MOVE_DOWN, ControlName.MOVE_UP)
@@ -197,13 +199,3 @@ class ProcedureScreen(ArmScreen):
         tilt = session.operator.pair_label(ControlName.TURN_DOWN, ControlName.TURN_UP)
         turning = (Hint(turn, say("hint.turn")), Hint(tilt, say("hint.tilt")))
         return (*self._movement_hints(), *turning)
-
-    def _why_not_registered(self) -> tuple[ScreenMessage, ...]:
-        """Return why the touches are not registered yet, if that will not change by itself."""
-        session, say = self._session, self._session.texts.say
-        own = session.local_scorer
-        if own is not None and own.problem:
-            return (ScreenMessage(say("waiting.problem", reason=own.problem), Tone.ERROR),)
-        if own is None and not session.is_slicer_connected():
-            return (ScreenMessage(say("warning.nobody registers"), Tone.WARNING),)
-        return ()

@@ -107,7 +107,6 @@ class RunningPresenter:
 
 
 def _read(path: Path, read: Callable[[Path], T], default: T) -> tuple[T, str]:
-    """Return what a settings file holds, or the default and why."""
     if not path.exists():
         return default, ""
     try:

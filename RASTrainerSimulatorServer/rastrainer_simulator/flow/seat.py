@@ -30,7 +30,7 @@ def seat_of(session: TrainingSession, screen: Screen, holder: str, count: int) -
         warnings=tuple(each.text for each in screen.warnings if each.tone in _WRONG),
         score=scores[-1] if scores else None,
         holder=holder,
-        slicer=session.is_slicer_connected(),
+        slicer=session.services.is_slicer_connected(),
         language=screen.language,
         assignments="" if curriculum is None else session.assignment_texts.in_brief(curriculum),
     )

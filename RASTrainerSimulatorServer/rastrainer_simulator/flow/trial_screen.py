@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 from rastrainer.commands import CommandName
 from rastrainer.protocol import (
@@ -22,20 +21,20 @@ from rastrainer_simulator.flow.arm_screen import (
     FARTHEST,
     LOOKED_AT_MM,
     PRACTICED_MM,
+    ArmEvents,
     ArmScreen,
-    PathArc,
+    off_path,
 )
-from rastrainer_simulator.flow.pages.session_page import stick_hints
-from rastrainer_simulator.flow.pages.start import StartPage
-from rastrainer_simulator.flow.pages.trial import CompletePage, TrialPage
+from rastrainer_simulator.flow.pages.start import start_page
+from rastrainer_simulator.flow.pages.trial import complete_page, trial_page
 from rastrainer_simulator.flow.pages.trial_review import POOR_MM
 from rastrainer_simulator.flow.session.chosen_trial import guidance_of
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
 from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage, Tone
-from rastrainer_simulator.state import Event, EventKind, TouchStage
+from rastrainer_simulator.state import TouchStage
 from rastrainer_simulator.training.head_pose import Truth
-from rastrainer_simulator.vectors import Vector, distance, in_meters
+from rastrainer_simulator.vectors import ZERO, Vector, distance, in_meters
 from rastrainer_simulator.viewpoint.view_control import orbit_to
 
 TRIAL_RUN_S = 300.0
@@ -50,17 +49,17 @@ class TrialScreen(ArmScreen):
 
     Attributes:
         guidance: to the next point, in the present trial.
+        has_requested_menu: whether the trainee has, since that was last looked at.
     """
 
-    def __init__(self, session: TrainingSession) -> None:
-        super().__init__(session)
+    def __init__(self, session: TrainingSession, arm: ArmEvents) -> None:
+        super().__init__(session, arm)
         self.guidance = Guidance.NONE
         self._points: dict[str, Vector] = {}
         self._count = FIDUCIAL_COUNT
-        self._center: Vector = (0.0, 0.0, 0.0)
+        self._center = ZERO
         self._is_beside = False
-        self._refused_at: Vector = (0.0, 0.0, 0.0)
-        self._has_requested_menu = False
+        self.has_requested_menu = False
         self._is_practice_end_shown = False
         self._practice_step: StudyStep | None = None
         self._practice_end_s: float | None = None
@@ -70,12 +69,13 @@ class TrialScreen(ArmScreen):
         covered = session.places.guidance(session.state).covered_mm
         legend = session.texts.say("coverage", distance=f"{covered:.0f}") if covered else ""
         has_arrow = self.guidance is not Guidance.NONE
-        return replace(super().screen(), has_arrow=has_arrow, coverage=legend)
-
-    def take(self, event: Event) -> None:
-        super().take(event)
-        if event.kind is EventKind.REJECTED:
-            self._refused_at = self._session.tip
+        return self._shown(
+            self._instruction(),
+            self._status(),
+            self._all_hints(),
+            has_arrow=has_arrow,
+            coverage=legend,
+        )
 
     @property
     def is_practice_over(self) -> bool:
@@ -97,22 +97,19 @@ class TrialScreen(ArmScreen):
         return TRIAL_RUN_S if self._practice_end_s is None else self._practice_end_s
 
     def has_practice_just_ended(self) -> bool:
-        """Return whether the trial run's minutes have just passed; true once a trial."""
         if self._is_practice_end_shown or self._session.training.phase is not Phase.RUNNING:
             return False
         self._is_practice_end_shown = self.is_practice_over
         return self._is_practice_end_shown
 
-    def begin(self, points: dict[str, Vector], center: Vector) -> None:
-        """Forget the trial before; points and the head's center are in World, m.
-
-        The trainee is not led to points that are not marked.
-        """
-        self._points = points if self._session.training.is_marked else {}
-        self._count = len(points)
-        self._center = center
+    def begin(self, truth: Truth) -> None:
+        """Forget the trial before; the trainee is not led to points that are not marked."""
+        points = truth.fiducials_ras if self._session.training.is_marked else {}
+        self._points = {name: in_meters(truth.in_world(place)) for name, place in points.items()}
+        self._count = len(truth.fiducials_ras)
+        self._center = in_meters(truth.in_world(truth.target_ras))
         self._is_beside = self._is_practice_end_shown = False
-        self._forget_arm()
+        self._arm.obstacle, self._arm.is_within_reach = "", True
         self._practice_step, self._practice_end_s = None, None
         self.guidance = guidance_of(self._session)
 
@@ -121,36 +118,25 @@ class TrialScreen(ArmScreen):
         phase = session.training.phase
         if control is ControlName.CAMERA:
             self._change_camera()
+        elif control is ControlName.BEST_VIEW and session.training.is_tracing:
+            camera = session.scenario.cameras[session.state.camera]
+            eye, place = session.places.eye(camera), session.places.in_world()
+            if eye is not None and place is not None:
+                session.view.control.go(orbit_to(camera, eye, place))
         elif control is ControlName.BEST_VIEW:
-            self._want_best_view()
+            session.view.want_best()
         elif control is ControlName.UNDO:
             session.do(CommandName.UNDO)
         elif control is ControlName.TOUCH and session.training.is_tracing:
             trace = session.training.trace
             session.do(CommandName.TRACE, {"on": trace is None or not trace.is_on})
         elif control is ControlName.TOUCH and phase is Phase.COMPLETE:
-            session.pages.open(CompletePage(session))
+            session.pages.open(complete_page(session))
         elif control is ControlName.TOUCH:
             session.do(CommandName.CAPTURE)
         elif control in (ControlName.MENU, ControlName.PAUSE):
-            self._has_requested_menu = True
+            self.has_requested_menu = True
             self.open_menu()
-
-    def _want_best_view(self) -> None:
-        """Look at the next point, or where the skin is traced at the place to draw next."""
-        session = self._session
-        if not session.training.is_tracing:
-            session.view.want_best()
-            return
-        camera = session.scenario.cameras[session.state.camera]
-        eye, place = session.places.eye(camera), session.places.in_world()
-        if eye is not None and place is not None:
-            session.view.control.go(orbit_to(camera, eye, place))
-
-    def take_menu_request(self) -> bool:
-        """Return whether the trainee has requested the menu since this was last asked."""
-        has_requested, self._has_requested_menu = self._has_requested_menu, False
-        return has_requested
 
     def open_menu(self) -> None:
         """Open the menu; a trial that runs is paused, and the menu opens when it is."""
@@ -159,10 +145,10 @@ class TrialScreen(ArmScreen):
         if session.training.is_running:
             session.do(CommandName.PAUSE)
         else:
-            page = TrialPage if phase is Phase.COMPLETE else StartPage
+            page = trial_page if phase is Phase.COMPLETE else start_page
             session.pages.show(page(session))
 
-    def instruction(self) -> ScreenMessage:
+    def _instruction(self) -> ScreenMessage:
         session = self._session
         training = session.training
         if training.is_tracing and not self._is_refused:
@@ -175,7 +161,7 @@ class TrialScreen(ArmScreen):
             )
             return ScreenMessage(text, Tone.GOOD)
         is_on_skin = session.state.touch is TouchStage.ON_SKIN
-        has_gone_on = is_on_skin and distance(session.tip, self._refused_at) > ELSEWHERE_M
+        has_gone_on = is_on_skin and distance(session.tip, self._arm.refused_at) > ELSEWHERE_M
         if self._is_refused and not has_gone_on:
             return ScreenMessage(session.texts.again(training.instruction), Tone.WARNING)
         if is_on_skin:
@@ -186,47 +172,35 @@ class TrialScreen(ArmScreen):
                 "work.off the way", trainee=training.trainee, point=training.next_point
             )
             return ScreenMessage(text, Tone.WARNING)
-        slip = self._slip()
-        if slip:
-            return ScreenMessage(slip, Tone.WARNING)
+        last = training.touches[-1] if training.touches else None
+        if training.task == TRIAL_RUN and last is not None and last.label in self._points:
+            # Where touches are scored, nothing says how exact they are before the registration.
+            error_mm = MM_PER_M * distance(last.position, self._points[last.label])
+            if error_mm >= POOR_MM:
+                return ScreenMessage(self._slipped(last.label, error_mm), Tone.WARNING)
         tone = Tone.GOOD if training.touches else Tone.PLAIN
         return ScreenMessage(session.texts.again(training.instruction), tone)
 
-    def _slip(self) -> str:
-        """Return that the last touch of the trial run was poor; "" else.
-
-        Where touches are scored, nothing says how exact they are before the registration.
-        """
-        session, training = self._session, self._session.training
-        last = training.touches[-1] if training.touches else None
-        if training.task != TRIAL_RUN or last is None or last.label not in self._points:
-            return ""
-        error_mm = MM_PER_M * distance(last.position, self._points[last.label])
-        if error_mm < POOR_MM:
-            return ""
-        undo = session.operator.label(ControlName.UNDO)
-        said = {"label": last.label, "error": error_mm, "undo": undo, "point": training.next_point}
-        return session.texts.say("tutorial.slipped", **said)
-
-    def status(self) -> tuple[str, ...]:
+    def _status(self) -> list[str]:
         session = self._session
         training = session.training
-        facts = [
-            session.task_title(training.task),
-            self._points_so_far(),
-            self._clock(),
-        ]
+        say, trace = session.texts.say, training.trace
+        done = say("status.points", kept=len(training.touches), count=self._count)
+        if training.is_tracing and trace is not None:
+            limits = {"least": MIN_TRACE_POINTS, "most": MAX_TRACE_POINTS}
+            done = say("status.traced", traced=len(trace.points), **limits)
+        facts = [session.task_title(training.task), done, self._clock()]
         target = self._points.get(training.next_point or "")
-        name = session.texts.say("status.point", point=training.next_point)
+        name = say("status.point", point=training.next_point)
         if training.is_tracing:
-            target, name = session.places.in_world(), session.texts.say("status.next place")
+            target, name = session.places.in_world(), say("status.next place")
         if target is not None and self.guidance is Guidance.WORDS:
             is_practice = training.task == TRIAL_RUN and not training.is_tracing
             nearest_mm = PRACTICED_MM if is_practice else LOOKED_AT_MM
             facts.append(self._toward(name, target, nearest_mm))
-        return tuple(facts)
+        return facts
 
-    def hints(self) -> tuple[Hint, ...]:
+    def _all_hints(self) -> tuple[Hint, ...]:
         session = self._session
         training = session.training
         is_complete = training.phase is Phase.COMPLETE and not training.is_tracing
@@ -245,15 +219,7 @@ class TrialScreen(ArmScreen):
             del names[ControlName.BEST_VIEW]
         elif not is_complete:
             movement = self._movement_hints()
-        return (*movement, *self._control_hints(names), *stick_hints(session))
-
-    def _points_so_far(self) -> str:
-        training, say = self._session.training, self._session.texts.say
-        if training.is_tracing and training.trace is not None:
-            traced = len(training.trace.points)
-            limits = {"least": MIN_TRACE_POINTS, "most": MAX_TRACE_POINTS}
-            return say("status.traced", traced=traced, **limits)
-        return say("status.points", kept=len(training.touches), count=self._count)
+        return self._hints(movement, names)
 
     def _clock(self) -> str:
         session = self._session
@@ -273,15 +239,6 @@ class TrialScreen(ArmScreen):
         if self.guidance is Guidance.NONE or not training.touches or target is None:
             self._is_beside = False
             return False
-        way = PathArc(self._center, training.touches[-1].position, target)
-        limit = BACK_WITHIN if self._is_beside else FARTHEST
-        self._is_beside = way.beside(self._session.tip) > limit
+        off = off_path(self._session.tip, self._center, training.touches[-1].position, target)
+        self._is_beside = off > (BACK_WITHIN if self._is_beside else FARTHEST)
         return self._is_beside
-
-
-def points_in_world(truth: Truth) -> tuple[dict[str, Vector], Vector]:
-    """Return the fiducials of a trial and the head's center in World, m."""
-    points = {
-        label: in_meters(truth.in_world(point)) for label, point in truth.fiducials_ras.items()
-    }
-    return points, in_meters(truth.in_world(truth.target_ras))

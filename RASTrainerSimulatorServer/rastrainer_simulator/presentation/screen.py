@@ -229,11 +229,9 @@ class Notices:
         self._lasting: dict[str, tuple[str, Mapping[str, object]]] = {}
 
     def advance(self, dt: float) -> None:
-        """Advance by `dt` seconds."""
         self._time += dt
 
     def add(self, text: str, tone: Tone = Tone.PLAIN, seconds: float = NOTICE_S) -> None:
-        """Show a sentence for some seconds."""
         self._brief = [each for each in self._brief if each[1].text != text]
         self._brief.append((self._time + seconds, ScreenMessage(text, tone)))
 
@@ -244,11 +242,9 @@ class Notices:
             self._lasting[about] = key, values
 
     def brief(self) -> tuple[ScreenMessage, ...]:
-        """Return the sentences that are still to be shown."""
         self._brief = [each for each in self._brief if each[0] > self._time]
         return tuple(message for _, message in self._brief)
 
     def lasting(self, texts: Texts) -> tuple[ScreenMessage, ...]:
-        """Return the warnings that have not been withdrawn."""
         said = (texts.say(key, **values) for key, values in self._lasting.values())
         return tuple(ScreenMessage(text, Tone.WARNING) for text in said)

@@ -163,8 +163,6 @@ class DomainPage(RatingPage):
     """Accepts one mark, and leads to the next domain."""
 
     name = "rating"
-    # Not on a mark, which would then be given more often than others.
-    first = "watch"
 
     def __init__(self, actions: RatingActions, form: RatingForm, domain: RatingDomain) -> None:
         super().__init__(actions)
@@ -179,7 +177,9 @@ class DomainPage(RatingPage):
         others = self.rows(*(["undo"] if self.actions.work.marks else []), "watch", "leave")
         domain = self.say(f"rate.{self._domain.name}")
         title = self.say("rating.title", form=self._form.title, domain=domain)
-        return PageContent(title, (self.say("rating.text"),), rows=(*marks, *others))
+        # The focus is not on a mark, which would then be given more often than others.
+        said = (self.say("rating.text"),)
+        return PageContent(title, said, rows=(*marks, *others), first="watch")
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
         """Store a typed mark."""
@@ -203,7 +203,6 @@ class RatedPage(RatingPage):
     """Shows the marks of a replay, and leads to the next one."""
 
     name = "rated"
-    first = "next"
 
     def content(self) -> PageContent:
         work = self.actions.work
@@ -219,7 +218,8 @@ class RatedPage(RatingPage):
         following = self.button("next", self._go_on, self.say("rating.next"))
         previous = ["previous"] if work.place else []
         others = self.rows("undo", "watch", *previous, "leave")
-        return PageContent(title, (text,), facts, (*(() if is_last else (following,)), *others))
+        rows = (*(() if is_last else (following,)), *others)
+        return PageContent(title, (text,), facts, rows, first="next")
 
     def _go_on(self) -> None:
         self.actions.work.go_to_next()

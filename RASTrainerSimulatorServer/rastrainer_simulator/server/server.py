@@ -23,7 +23,7 @@ from rastrainer_simulator.core.interrupted_trial import find_interrupted
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.flow.session.assigned_training import Curricula, StudySteps
+from rastrainer_simulator.flow.session.assigned_training import AssignedTraining
 from rastrainer_simulator.flow.session.preferences import (
     PREFERENCES_FILE,
     Preferences,
@@ -106,8 +106,7 @@ class SimulatorServer:
         self._limits = read_limits(self._config)
         self._settings = self._preferred_settings()
         self._seeds = itertools.count(options.seed)
-        self._study = StudySteps()
-        self._curricula = Curricula()
+        self._assigned = AssignedTraining()
         self._pin = PinGuesses(InstructorPin(self._config))
         # First: until the folder is ours, another simulator may add to the trial to resume.
         self._records = RecordsFolder(options.records)
@@ -150,8 +149,8 @@ class SimulatorServer:
             find_scenario=self._scenarios.find,
             health=self._health,
             limits=self._limits.clients,
-            answers=self._study.unacknowledged_answers,
-            slicer_left=self._curricula.forget_all,
+            answers=lambda: tuple(self._assigned.answers.values()),
+            slicer_left=self._assigned.curricula.clear,
         )
         feed = StateFeed(link.publisher.is_due, link.publish, loop)
         unsubscribe = self._control_loop.subscribe(feed)
@@ -250,8 +249,7 @@ class SimulatorServer:
             use_scenario=self._scenarios.load,
             is_slicer_connected=lambda: link.is_slicer_connected,
             quit=stop.set,
-            study=self._study,
-            curricula=self._curricula,
+            assigned=self._assigned,
             scores_alone=self._options.scores_alone,
             pin=self._pin,
         )
@@ -322,10 +320,10 @@ class SimulatorServer:
         if name == CommandName.LOAD_SCENARIO:
             return self._scenarios.load(arguments["folder"])
         if name == CommandName.STUDY_STEP:
-            self._study.take(StudyStep.from_arguments(arguments))
+            self._assigned.take_step(StudyStep.from_arguments(arguments))
             return _answered(Answer(0, True))
         if name == CommandName.CURRICULUM:
-            self._curricula.take(CurriculumMessage.from_arguments(arguments))
+            self._assigned.take_curriculum(CurriculumMessage.from_arguments(arguments))
             return _answered(Answer(0, True))
         if name == CommandName.START_TUTORIAL:
             return _answered(self._start_tutorial(**arguments))

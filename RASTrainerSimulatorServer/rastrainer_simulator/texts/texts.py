@@ -63,7 +63,6 @@ class LocalizedText(str):
     values: Mapping[str, object]
 
     def __new__(cls, text: str, key: str, values: Mapping[str, object]) -> LocalizedText:
-        """Make one from the finished sentence."""
         said = super().__new__(cls, text)
         said.key = key
         said.values = values
@@ -90,7 +89,6 @@ class _Formatter(Formatter):
         self._decimal_sign = decimal_sign
 
     def format_field(self, value: object, format_spec: str) -> str:
-        """Return one value as text."""
         text = format(value, format_spec)
         if isinstance(value, (int, float)):
             text = text.replace("-", "−")

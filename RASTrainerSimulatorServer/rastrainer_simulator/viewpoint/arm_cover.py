@@ -82,7 +82,6 @@ class ArmCover:
         return known & near | nearer
 
     def _posed(self, now: SimulationState) -> np.ndarray:
-        """Return the ends of the capsules' axes, (n, 2, 3) float."""
         poses = {
             name: now.link_to_world[joint] @ offset for name, (joint, offset) in self._fixed.items()
         }

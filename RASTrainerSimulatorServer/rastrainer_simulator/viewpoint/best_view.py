@@ -90,25 +90,12 @@ class ViewedPoint:
     Attributes:
         fiducial: its position.
         normal: the skin's outward unit normal there.
-        number: the middle of its number on the skin.
+        marks: what must be seen on the skin, a little above it: the fiducial and its number.
     """
 
     fiducial: Vector
     normal: Vector
-    number: Vector
-
-    @property
-    def target(self) -> Vector:
-        """What must be seen of the fiducial."""
-        return self._lifted(self.fiducial)
-
-    @property
-    def marks(self) -> tuple[Vector, Vector]:
-        """What must be seen on the skin: the fiducial and its number."""
-        return self.target, self._lifted(self.number)
-
-    def _lifted(self, place: Vector) -> Vector:
-        return add(place, scale(self.normal, OFF_SKIN_M))
+    marks: tuple[Vector, Vector]
 
 
 @dataclass(frozen=True)
@@ -182,7 +169,7 @@ def _hidden(point: ViewedPoint, held: HeldTool, eyes: np.ndarray) -> tuple[np.nd
     sight, number = held.sight, np.array(point.marks[1])
     hidden = (sight.off_tool(eyes, number) <= 0.0).astype(int)
     if distance(held.tip, point.fiducial) > AT_POINT_M:
-        hidden += sight.off_tool(eyes, np.array(point.target)) <= 0.0
+        hidden += sight.off_tool(eyes, np.array(point.marks[0])) <= 0.0
     if _is_near(point, held):
         lines = eyes - held.tip
         along_tool = -(lines @ held.direction) / np.linalg.norm(lines, axis=1)
@@ -203,7 +190,8 @@ def _eyes(point: ViewedPoint, front: Vector) -> list[Vector]:
     """
     ranked: list[tuple[float, Vector]] = []
     for elevation, azimuth in product(ELEVATIONS_DEG, AZIMUTHS_DEG):
-        line = _direction(azimuth, elevation)
+        turn, level = math.radians(azimuth), math.cos(math.radians(elevation))
+        line = level * math.cos(turn), level * math.sin(turn), math.sin(math.radians(elevation))
         off_normal = math.degrees(angle(line, point.normal))
         if off_normal > WIDEST_DEG:
             continue
@@ -214,28 +202,22 @@ def _eyes(point: ViewedPoint, front: Vector) -> list[Vector]:
     return [eye for _, eye in sorted(ranked)]
 
 
-def _direction(azimuth_deg: float, elevation_deg: float) -> Vector:
-    azimuth, elevation = math.radians(azimuth_deg), math.radians(elevation_deg)
-    level = math.cos(elevation)
-    return (level * math.cos(azimuth), level * math.sin(azimuth), math.sin(elevation))
-
-
 def _beside(point: ViewedPoint, postures: Sequence[HeldTool], eye: Vector) -> Vector | None:
     """Return an eye that looks along the skin, level and across the best view's line if possible.
 
     None where the head is always in between.
     """
-    sight = postures[0].sight
-    places = [each for each in _along_skin(point, eye) if sight.is_past_head(each, point.target)]
-    free = (each for each in places if all(_is_beside_seen(point, held, each) for held in postures))
+    sight, target = postures[0].sight, point.marks[0]
+    places = [each for each in _along_skin(point, eye) if sight.is_past_head(each, target)]
+
+    def is_seen(held: HeldTool, place: Vector) -> bool:
+        off_tool = angle(subtract(place, held.tip), scale(held.direction, -1.0))
+        is_side_on = off_tool >= math.radians(LEAST_OFF_TOOL_DEG) or not _is_near(point, held)
+        _target, _number, *shaft = _must_be_seen(point, held)
+        return is_side_on and all(held.sight.is_free(place, each) for each in (target, *shaft))
+
+    free = (each for each in places if all(is_seen(held, each) for held in postures))
     return next(free, places[0] if places else None)
-
-
-def _is_beside_seen(point: ViewedPoint, held: HeldTool, eye: Vector) -> bool:
-    off_tool = angle(subtract(eye, held.tip), scale(held.direction, -1.0))
-    is_side_on = off_tool >= math.radians(LEAST_OFF_TOOL_DEG) or not _is_near(point, held)
-    target, _number, *shaft = _must_be_seen(point, held)
-    return is_side_on and all(held.sight.is_free(eye, each) for each in (target, *shaft))
 
 
 def _along_skin(point: ViewedPoint, eye: Vector) -> list[Vector]:
@@ -284,9 +266,12 @@ class TouchViews:
             transforms.apply(pose, points / MM_PER_M)
             for points in (task.fiducials, np.array(placement.places))
         )
+        lifted = OFF_SKIN_M * normals
         self._points = {
-            label: ViewedPoint(*map(_vector, each))
-            for label, *each in zip(task.labels, places, normals, numbers, strict=True)
+            label: ViewedPoint(_vector(place), _vector(normal), (_vector(mark), _vector(number)))
+            for label, place, normal, mark, number in zip(
+                task.labels, places, normals, places + lifted, numbers + lifted, strict=True
+            )
         }
         self._views = {}
 

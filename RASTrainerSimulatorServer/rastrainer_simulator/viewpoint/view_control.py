@@ -233,7 +233,6 @@ class ViewControl:
             self.reset()
 
     def reset(self) -> None:
-        """Return to the scenario's camera."""
         self.orbit, self._travel, self.is_automatic = FRONT, None, False
 
     def turn(self, camera: Camera, around_deg: float, higher_deg: float, zoom: float) -> None:

@@ -48,7 +48,6 @@ class BestViews:
         return self._worker.submit(self._find, self._trial, label, q)
 
     def forget(self) -> None:
-        """Stop looking."""
         self._trial = None
 
     def _find(

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from concurrent.futures import Future
 from dataclasses import replace
+from importlib import import_module
+from pkgutil import iter_modules
 from types import MappingProxyType
 
 from rastrainer.procedure.record import UsedRegistration
@@ -12,11 +14,13 @@ from rastrainer.protocol import MAX_ASSIGNMENTS, AssignmentState, GoalKind, Phas
 from rastrainer.study.ratings import FORMS
 from rastrainer.study_messages import AssignmentStanding, CurriculumMessage, StudyStep
 from rastrainer.trial.trial_feedback import PastTrial
+from rastrainer_simulator.flow import pages
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.pages import (
     controls,
     experiment,
     introduction,
+    own_trials,
     procedure,
     result,
     start,
@@ -24,10 +28,11 @@ from rastrainer_simulator.flow.pages import (
     trial,
     trial_review,
 )
-from rastrainer_simulator.flow.pages.own_trials import MOST_TRIALS, OwnTrialsPage
-from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.pages.own_trials import MOST_TRIALS
+from rastrainer_simulator.flow.pages.session_page import PageKind, SessionPage
 from rastrainer_simulator.flow.pages.trainee_id import QuestionnairePage
 from rastrainer_simulator.flow.pages.trial import MatchReport
+from rastrainer_simulator.flow.session.open_pages import OpenPages
 from rastrainer_simulator.flow.session.preferences import InstructorLock
 from rastrainer_simulator.flow.session.trainee_history import OwnTrial
 from rastrainer_simulator.input.inputs import ControlName, InputDevice
@@ -171,7 +176,7 @@ def every_screen(presenter: FlowPresenter) -> dict[str, Screen]:
         session.pages.show(page)
         screens[page.name] = flow.screen()
     lock, session.lock = session.lock, InstructorLock(_SetPin())
-    session.pages.show(start.SettingsPage(session))
+    session.pages.show(start.settings_page(session))
     screens["locked settings"] = flow.screen()
     screens["somebody else's PIN"] = without_secrets(screens["pin"])
     # A view that does not operate is sent nothing else.
@@ -201,21 +206,28 @@ def _screens_of_raters(texts, language: str) -> dict[str, Screen]:
     """Return the pages of the form with the longest words, of the marks, and of waiting."""
     desk = _Desk(texts)
     form = FORMS["osats"]
-    pages = (
+    rater_pages = (
         DomainPage(desk, form, form.domains[-1]),
         RatedPage(desk),
         LoadingPage(desk, _Loading.trial),
     )
-    return {
-        page.name: Screen(menu=replace(page.menu(), focus=page.first), language=language)
-        for page in pages
-    }
+    screens = {}
+    for page in rater_pages:
+        open_pages = OpenPages(lambda _feedback: None)
+        open_pages.open(page)
+        screens[page.name] = Screen(menu=open_pages.menu(), language=language)
+    return screens
 
 
-def names_of_pages(base: type = SessionPage) -> set[str]:
+def names_of_pages() -> set[str]:
     """Return the names of all existing pages."""
-    below = (names_of_pages(page) for page in base.__subclasses__())
-    return ({base.name} if base.name else set()).union(*below)
+    modules = (
+        import_module(each.name) for each in iter_modules(pages.__path__, f"{pages.__name__}.")
+    )
+    found = [value for module in modules for value in vars(module).values()]
+    kinds = [value for value in found if isinstance(value, PageKind)]
+    classes = [v for v in found if isinstance(v, type) and issubclass(v, SessionPage) and v.name]
+    return {each.name for each in (*kinds, *classes)}
 
 
 def with_curriculum(session) -> None:
@@ -231,54 +243,54 @@ def with_curriculum(session) -> None:
         for number, state in enumerate(("reached", "locked") * ((MAX_ASSIGNMENTS - 1) // 2))
     ]
     longest = replace(assignment, procedure="biopsy", played=3, mark=70.0, weakest="distance")
-    session._services.curricula.take(
+    session.services.assigned.take_curriculum(
         CurriculumMessage("P07", "The first weeks " * 5, "long", (longest, *others))
     )
-    session.is_slicer_connected = lambda: True
+    session.services = replace(session.services, is_slicer_connected=lambda: True)
 
 
 def _pages(session) -> Iterator[SessionPage]:
     keys, touch = InputDevice.KEYBOARD, ControlName.TOUCH
-    for simple in (start.StartPage, start.QuitPage, start.SettingsPage):
+    for simple in (start.start_page, start.quit_page, start.settings_page):
         yield simple(session)
     yield start.PinPage(session)
     yield introduction.IntroductionPage(session)
-    yield controls.ControlsPage(session)
+    yield controls.controls_page(session)
     yield controls.PadTestPage(session)
     yield controls.BindingsPage(session)
     yield controls.ListenPage(session, keys, touch)
-    yield controls.ConflictPage(session, keys, touch, "KeyC")
+    yield controls.conflict_page(session, keys, touch, "KeyC")
     with_curriculum(session)
     yield experiment.ExperimentPage(session)
     yield experiment.AssignmentsPage(session)
     yield trainee_id.KeyboardPage(session, lambda *_: None)
-    yield trainee_id.ClickedIdPage(session, lambda *_: None)
-    yield trainee_id.CharacterPage(session, lambda *_: None, trainee_id.ROWS[0])
+    yield trainee_id.clicked_id_page(session, lambda *_: None)
+    yield trainee_id.character_page(session, lambda *_: None, trainee_id.ROWS[0])
     yield experiment.ScenarioPage(session)
     yield QuestionnairePage(session, QUESTIONNAIRE)
     for over_a_trial in (
-        trial.TrialPage,
+        trial.trial_page,
         trial.PreparingPage,
-        trial.AbortPage,
-        trial.PracticePage,
-        trial.CompletePage,
+        trial.abort_page,
+        trial.practice_page,
+        trial.complete_page,
     ):
         yield over_a_trial(session)
-    yield trial.MatchPage(session, _matched())
-    yield result.WaitingPage(session)
+    yield trial.match_page(session, _matched())
+    yield result.waiting_page(session)
     yield result.ResultPage(session)
     # No trial has been played here in which the point could lie.
     session.state = replace(session.state, training=replace(SCORED, touches=()))
     yield trial_review.ErrorsPage(session)
     session.state = replace(session.state, training=AT_PROCEDURE)
-    yield procedure.ProcedurePage(session)
+    yield procedure.procedure_page(session)
     session.state = replace(session.state, training=PROCEDURE_SCORED)
     yield procedure.ProcedureErrorsPage(session)
     yield procedure.ProcedureLinesPage(session)
     session.state = replace(session.state, training=SCORED)
-    yield introduction.TutorialPage(session)
-    yield introduction.TutorialDonePage(session, LEARNED)
-    yield introduction.PracticedPage(session, LEARNED)
+    yield introduction.tutorial_page(session)
+    yield introduction.tutorial_done_page(session, LEARNED)
+    yield introduction.practiced_page(session, LEARNED)
     session.history.own = lambda _trainee: OWN_TRIALS
-    yield OwnTrialsPage(session)
+    yield own_trials.own_trials_page(session)
     yield trial_review.ReplayPage(session, _Loading(), begins_at_worst=False)

@@ -34,6 +34,6 @@ class FlowLearner:
 
     def _next(self):
         practice = self.trainee.presenter._session.tutorial.practice
-        truth = practice.truth
-        point = truth.in_world(truth.fiducials_ras[practice.state.next_point]) / MM_PER_M
+        truth = practice.training.truth
+        point = truth.in_world(truth.fiducials_ras[practice.training.state.next_point]) / MM_PER_M
         return point, truth.in_world(truth.target_ras) / MM_PER_M

@@ -8,8 +8,8 @@ import pytest
 
 from rastrainer.protocol import FREE, TRIAL_RUN, AssignmentState, GoalKind
 from rastrainer.study_messages import AssignmentStanding, CurriculumMessage, StudyStep
-from rastrainer_simulator.flow.pages.result import FinishedPage
-from rastrainer_simulator.flow.session.assigned_training import MAX_TRAINEES, Curricula
+from rastrainer_simulator.flow.pages.result import waiting_page
+from rastrainer_simulator.flow.session.assigned_training import MAX_TRAINEES, AssignedTraining
 from rastrainer_simulator.flow.session.session import REACHED_S
 from rastrainer_simulator.presentation.screen import Tone
 from Testing.simulator.flow.trainee import STEP_S
@@ -59,7 +59,7 @@ def menu(trainee, outside):
     outside.has_slicer = True
     session = trainee.presenter._session
     session.progress.note("P07", session.scenario.name, TRIAL_RUN)
-    outside.services.curricula.take(TOLD)
+    outside.services.assigned.take_curriculum(TOLD)
     trainee.go_to_experiment("P07")
     trainee.step(20)
     return trainee
@@ -115,16 +115,16 @@ def test_an_assignment_begins_its_trial_in_its_mode(page):
 def test_after_a_trial_the_next_assignment_is_offered_instead_of_the_next_task(page, outside):
     page.choose("assignment one")
     page.until_menu(None)
-    finished = FinishedPage(page.presenter._session)
-    offered = {row.item.name: row.item.label for row in finished.onward()}
+    finished = waiting_page(page.presenter._session)
+    offered = {row.item.name: row.item.label for row in finished.content().rows}
     assert offered["next"] == "Next: Task 2"
-    outside.services.curricula.take(replace(TOLD, next="four"))
-    offered = {row.item.name: row.item.label for row in finished.onward()}
+    outside.services.assigned.take_curriculum(replace(TOLD, next="four"))
+    offered = {row.item.name: row.item.label for row in finished.content().rows}
     assert offered["next"] == "Next: Task 4 · Headset"
     finished.back()
-    assert page.presenter._session.pages.top.first == "assignments"
-    outside.services.curricula.take(replace(TOLD, next=""))
-    assert "next" not in [row.item.name for row in finished.onward()]
+    assert page.presenter._session.pages.top.content().first == "assignments"
+    outside.services.assigned.take_curriculum(replace(TOLD, next=""))
+    assert "next" not in [row.item.name for row in finished.content().rows]
 
 
 def test_a_locked_task_waits_for_its_gate_and_an_open_one_for_no_earlier_task(menu):
@@ -135,11 +135,11 @@ def test_a_locked_task_waits_for_its_gate_and_an_open_one_for_no_earlier_task(me
 
 
 def test_a_study_takes_precedence_over_a_curriculum(menu, outside):
-    outside.services.study.take(StudyStep("P07", "trial", 3, 19, "task-3", "desktop"))
+    outside.services.assigned.take_step(StudyStep("P07", "trial", 3, 19, "task-3", "desktop"))
     menu.step(20)
     assert "assignments" not in [item.name for item in menu.menu.items]
     assert menu.item("task-3").is_enabled
-    outside.services.study.take(StudyStep("P07", FREE))
+    outside.services.assigned.take_step(StudyStep("P07", FREE))
     menu.step(20)
     assert menu.item("assignments").is_enabled
 
@@ -152,7 +152,7 @@ def test_without_slicer_nothing_is_locked_and_nothing_is_announced(menu, outside
 
 
 def test_the_page_closes_when_the_curriculum_ends(page, outside):
-    outside.services.curricula.take(CurriculumMessage("P07"))
+    outside.services.assigned.take_curriculum(CurriculumMessage("P07"))
     page.until_menu("experiment")
 
 
@@ -160,12 +160,12 @@ def test_later_updates_from_slicer_are_shown_at_once(page, outside):
     reached = replace(TOLD.assignments[1], state=REACHED, done=3)
     three = replace(TOLD.assignments[2], state=OPEN, missing=(), done=40)
     assignments = (TOLD.assignments[0], reached, three)
-    outside.services.curricula.take(replace(TOLD, next="three", assignments=assignments))
+    outside.services.assigned.take_curriculum(replace(TOLD, next="three", assignments=assignments))
     page.step(20)
     assert [item.value for item in page.menu.items[:3]] == ["reached", "reached", "40 %"]
     assert "Next: Task 3, which you have not played yet." in page.menu.paragraphs
     assert "show competence (LC-CUSUM)" in page.item("assignment three").help
-    outside.services.curricula.take(replace(TOLD, next="", assignments=assignments[:2]))
+    outside.services.assigned.take_curriculum(replace(TOLD, next="", assignments=assignments[:2]))
     page.step(20)
     assert page.presenter.seat().assignments == "2 of 2 reached"
     assert "All assignments are reached." in page.menu.paragraphs
@@ -178,27 +178,27 @@ def said(menu):
 def test_a_reached_assignment_is_announced_once_and_only_to_its_own_trainee(menu, outside):
     two = replace(TOLD.assignments[1], state=REACHED, done=3)
     reached = replace(TOLD, assignments=(TOLD.assignments[0], two, *TOLD.assignments[2:]))
-    outside.services.curricula.take(replace(reached, trainee="P08"))
+    outside.services.assigned.take_curriculum(replace(reached, trainee="P08"))
     menu.presenter.on_text(1, "trainee", "P08")
     menu.step(20)
     menu.presenter.on_text(1, "trainee", "P07")
     menu.step(20)
     assert said(menu) == []
-    outside.services.curricula.take(reached)
+    outside.services.assigned.take_curriculum(reached)
     menu.step(20)
     assert said(menu) == [("Reached: Task 2.", Tone.GOOD)]
     menu.step(round((REACHED_S + 1.0) / STEP_S))
     assert said(menu) == []
-    outside.services.curricula.take(replace(reached, title="The same"))
+    outside.services.assigned.take_curriculum(replace(reached, title="The same"))
     menu.step(20)
     assert said(menu) == []
 
 
 def test_of_too_many_trainees_the_oldest_is_forgotten():
-    curricula = Curricula()
+    assigned = AssignedTraining()
     for number in range(MAX_TRAINEES + 1):
-        curricula.take(replace(TOLD, trainee=f"P{number}"))
-    assert curricula.of("P0") is None
-    assert curricula.of("P1") is not None
-    curricula.take(CurriculumMessage("P1"))
-    assert curricula.of("P1") is None
+        assigned.take_curriculum(replace(TOLD, trainee=f"P{number}"))
+    assert assigned.curricula.get("P0") is None
+    assert assigned.curricula.get("P1") is not None
+    assigned.take_curriculum(CurriculumMessage("P1"))
+    assert assigned.curricula.get("P1") is None

@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from rastrainer_simulator.flow.pages.controls import ControlsPage
+from rastrainer_simulator.flow.pages.controls import controls_page
 from rastrainer_simulator.flow.running_presenter import RunningPresenter
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, DEFAULT_BINDINGS, read_bindings
 from rastrainer_simulator.input.controls import IDLE_S
@@ -215,7 +215,7 @@ def test_pressing_nothing_leaves_the_bindings_unchanged(trainee):
 
 
 def test_without_a_gamepad_the_keyboard_is_explained_with_the_direction_of_each_key(presenter):
-    presenter._session.pages.open(ControlsPage(presenter._session))
+    presenter._session.pages.open(controls_page(presenter._session))
     menu = presenter._session.pages.menu()
     assert menu.picture == "keyboard"
     assert [(fact.label, fact.value) for fact in menu.facts[:3]] == [

@@ -92,7 +92,7 @@ def place(lab):
     if lab.state.training.phase in OPEN_PHASES:
         assert lab.submit("Abort").ok
     lab.prefer(ghost="off", expert="")
-    lab.outside.services.study.take(StudyStep("P07", FREE))
+    lab.outside.services.assigned.take_step(StudyStep("P07", FREE))
 
 
 def on_the_head(head_to_world, tool_to_world):
@@ -168,7 +168,7 @@ def test_the_trainee_sees_a_message_if_there_is_no_acceptable_trial(place, task,
 def test_in_a_study_a_ghost_is_shown_only_if_its_protocol_says_so(place, ghost, noted):
     place.prefer(ghost="expert", expert="P07")
     step = StudyStep("P07", "trial", task="task-1", ghost=ghost)
-    place.outside.services.study.take(step)
+    place.outside.services.assigned.take_step(step)
     place.start_and_load()
     place.step(5)
     assert (place.ghost is not None) is bool(ghost)

@@ -91,10 +91,18 @@ def test_the_right_stick_tilts_once_its_hint_has_been_clicked(clicking):
     session, presenter = clicking.presenter._session, clicking.presenter
     session.screen_sticks.is_shown = True
     presenter.on_sticks(VIEW, (0.0, 0.0, 0.5), (0.2, 0.0), False, 0.0)
-    assert (session.held.translation, session.held.rotation) == ((0.0, 0.0, 0.5), (0.2, 0.0))
+    held = session.controls.held
+    assert (held.translation, held.rotation) == (
+        (0.0, 0.0, 0.5),
+        (0.2, 0.0),
+    )
     presenter.on_item(VIEW, "press tilt")
     presenter.on_sticks(VIEW, (0.0, 0.0, 0.5), (0.2, 0.0), False, 0.0)
-    assert (session.held.translation, session.held.rotation) == ((0.0, 0.0, 0.0), (0.2, 0.5))
+    held = session.controls.held
+    assert (held.translation, held.rotation) == (
+        (0.0, 0.0, 0.0),
+        (0.2, 0.5),
+    )
 
 
 def test_a_trainee_with_a_gamepad_is_not_shown_mouse_controls(pilot):

@@ -116,7 +116,7 @@ def test_the_simulator_scores_nothing_with_slicer_connected_or_a_study_running(t
     assert "3D Slicer is scoring" in trainee.menu.paragraphs[0]
     trainee.choose("menu")
     trainee.until_menu("experiment")
-    outside.services.study.take(StudyStep("P07", "trial", 1, 9, "task-1", "desktop"))
+    outside.services.assigned.take_step(StudyStep("P07", "trial", 1, 9, "task-1", "desktop"))
     outside.has_slicer = False
     trial_of_study = register(trainee)
     # Longer than the wait for a lost connection.
@@ -180,7 +180,7 @@ def feed(trainee, to_mm):
 
 def test_without_slicer_the_simulator_registers_and_scores_a_procedure(trainee, outside):
     # A running study keeps it from scoring alone; registering reveals nothing.
-    outside.services.study.take(StudyStep("P07", "trial", 1, 9, "task-1", "desktop"))
+    outside.services.assigned.take_step(StudyStep("P07", "trial", 1, 9, "task-1", "desktop"))
     # While a Slicer is connected, it is the one that registers.
     outside.has_slicer = True
     trial = to_verifying(trainee)
@@ -203,7 +203,7 @@ def test_without_slicer_the_simulator_registers_and_scores_a_procedure(trainee, 
     trainee.until_menu("waiting")
     trainee.step(150)
     assert entries_of(outside, trial, "registration") == []
-    outside.services.study.take(StudyStep("P07", FREE))
+    outside.services.assigned.take_step(StudyStep("P07", FREE))
     trainee.until_menu("result")
     (submitted,) = entries_of(outside, trial, "registration")
     assert submitted == used["arguments"]

@@ -6,10 +6,10 @@ import math
 
 import pytest
 
-from rastrainer_simulator.flow.arm_screen import PathArc, direction_words
+from rastrainer_simulator.flow.arm_screen import direction_words, off_path
 from rastrainer_simulator.teleoperation.steering import ROBOT_AXES
 
-PATH = PathArc(center=(0.5, 0.0, 0.2), start=(0.6, 0.0, 0.2), end=(0.5, 0.1, 0.2))
+PATH = {"center": (0.5, 0.0, 0.2), "start": (0.6, 0.0, 0.2), "end": (0.5, 0.1, 0.2)}
 
 
 def around(angle_deg, height=0.0, lift=1.0):
@@ -21,24 +21,24 @@ def around(angle_deg, height=0.0, lift=1.0):
 @pytest.mark.parametrize("angle_deg", [0, 20, 45, 90])
 @pytest.mark.parametrize("lift", [1.0, 1.5])
 def test_on_the_arc_the_tip_is_on_the_path_at_any_height(angle_deg, lift):
-    assert PATH.beside(around(angle_deg, lift=lift)) == pytest.approx(0.0, abs=1e-6)
+    assert off_path(around(angle_deg, lift=lift), **PATH) == pytest.approx(0.0, abs=1e-6)
 
 
 def test_beside_the_arc_the_deviation_is_the_distance_along_the_head():
     # On a sphere of 0.1 m, 0.3 rad from the arc's plane: 0.03 m.
     tip = (0.5 + 0.1 * math.cos(0.3) * math.cos(0.7), 0.1 * math.cos(0.3) * math.sin(0.7))
-    assert PATH.beside((*tip, 0.2 + 0.1 * math.sin(0.3))) == pytest.approx(0.03)
+    assert off_path((*tip, 0.2 + 0.1 * math.sin(0.3)), **PATH) == pytest.approx(0.03)
 
 
 def test_before_the_start_and_past_the_end_the_nearer_end_counts():
-    assert PATH.beside(around(-30)) == pytest.approx(0.1 * math.radians(30))
-    assert PATH.beside(around(120)) == pytest.approx(0.1 * math.radians(30))
-    assert PATH.beside(around(-180)) == pytest.approx(0.1 * math.radians(90))
+    assert off_path(around(-30), **PATH) == pytest.approx(0.1 * math.radians(30))
+    assert off_path(around(120), **PATH) == pytest.approx(0.1 * math.radians(30))
+    assert off_path(around(-180), **PATH) == pytest.approx(0.1 * math.radians(90))
 
 
 def test_a_path_of_zero_length_is_a_point():
-    path = PathArc(PATH.center, PATH.start, PATH.start)
-    assert path.beside(around(40)) == pytest.approx(0.1 * math.radians(40))
+    path = {**PATH, "end": PATH["start"]}
+    assert off_path(around(40), **path) == pytest.approx(0.1 * math.radians(40))
 
 
 @pytest.mark.parametrize(

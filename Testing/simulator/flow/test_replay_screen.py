@@ -286,15 +286,15 @@ def test_a_headset_steps_through_a_replay_by_stick_and_leaves_with_the_back_butt
 
 
 def test_the_result_says_what_a_study_asks_for_next_and_offers_nothing_else(result):
-    study = result.outside.services.study
-    study.take(StudyStep("P07", "break", 4, 9, minutes=5.0))
+    study = result.outside.services.assigned
+    study.take_step(StudyStep("P07", "break", 4, 9, minutes=5.0))
     result.step(20)
     assert result.menu.facts[0].value.startswith("81 / 100")
     paragraph = result.menu.paragraphs[-1]
     assert paragraph.startswith("Step 4 of 9: take a break of at least 5 minutes, 0")
     names = [item.name for item in result.menu.items]
     assert names == ["errors", "worst", "replay", "menu"]
-    study.take(StudyStep("P07", "trial", 5, 9, "task-2", "desktop"))
+    study.take_step(StudyStep("P07", "trial", 5, 9, "task-2", "desktop"))
     result.step(20)
     assert result.menu.paragraphs[-1] == "Step 5 of 9: play Task 2 on the desktop screen."
     assert [item.label for item in result.menu.items] == [
@@ -304,7 +304,7 @@ def test_the_result_says_what_a_study_asks_for_next_and_offers_nothing_else(resu
         "Show the trial again",
         "Experiment menu",
     ]
-    study.take(StudyStep("P07", FREE))
+    study.take_step(StudyStep("P07", FREE))
     result.step(20)
     assert not any(paragraph.startswith("Step") for paragraph in result.menu.paragraphs)
 

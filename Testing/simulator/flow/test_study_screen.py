@@ -9,7 +9,11 @@ import pytest
 from rastrainer.protocol import FREE, RegistrationMethod
 from rastrainer.study.protocol.steps import StepAnswers
 from rastrainer.study_messages import StudyStep
-from rastrainer_simulator.flow.session.assigned_training import ANSWERED, MAX_TRAINEES, StudySteps
+from rastrainer_simulator.flow.session.assigned_training import (
+    ANSWERED,
+    MAX_TRAINEES,
+    AssignedTraining,
+)
 from rastrainer_simulator.flow.session.chosen_trial import registration_method, start_task
 
 TASK_2 = StudyStep("P07", "trial", 3, 19, "task-2", "desktop")
@@ -18,8 +22,8 @@ TASK_2 = StudyStep("P07", "trial", 3, 19, "task-2", "desktop")
 @pytest.fixture
 def guide(outside):
     """What Slicer sends about the study, while no time of a break passes."""
-    outside.services.study._clock = lambda: 100.0
-    return outside.services.study
+    outside.services.assigned._clock = lambda: 100.0
+    return outside.services.assigned
 
 
 @pytest.fixture
@@ -38,7 +42,7 @@ def enabled(menu):
 
 def tell(menu, guide, step):
     """Process a message from Slicer, and wait until the menu can show it."""
-    guide.take(step)
+    guide.take_step(step)
     menu.step(20)
 
 
@@ -117,7 +121,7 @@ def test_the_trial_run_ends_with_the_studys_minutes_even_if_slicer_has_moved_on(
     tell(menu, guide, replace(TRIAL_RUN, over=7.99))
     menu.choose("trial-run")
     menu.until_menu(None)
-    guide.take(TASK_2)
+    guide.take_step(TASK_2)
     menu.until_menu("practice")
     assert "end the trial run to continue the study" in menu.menu.paragraphs[0]
     menu.choose("finish")
@@ -149,11 +153,11 @@ def test_a_questionnaire_is_answered_line_by_line_and_submitted_only_when_comple
     for number in range(1, 10):
         mark(form, number, "right", "right")
     assert not form.item("keep").is_enabled
-    assert guide.unacknowledged_answers() == ()
+    assert tuple(guide.answers.values()) == ()
     mark(form, 10, "left", "left", "left")
     form.choose("keep")
     form.until_menu("experiment")
-    (answers,) = guide.unacknowledged_answers()
+    (answers,) = tuple(guide.answers.values())
     assert answers == StepAnswers("P07", 5, "sus", (2,) * 9 + (3,))
     assert form.menu.paragraphs == (
         "Your answers to SUS are on their way to 3D Slicer, which will say what comes next.",
@@ -179,17 +183,17 @@ def test_the_performance_line_says_that_its_ends_differ_from_the_others(
 
 
 def test_answers_wait_until_slicer_moves_on_and_are_then_forgotten(guide):
-    guide.take(SUS)
+    guide.take_step(SUS)
     guide.answer("P07", [3] * 10)
-    guide.take(SUS)
-    assert [answers.number for answers in guide.unacknowledged_answers()] == [5]
-    assert guide.step_of("P07").kind == ANSWERED
-    guide.take(TASK_2)
-    assert (guide.unacknowledged_answers(), guide.step_of("P07")) == ((), TASK_2)
+    guide.take_step(SUS)
+    assert [answers.number for answers in tuple(guide.answers.values())] == [5]
+    assert guide.steps.get("P07").kind == ANSWERED
+    guide.take_step(TASK_2)
+    assert (tuple(guide.answers.values()), guide.steps.get("P07")) == ((), TASK_2)
 
 
 def test_a_form_closes_when_the_study_moves_on_without_it(form, guide):
-    guide.take(TASK_2)
+    guide.take_step(TASK_2)
     form.until_menu("experiment")
     assert enabled(form) == ["task-2"]
 
@@ -203,8 +207,8 @@ def test_a_questionnaire_unknown_to_this_version_is_reported(menu, guide):
 
 def test_a_break_counts_down_from_the_elapsed_time_slicer_sent():
     now = [100.0]
-    guide = StudySteps(lambda: now[0])
-    guide.take(StudyStep("P07", "break", 4, 9, minutes=10.0, over=4.0))
+    guide = AssignedTraining(lambda: now[0])
+    guide.take_step(StudyStep("P07", "break", 4, 9, minutes=10.0, over=4.0))
     now[0] += 59.0
     assert guide.break_left_s("P07") == 301.0
     now[0] += 600.0
@@ -223,11 +227,11 @@ def test_a_requested_trial_is_not_started_twice_before_slicer_sends_the_next_ste
 
 
 def test_the_oldest_steps_are_forgotten_beyond_the_limit():
-    guide = StudySteps()
+    guide = AssignedTraining()
     for number in range(MAX_TRAINEES + 5):
-        guide.take(StudyStep(f"P{number}", "all-done", 1, 1))
-    assert guide.step_of("P4") is None
-    assert guide.step_of("P5") is not None
+        guide.take_step(StudyStep(f"P{number}", "all-done", 1, 1))
+    assert guide.steps.get("P4") is None
+    assert guide.steps.get("P5") is not None
 
 
 def test_a_study_trial_is_registered_by_the_method_of_its_protocol(menu, guide):
@@ -255,6 +259,6 @@ def test_a_study_trial_has_the_skin_of_its_protocol(menu, guide):
     assert menu.menu == known
     start_task(session, "task-2")
     menu.until_menu(None)
-    truth = session._control_loop.truth
+    truth = session.control_loop.truth
     assert truth.skin.amounts == skin
     assert truth.skin.seed > 0

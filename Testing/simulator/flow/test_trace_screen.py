@@ -13,7 +13,7 @@ from rastrainer.protocol import MIN_TRACE_POINTS, Phase, RegistrationMethod
 from rastrainer.registration.surface_error import COVERED_MM
 from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.flow.pages.trial import MatchPage, MatchReport, match_report
+from rastrainer_simulator.flow.pages.trial import MatchReport, match_page, match_report
 from rastrainer_simulator.flow.session.chosen_trial import registration_method, start_task
 from rastrainer_simulator.presentation.presenter import TraceGuidance
 from rastrainer_simulator.state import TrainingState
@@ -166,7 +166,7 @@ def register_matched(trainee):
     """Accept a match that is known, of a trial whose trace can be registered."""
     session = trainee.presenter._session
     matched = Future()
-    session.pages.show(MatchPage(session, matched))
+    session.pages.show(match_page(session, matched))
     trainee.until_menu("match")
     assert not trainee.item("accept").is_enabled
     matched.set_result(MatchReport(0.42, 0.97, 0.31, (0.05, 1.2), 1.1))

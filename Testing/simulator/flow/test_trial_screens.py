@@ -243,7 +243,7 @@ def test_guidance_fades_from_task_to_task_unless_the_setting_says_otherwise(
 
 
 def test_a_study_sets_its_own_guidance(trainee, outside):
-    outside.services.study.take(StudyStep("P07", "trial", task="task-1", guidance="none"))
+    outside.services.assigned.take_step(StudyStep("P07", "trial", task="task-1", guidance="none"))
     trainee.start("task-1", "P07")
     assert not trainee.presenter.screen.has_arrow
 

@@ -108,7 +108,7 @@ def test_the_tutorial_is_played_and_leads_to_the_trial_run(who, device, says, re
     assert says[0] in read[TutorialStep.RIGHT]
     assert says[1] in read[TutorialStep.TURN_VIEW]
     assert trainee.menu.name == "tutorial-done"
-    finished = FinishedTutorials(outside.services.records).latest("P07")
+    finished = FinishedTutorials(outside.services.records).latest.get("P07")
     assert (finished.device, finished.mode, finished.trainee) == (device.value, "desktop", "P07")
     assert 5.0 < finished.duration_s < 60.0
     assert set(finished.step_times_s) == {step.value for step, _ in player.read}
@@ -307,7 +307,7 @@ def test_if_so_configured_the_trial_run_does_not_wait_for_the_tutorial(trainee, 
 
 def test_a_study_decides_by_its_protocol_whether_the_tutorial_is_required(menu, outside):
     def offered(step):
-        outside.services.study.take(step)
+        outside.services.assigned.take_step(step)
         menu.step(20)
         return {item.name: item.is_enabled for item in menu.menu.items if "t" in item.name}
 
@@ -393,7 +393,7 @@ def test_a_finished_tutorial_is_remembered_per_device(tmp_path):
     tutorials.keep(LEARNED)
     tutorials.keep(replace(LEARNED, trainee="P08", device="gamepad"))
     again = FinishedTutorials(tmp_path / "records")
-    assert again.latest("P07") == LEARNED
+    assert again.latest.get("P07") == LEARNED
     known = [
         (name, device.value)
         for name in ("P07", "P08", "P09")
@@ -420,7 +420,7 @@ def test_a_file_that_does_not_hold_a_tutorial_counts_for_nothing(tmp_path, chang
     (tmp_path / "1.tutorial").write_text(json.dumps(values))
     (tmp_path / "2.tutorial").write_text("[")
     (tmp_path / "3.tutorial").mkdir()
-    assert FinishedTutorials(tmp_path).latest(values["trainee"]) is None
+    assert FinishedTutorials(tmp_path).latest.get(values["trainee"]) is None
 
 
 def test_a_tutorial_that_cannot_be_saved_counts_until_the_simulator_ends(learner, outside):

@@ -103,7 +103,8 @@ class SightFrom:
 def test_the_view_along_the_skin_rises_or_falls_by_at_most_45_degrees(normal):
     fiducial = (0.5, 0.1, 0.3)
     eyes = np.array([np.add(fiducial, 0.5 * np.array(normal))])
-    views = PointViews(ViewedPoint(fiducial, normal, fiducial), eyes, None)
+    mark = tuple(np.add(fiducial, 0.002 * np.array(normal)).tolist())
+    views = PointViews(ViewedPoint(fiducial, normal, (mark, mark)), eyes, None)
 
     def beside(least_deg, most_deg):
         held = HeldTool((0.5, 0.1, 0.9), (0.0, 0.0, -1.0), SightFrom(least_deg, most_deg))

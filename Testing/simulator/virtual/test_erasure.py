@@ -41,7 +41,7 @@ def test_no_byte_of_the_trainees_data_is_left(copied, tmp_path, capsys):
         assert word not in left
     assert b"V0001" in left
     again = FinishedTutorials(copied / RECORDS)
-    assert (again.latest("V0001") is None, again.latest("V0002")) == (False, None)
+    assert (again.latest.get("V0001") is None, again.latest.get("V0002")) == (False, None)
     assert len(journals(copied / RECORDS)) == 2
 
 

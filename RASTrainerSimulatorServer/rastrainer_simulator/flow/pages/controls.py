@@ -7,7 +7,7 @@ import math
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
-from rastrainer_simulator.flow.pages.session_page import SessionPage, stepped
+from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind, stepped
 from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
@@ -43,35 +43,29 @@ REMEMBERED = 4
 """Number of inputs shown on the page to try them."""
 
 
-class ControlsPage(SessionPage):
-    """Which input does what, on the device in the reader's hands."""
+@page_kind("controls")
+def controls_page(page: SessionPage, leads_on: bool = False) -> PageContent:
+    """Show which input does what, on the device in the reader's hands."""
+    session, operator = page.session, page.session.operator
 
-    name = "controls"
+    def lead_on() -> None:
+        session.has_read_introduction = True
+        session.pages.replace(ExperimentPage(session))
 
-    def __init__(self, session: TrainingSession, leads_on: bool = False) -> None:
-        super().__init__(session)
-        self._leads_on = leads_on
-
-    def content(self) -> PageContent:
-        operator = self.session.operator
-        # Two directions of a stick identify it; a key has only one.
-        most = len(ControlName) if operator.kind is InputDevice.KEYBOARD else 2
-        facts = [
-            Fact(self.say(f"controls.{key}"), " / ".join(map(operator.label, controls[:most])))
-            for key, controls in _LISTED
-        ]
-        rows = (
-            *((self.button("next", self._lead_on),) if self._leads_on else ()),
-            self.button("test", self.open_page(PadTestPage)),
-            self.button("rebind", self.open_page(BindingsPage)),
-            self.button("back"),
-        )
-        title, text = self.say("controls.title"), self.say("controls.text")
-        return PageContent(title, (text,), facts, rows, operator.picture)
-
-    def _lead_on(self) -> None:
-        self.session.has_read_introduction = True
-        self.session.pages.replace(ExperimentPage(self.session))
+    # Two directions of a stick identify it; a key has only one.
+    most = len(ControlName) if operator.kind is InputDevice.KEYBOARD else 2
+    facts = [
+        Fact(page.say(f"controls.{key}"), " / ".join(map(operator.label, controls[:most])))
+        for key, controls in _LISTED
+    ]
+    rows = (
+        *((page.button("next", lead_on),) if leads_on else ()),
+        page.button("test", page.open_page(PadTestPage)),
+        page.button("rebind", page.open_page(BindingsPage)),
+        page.button("back"),
+    )
+    said = (page.say("controls.text"),)
+    return PageContent(page.say("controls.title"), said, facts, rows, operator.picture)
 
 
 class PadTestPage(SessionPage):
@@ -84,37 +78,36 @@ class PadTestPage(SessionPage):
         self._pressed: list[tuple[InputDevice, str]] = []
 
     def content(self) -> PageContent:
-        held = self.session.held
+        held = self.session.controls.held
         pairs = zip((*TRANSLATION, *ROTATION), (*held.translation, *held.rotation), strict=True)
-        axes = (self._axis(number, *pair) for number, pair in enumerate(pairs))
+        axes = (
+            self.button(
+                f"axis{number}",
+                label=" / ".join(self.say(f"control.{control.value}") for control in controls),
+                kind=ItemKind.AXIS,
+                value=f"{position:.2f}",
+                is_enabled=False,
+            )
+            for number, (controls, position) in enumerate(pairs)
+        )
         fine = Fact(self.say("control.fine"), self.say("test.yes" if held.fine else "test.no"))
-        facts = (fine, *(Fact(*self._input(*pressed)) for pressed in self._pressed))
+        facts = (fine, *(self._input(*pressed) for pressed in self._pressed))
         text = self.say("test.text", menu=self.session.operator.label(ControlName.MENU))
         return PageContent(self.say("test.title"), (text,), facts, (*axes, self.button("back")))
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """Show an input, and let it be felt."""
-        if name in self.session.bindings.table(device)[ControlName.MENU]:
+        if name in self.session.controls.bindings.table(device)[ControlName.MENU]:
             return False
         self._pressed = [(device, name), *self._pressed][:REMEMBERED]
         self.session.happened(FeedbackEvent.TEST)
         return True
 
-    def _axis(self, number: int, pair: tuple[ControlName, ControlName], position: float) -> PageRow:
-        label = " / ".join(self.say(f"control.{control.value}") for control in pair)
-        return self.button(
-            f"axis{number}",
-            label=label,
-            kind=ItemKind.AXIS,
-            value=f"{position:.2f}",
-            is_enabled=False,
-        )
-
-    def _input(self, device: InputDevice, name: str) -> tuple[str, str]:
-        table = self.session.bindings.table(device)
+    def _input(self, device: InputDevice, name: str) -> Fact:
+        table = self.session.controls.bindings.table(device)
         works = [control for control, inputs in table.items() if name in inputs]
         names = self.session.texts.listed(self.say(f"control.{each.value}") for each in works)
-        return self.session.operator.input_label(device, name), names or self.say("test.nothing")
+        label = self.session.operator.input_label(device, name)
+        return Fact(label, names or self.say("test.nothing"))
 
 
 GROUPS = {
@@ -137,47 +130,42 @@ class BindingsPage(SessionPage):
         self._group = "work"
 
     def content(self) -> PageContent:
-        device = self.say(f"device.{self._device.value}")
-        preset = self.say(f"bindings.preset.{self._preset or 'own'}")
-        group = self.say(f"bindings.group.{self._group}")
+        session, device = self.session, self._device
+        preset = preset_name(device, session.controls.bindings.table(device))
+
+        def step_device(direction: int) -> None:
+            self._device = stepped(tuple(InputDevice), device, direction)
+
+        def step_preset(direction: int) -> None:
+            presets = presets_of(device)
+            names = tuple(presets)
+            name = names[0] if preset is None else stepped(names, preset, direction)
+            changed = {device.value: presets[name]}
+            session.rebind(dataclasses.replace(session.controls.bindings, **changed))
+
+        def step_group(direction: int) -> None:
+            self._group = stepped(tuple(GROUPS), self._group, direction)
+
+        def restore_defaults() -> None:
+            session.rebind(DEFAULT_BINDINGS)
+            session.notices.add(self.say("bindings.are default"))
+
+        def control_row(control: ControlName) -> PageRow:
+            table = session.controls.bindings.table(device)
+            inputs = (session.operator.input_label(device, name) for name in table[control])
+            listen = self.open_page(ListenPage, device, control)
+            label = self.say(f"control.{control.value}")
+            return self.button(control.value, listen, label, value=session.texts.listed(inputs))
+
         rows = (
-            self.choice("device", device, self._step_device),
-            self.choice("preset", preset, self._step_preset),
-            self.choice("group", group, self._step_group),
-            *map(self._control, GROUPS[self._group]),
-            self.button("defaults", self._restore_defaults),
+            self.choice("device", self.say(f"device.{device.value}"), step_device),
+            self.choice("preset", self.say(f"bindings.preset.{preset or 'own'}"), step_preset),
+            self.choice("group", self.say(f"bindings.group.{self._group}"), step_group),
+            *map(control_row, GROUPS[self._group]),
+            self.button("defaults", restore_defaults),
             self.button("back"),
         )
         return PageContent(self.say("bindings.title"), rows=rows)
-
-    def _restore_defaults(self) -> None:
-        self.session.rebind(DEFAULT_BINDINGS)
-        self.session.notices.add(self.say("bindings.are default"))
-
-    def _step_device(self, direction: int) -> None:
-        self._device = stepped(tuple(InputDevice), self._device, direction)
-
-    def _step_group(self, direction: int) -> None:
-        self._group = stepped(tuple(GROUPS), self._group, direction)
-
-    @property
-    def _preset(self) -> str | None:
-        return preset_name(self._device, self.session.bindings.table(self._device))
-
-    def _step_preset(self, direction: int) -> None:
-        presets = presets_of(self._device)
-        names = tuple(presets)
-        name = names[0] if self._preset is None else stepped(names, self._preset, direction)
-        changed = {self._device.value: presets[name]}
-        self.session.rebind(dataclasses.replace(self.session.bindings, **changed))
-
-    def _control(self, control: ControlName) -> PageRow:
-        """Return a control with its inputs; accepting it waits for a new one."""
-        inputs = self.session.operator.input_labels(self._device, control)
-        listen = self.open_page(ListenPage, self._device, control)
-        return self.button(
-            control.value, listen, self.say(f"control.{control.value}"), value=inputs
-        )
 
 
 class ListenPage(SessionPage):
@@ -199,64 +187,52 @@ class ListenPage(SessionPage):
         return PageContent(title, (text,), rows=(self.button("cancel"),))
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """Assign the input, or ask what to do about the control that has it now."""
         if device is not self._device:
             return False
-        session = self.session
-        others = session.bindings.others(device, self._control, name)
-        if others:
-            page = ConflictPage(session, device, self._control, name)
-            session.pages.replace(page)
+        session, wanted = self.session, (device, self._control, name)
+        if session.controls.bindings.others(*wanted):
+            session.pages.replace(conflict_page(session, *wanted))
         else:
             session.pages.close()
-            rebind(session, device, self._control, name)
+            rebind(session, *wanted)
         return True
 
     def advance(self, dt: float) -> None:
-        """Give up after some time."""
         self._left -= dt
         if self._left <= 0.0:
             self.back()
 
 
-class ConflictPage(SessionPage):
-    """The input already belongs to another control: the two are exchanged, or nothing changes."""
+@page_kind("conflict")
+def conflict_page(
+    page: SessionPage, device: InputDevice, control: ControlName, wanted: str
+) -> PageContent:
+    """Ask what to do with an input of another control: exchange the two, or change nothing."""
+    session = page.session
 
-    name = "conflict"
+    def exchange() -> None:
+        page.back()
+        rebind(session, device, control, wanted)
 
-    def __init__(
-        self, session: TrainingSession, device: InputDevice, control: ControlName, wanted: str
-    ) -> None:
-        super().__init__(session)
-        self._device, self._control, self._wanted = device, control, wanted
-
-    def content(self) -> PageContent:
-        others = self.session.bindings.others(self._device, self._control, self._wanted)
-        text = self.say(
-            "conflict.text",
-            input=self.session.operator.input_label(self._device, self._wanted),
-            other=self.session.texts.listed(self.say(f"control.{other.value}") for other in others),
-            control=self.say(f"control.{self._control.value}"),
-        )
-        rows = (
-            self.button("exchange", self._exchange),
-            self.button("another", self._listen_again),
-            self.button("cancel"),
-        )
-        return PageContent(self.say("conflict.title"), (text,), rows=rows)
-
-    def _exchange(self) -> None:
-        self.back()
-        rebind(self.session, self._device, self._control, self._wanted)
-
-    def _listen_again(self) -> None:
-        self.session.pages.replace(ListenPage(self.session, self._device, self._control))
+    others = session.controls.bindings.others(device, control, wanted)
+    text = page.say(
+        "conflict.text",
+        input=session.operator.input_label(device, wanted),
+        other=session.texts.listed(page.say(f"control.{other.value}") for other in others),
+        control=page.say(f"control.{control.value}"),
+    )
+    rows = (
+        page.button("exchange", exchange),
+        page.button("another", lambda: session.pages.replace(ListenPage(session, device, control))),
+        page.button("cancel"),
+    )
+    return PageContent(page.say("conflict.title"), (text,), rows=rows)
 
 
 def rebind(session: TrainingSession, device: InputDevice, control: ControlName, name: str) -> None:
     """Give a control its new input and say so, or say why that is impossible."""
     try:
-        bindings = session.bindings.rebound(device, control, name)
+        bindings = session.controls.bindings.rebound(device, control, name)
     except InputError:
         session.complain(session.texts.say("bindings.impossible"))
         return

@@ -14,19 +14,19 @@ from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.scenario import method_of, playable_methods
 from rastrainer.study_messages import AssignmentStanding, StudyStep
 from rastrainer.trial.scoring import PASS_MARK
-from rastrainer_simulator.flow.pages.own_trials import OwnTrialsPage
+from rastrainer_simulator.flow.pages.own_trials import own_trials_page
 from rastrainer_simulator.flow.pages.session_page import SessionPage, stepped
 from rastrainer_simulator.flow.pages.trainee_id import (
-    ClickedIdPage,
     KeyboardPage,
     QuestionnairePage,
+    clicked_id_page,
 )
 from rastrainer_simulator.flow.session.chosen_trial import (
     assignment_obstacle,
+    has_learned,
     needs_tutorial,
     obstacle,
     offered_method,
-    skip,
     skippable,
     start_task,
     tutorial_obstacle,
@@ -40,8 +40,6 @@ from rastrainer_simulator.presentation.screen import ItemKind, MenuItem, ScoreTr
 
 LONGEST_ID = 32
 
-_TYPES = (SourceKind.KEYBOARD, SourceKind.MOUSE)
-_CLICKS = (SourceKind.MOUSE,)
 _HEAD = "head "
 """No scenario's name has a space: no head is mistaken for "back"."""
 _ASSIGNMENT = "assignment "
@@ -57,74 +55,36 @@ class ExperimentPage(SessionPage):
         super().__init__(session)
         self._usual_id = "" if session.trainee_id else usual_id(session)
         session.trainee = self._usual_id or session.trainee
-        self.first = first or self._next_task()
+        self._first = first or self._next_task()
 
     def content(self) -> PageContent:
-        session = self.session
-        step = self.session.step
-        said = () if step is None else (session.step_sentence(step),)
-        trend = self._trend()
-        if trend is not None:
-            key = "experiment.trend" if trend.mark else "experiment.trend in study"
-            said = (*said, self.say(key, mark=trend.mark))
-        rows = (
-            *self._answer(),
-            *self._trainee(),
-            self.choice("mode", self.say(f"mode.{session.mode}"), self._step_mode),
-            self.button("scenario", self.open_page(ScenarioPage), value=session.scenario.title),
-            *self._method(),
-            *self._procedure(),
-            *self._assignments(),
-            *self._tutorial(),
-            *self._skip(),
-            *(self._task(task.name) for task in session.scenario.tasks),
-            *self._own_trials(),
-            self.button("back"),
-        )
-        return PageContent(self.say("experiment.title"), said, rows=rows, trend=trend)
-
-    def _trainee(self) -> Iterator[PageRow]:
-        """Yield the trainee's ID, and for who only clicks what enters one."""
-        session = self.session
-        item = MenuItem(
-            "trainee",
-            self.say("experiment.trainee"),
-            ItemKind.TEXT,
-            session.trainee,
-            help=self.say("experiment.trainee help"),
-        )
-        enter = self.open_page(KeyboardPage, self._write_id)
-        if session.operator.is_one_of(_TYPES):
-            enter = partial(session.pages.move, 1)
-        yield PageRow(item, enter, write=self._write_id)
-        if session.operator.is_one_of(_CLICKS):
-            yield self.button("clicked", self.open_page(ClickedIdPage, self._write_id))
-
-    def _write_id(self, value: str) -> None:
-        """Set the trainee's ID; the first typed character replaces the usual ID."""
-        if value != self._usual_id:
-            typed = value.removeprefix(self._usual_id)
-            is_deleted = bool(self._usual_id) and value == self._usual_id[:-1]
-            self.session.trainee = "" if is_deleted else typed.lstrip()[:LONGEST_ID]
-            self._usual_id = ""
-
-    def _step_mode(self, direction: int) -> None:
-        modes = [mode.value for mode in Mode]
-        self.session.mode = stepped(modes, self.session.mode, direction)
-
-    def _trend(self) -> ScoreTrend | None:
-        """Return the trainee's scores in the chosen mode; a study may have its own pass mark."""
-        session = self.session
-        scores = session.history.trend(session.trainee_id, session.mode)
-        if not scores:
-            return None
-        shown = session.texts.listed(f"{score:.0f}" for score in scores)
-        mark = PASS_MARK if self.session.step is None else 0.0
-        return ScoreTrend(self.say("experiment.scores", scores=shown), scores, mark)
-
-    def _method(self) -> Iterator[PageRow]:
-        """Yield the choice of the method of registration; none if the head has no landmarks."""
         session, step = self.session, self.session.step
+        said = () if step is None else (session.step_sentence(step),)
+        scores = session.history.trend(session.trainee_id, session.mode)
+        trend = None
+        if scores:
+            # A study may have its own pass mark.
+            mark = PASS_MARK if step is None else 0.0
+            key = "experiment.trend" if mark else "experiment.trend in study"
+            said = (*said, self.say(key, mark=mark))
+            shown = session.texts.listed(f"{score:.0f}" for score in scores)
+            trend = ScoreTrend(self.say("experiment.scores", scores=shown), scores, mark)
+        rows = (*self._choices(), *self._beginnings(), self.button("back"))
+        title = self.say("experiment.title")
+        return PageContent(title, said, rows=rows, trend=trend, first=self._first)
+
+    def _choices(self) -> Iterator[PageRow]:
+        """Yield who trains, on which head and how; what a study decides cannot be changed."""
+        session, step = self.session, self.session.step
+        if step is not None and step.kind == StepKind.QUESTIONNAIRE:
+            yield self.button("answer", partial(self._open_questionnaire, step))
+        yield from self._trainee()
+
+        def step_mode(direction: int) -> None:
+            session.mode = stepped([mode.value for mode in Mode], session.mode, direction)
+
+        yield self.choice("mode", self.say(f"mode.{session.mode}"), step_mode)
+        yield self.button("scenario", self.open_page(ScenarioPage), value=session.scenario.title)
         methods, offered = playable_methods(session.scenario), offered_method(session)
 
         def step_method(direction: int) -> None:
@@ -134,10 +94,6 @@ class ExperimentPage(SessionPage):
             method = offered if step is None else method_of(step.method)
             value, help_ = self.say(f"method.{method.value}"), self.say("experiment.method help")
             yield self.choice("method", value, step_method, is_enabled=step is None, help=help_)
-
-    def _procedure(self) -> Iterator[PageRow]:
-        """Yield the choice of what follows the touches; none where the head has no procedures."""
-        session, step = self.session, self.session.step
         names = ["", *(each.name for each in session.scenario.procedures)]
         chosen = session.procedure if session.procedure in names else ""
 
@@ -146,55 +102,71 @@ class ExperimentPage(SessionPage):
 
         if len(names) > 1:
             value = session.procedure_title(chosen if step is None else step.procedure)
-            help_ = self.say("experiment.procedure help")
             yield self.choice(
-                "procedure", value, step_procedure, is_enabled=step is None, help=help_
+                "procedure",
+                value,
+                step_procedure,
+                is_enabled=step is None,
+                help=self.say("experiment.procedure help"),
             )
 
-    def _assignments(self) -> Iterator[PageRow]:
-        """Yield the button of the curriculum; none for a trainee without one."""
-        curriculum, words = self.session.curriculum, self.session.assignment_texts
-        if curriculum is not None:
-            yield self.button(
-                "assignments",
-                self.open_page(AssignmentsPage),
-                value=words.summary(curriculum),
-                help=words.advice(curriculum),
-            )
-
-    def _tutorial(self) -> Iterator[PageRow]:
-        """Yield the tutorial's button; none where there is no tutorial."""
+    def _trainee(self) -> Iterator[PageRow]:
+        """Yield the trainee's ID, and for who only clicks what enters one."""
         session = self.session
-        if tutorial_rule(session) is TutorialRule.SKIPPED:
-            return
-        reason = tutorial_obstacle(session)
-        is_done = session.tutorials.has_done(session.trainee_id, session.operator.learned)
-        value = self.say("experiment.done" if is_done else "experiment.tutorial time")
-        yield self.button(
-            "tutorial",
-            session.begin_tutorial,
-            value=value,
-            is_enabled=not reason,
-            help=reason or self.say("experiment.tutorial help"),
-        )
+        help_ = self.say("experiment.trainee help")
+        label = self.say("experiment.trainee")
+        item = MenuItem("trainee", label, ItemKind.TEXT, session.trainee, help=help_)
+        enter = self.open_page(KeyboardPage, self._write_id)
+        if session.operator.is_one_of((SourceKind.KEYBOARD, SourceKind.MOUSE)):
+            enter = partial(session.pages.move, 1)
+        yield PageRow(item, enter, write=self._write_id)
+        if session.operator.is_one_of((SourceKind.MOUSE,)):
+            yield self.button("clicked", self.open_page(clicked_id_page, self._write_id))
 
-    def _skip(self) -> Iterator[PageRow]:
-        """Yield what skips the tutorial, then the trial run, where nobody requires them."""
-        what = skippable(self.session)
+    def _write_id(self, value: str) -> None:
+        """Set the trainee's ID; the first typed character replaces the usual ID."""
+        if value != self._usual_id:
+            typed = value.removeprefix(self._usual_id)
+            is_deleted = bool(self._usual_id) and value == self._usual_id[:-1]
+            self.session.trainee = "" if is_deleted else typed.lstrip()[:LONGEST_ID]
+            self._usual_id = ""
+
+    def _beginnings(self) -> Iterator[PageRow]:
+        """Yield what can be begun: assignments, tutorial and tasks; and the trainee's trials."""
+        session, curriculum = self.session, self.session.curriculum
+        words = session.assignment_texts
+        if curriculum is not None:
+            summary, advice = words.summary(curriculum), words.advice(curriculum)
+            opening = self.open_page(AssignmentsPage)
+            yield self.button("assignments", opening, value=summary, help=advice)
+        if tutorial_rule(session) is not TutorialRule.SKIPPED:
+            reason = tutorial_obstacle(session)
+            is_done = has_learned(session)
+            yield self.button(
+                "tutorial",
+                session.begin_tutorial,
+                value=self.say("experiment.done" if is_done else "experiment.tutorial time"),
+                is_enabled=not reason,
+                help=reason or self.say("experiment.tutorial help"),
+            )
+        what = skippable(session)
         if what:
-            yield self.button("skip", self._skip_next, self.say(f"experiment.skip {what}"))
-
-    def _skip_next(self) -> None:
-        skip(self.session)
-        self.session.pages.focus(self._next_task())
-
-    def _own_trials(self) -> Iterator[PageRow]:
-        count = len(self.session.history.own(self.session.trainee_id))
+            label = self.say(f"experiment.skip {what}")
+            yield self.button("skip", partial(self._skip, what), label)
+        yield from (self._task(task.name) for task in session.scenario.tasks)
+        count = len(session.history.own(session.trainee_id))
         if count:
-            yield self.button("trials", self.open_page(OwnTrialsPage), value=str(count))
+            yield self.button("trials", self.open_page(own_trials_page), value=str(count))
+
+    def _skip(self, what: str) -> None:
+        session = self.session
+        if what == "tutorial":
+            session.tutorials.skipped.add(session.trainee_id)
+        else:
+            session.progress.skipped.add((session.trainee_id, session.scenario.name))
+        session.pages.focus(self._next_task())
 
     def _task(self, name: str) -> PageRow:
-        """Return a task's button: a disabled one says why."""
         session = self.session
         reason = obstacle(session, name)
         outcome = session.outcome_of(name)
@@ -214,30 +186,22 @@ class ExperimentPage(SessionPage):
 
         Then a stray key does not change the ID of a known trainee.
         """
-        step = self.session.step
+        session, step = self.session, self.session.step
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
             return "answer"
-        if needs_tutorial(self.session) and not tutorial_obstacle(self.session):
+        if needs_tutorial(session) and not tutorial_obstacle(session):
             return "tutorial"
-        best = self.session.next_assignment
-        if best is not None and not assignment_obstacle(self.session, best):
+        best = session.next_assignment
+        if best is not None and not assignment_obstacle(session, best):
             return "assignments"
-        names = [task.name for task in self.session.scenario.tasks]
-        to_do = ("", "failed") if step is None else ("",)
-        known = "mode" if self.session.trainee_id else ""
-        return next((name for name in names if self._is_to_do(name, to_do)), known)
-
-    def _is_to_do(self, name: str, outcomes: tuple[str, ...]) -> bool:
-        session = self.session
+        outcomes = ("", "failed") if step is None else ("",)
         trainee, head = session.trainee_id, session.scenario.name
-        if name == TRIAL_RUN and session.progress.needs_no_trial_run(trainee, head):
-            return False
-        return session.outcome_of(name) in outcomes and not obstacle(session, name)
-
-    def _answer(self) -> Iterator[PageRow]:
-        step = self.session.step
-        if step is not None and step.kind == StepKind.QUESTIONNAIRE:
-            yield self.button("answer", partial(self._open_questionnaire, step))
+        for name in (task.name for task in session.scenario.tasks):
+            is_left_out = name == TRIAL_RUN and session.progress.needs_no_trial_run(trainee, head)
+            is_to_do = session.outcome_of(name) in outcomes and not is_left_out
+            if is_to_do and not obstacle(session, name):
+                return name
+        return "mode" if trainee else ""
 
     def _open_questionnaire(self, step: StudyStep) -> None:
         try:
@@ -261,16 +225,15 @@ class ScenarioPage(SessionPage):
 
     def __init__(self, session: TrainingSession) -> None:
         super().__init__(session)
-        self.first = _HEAD + session.scenario.name
-        self._listing = session.list_scenarios()
+        self._listing = session.services.list_scenarios()
         self._wanted = ""
 
     def content(self) -> PageContent:
-        """Return the list, as far as it is known."""
         listed = self._listing.result() if self._listing.done() else []
         text = self.say("scenario.text" if self._listing.done() else "scenario.looking")
         rows = (*map(self._head, listed), self.button("back"))
-        return PageContent(self.say("scenario.title"), (text,), rows=rows)
+        first = _HEAD + self.session.scenario.name
+        return PageContent(self.say("scenario.title"), (text,), rows=rows, first=first)
 
     def advance(self, dt: float) -> None:  # noqa: ARG002
         """Go back once the chosen head is loaded; stay if it was refused."""
@@ -306,39 +269,36 @@ class AssignmentsPage(SessionPage):
 
     name = "assignments"
 
-    def __init__(self, session: TrainingSession) -> None:
-        super().__init__(session)
-        curriculum = session.curriculum
-        self.first = "" if curriculum is None else _ASSIGNMENT + curriculum.next
-
     def content(self) -> PageContent:
-        """Return the list that Slicer sent last."""
-        curriculum, title = self.session.curriculum, self.say("assignments.title")
-        back = self.button("back")
+        session, curriculum = self.session, self.session.curriculum
+        title, back, words = (
+            self.say("assignments.title"),
+            self.button("back"),
+            session.assignment_texts,
+        )
         if curriculum is None:
             return PageContent(title, rows=(back,))
-        said = (curriculum.title, self.session.assignment_texts.advice(curriculum))
-        return PageContent(title, said, rows=(*map(self._assignment, curriculum.assignments), back))
+
+        def row(each: AssignmentStanding) -> PageRow:
+            reason = assignment_obstacle(session, each)
+            return self.button(
+                _ASSIGNMENT + each.name,
+                partial(begin, each),
+                words.label(each),
+                value=words.progress(each),
+                is_enabled=not reason,
+                help=reason or f"{words.title(each)}. {words.goal(each)}",
+            )
+
+        def begin(each: AssignmentStanding) -> None:
+            session.mode = each.mode or session.mode
+            session.method, session.procedure = method_of(each.method), each.procedure
+            start_task(session, each.task)
+
+        said = (curriculum.title, words.advice(curriculum))
+        rows = (*map(row, curriculum.assignments), back)
+        return PageContent(title, said, rows=rows, first=_ASSIGNMENT + curriculum.next)
 
     def advance(self, dt: float) -> None:  # noqa: ARG002
-        """Close where the trainee has no curriculum any more."""
         if self.session.curriculum is None:
             self.back()
-
-    def _assignment(self, each: AssignmentStanding) -> PageRow:
-        words = self.session.assignment_texts
-        reason = assignment_obstacle(self.session, each)
-        return self.button(
-            _ASSIGNMENT + each.name,
-            partial(self._begin, each),
-            words.label(each),
-            value=words.progress(each),
-            is_enabled=not reason,
-            help=reason or f"{words.title(each)}. {words.goal(each)}",
-        )
-
-    def _begin(self, each: AssignmentStanding) -> None:
-        session = self.session
-        session.mode = each.mode or session.mode
-        session.method, session.procedure = method_of(each.method), each.procedure
-        start_task(session, each.task)

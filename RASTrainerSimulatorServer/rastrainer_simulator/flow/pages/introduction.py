@@ -5,9 +5,9 @@ from __future__ import annotations
 from functools import partial
 
 from rastrainer.protocol import TRIAL_RUN, TutorialRule
-from rastrainer_simulator.flow.pages.controls import ControlsPage
+from rastrainer_simulator.flow.pages.controls import controls_page
 from rastrainer_simulator.flow.pages.experiment import open_experiment
-from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind
 from rastrainer_simulator.flow.pages.trial_review import error_tone
 from rastrainer_simulator.flow.session.chosen_trial import (
     may_skip,
@@ -16,7 +16,6 @@ from rastrainer_simulator.flow.session.chosen_trial import (
     tutorial_rule,
 )
 from rastrainer_simulator.flow.session.open_pages import PageContent
-from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.presentation.screen import Fact
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 
@@ -27,16 +26,13 @@ class IntroductionPage(SessionPage):
     """A few sheets of text; the last leads to the controls."""
 
     name = "introduction"
-    first = "next"
-
-    def __init__(self, session: TrainingSession) -> None:
-        super().__init__(session)
-        self._sheet = 1
+    _sheet = 1
 
     def content(self) -> PageContent:
         key, alone = f"introduction.text.{self._sheet}", ".alone"
         # Mention 3D Slicer only if it is connected.
-        if not self.session.is_slicer_connected() and f"{key}{alone}" in self.session.texts:
+        is_alone = not self.session.services.is_slicer_connected()
+        if is_alone and f"{key}{alone}" in self.session.texts:
             key += alone
         place = self.say("introduction.sheet", sheet=self._sheet, sheets=SHEETS)
         rows = (
@@ -45,7 +41,7 @@ class IntroductionPage(SessionPage):
             self.button("back"),
         )
         title = self.say(f"introduction.title.{self._sheet}")
-        return PageContent(title, (self.say(key), place), rows=rows)
+        return PageContent(title, (self.say(key), place), rows=rows, first="next")
 
     def back(self) -> None:
         if self._sheet == 1:
@@ -60,83 +56,64 @@ class IntroductionPage(SessionPage):
             self._leave()
 
     def _leave(self) -> None:
-        self.session.pages.replace(ControlsPage(self.session, leads_on=True))
+        self.session.pages.replace(controls_page(self.session, True))
 
 
-class TutorialPage(SessionPage):
-    """Continues the tutorial, restarts it or leaves it."""
+@page_kind("tutorial", pause_goes_back=True)
+def tutorial_page(page: SessionPage) -> PageContent:
+    """Offer to continue the tutorial, to restart it or to leave it."""
+    session, say = page.session, page.say
+    tutorial = session.tutorial
+    step, steps = (1, 1) if tutorial is None else tutorial.place
+    is_practice = tutorial is not None and bool(tutorial.practiced)
+    is_optional = tutorial_rule(session) is not TutorialRule.REQUIRED
+    is_skipped = not is_practice and (is_optional or may_skip(session))
 
-    name = "tutorial"
-    pause_goes_back = True
-
-    def content(self) -> PageContent:
-        session = self.session
-        tutorial = session.tutorial
-        step, steps = (1, 1) if tutorial is None else tutorial.place
-        is_practice = tutorial is not None and bool(tutorial.practiced)
-        is_optional = tutorial_rule(session) is not TutorialRule.REQUIRED
-        is_skipped = not is_practice and (is_optional or may_skip(session))
-        leave = self.say("tutorial.skip" if is_skipped else "tutorial.leave")
-        paused = self.say("tutorial.paused", step=step, steps=steps)
-        rows = (
-            self.button("resume", label=self.say("trial.resume")),
-            self.button("controls", self.open_page(ControlsPage)),
-            self.button("restart", session.restart_practice),
-            self.button("leave", lambda: self._leave(is_skipped), leave),
-        )
-        return PageContent(session.practice_title, () if is_practice else (paused,), rows=rows)
-
-    def _leave(self, is_skipped: bool) -> None:
-        session = self.session
+    def leave() -> None:
         if is_skipped:
-            session.tutorials.skip(session.trainee_id)
+            session.tutorials.skipped.add(session.trainee_id)
         session.end_tutorial()
         open_experiment(session)
 
-
-class TutorialDonePage(SessionPage):
-    """Says how exact the touches were, and leads to the trial run."""
-
-    name = "tutorial-done"
-
-    def __init__(self, session: TrainingSession, outcome: TutorialOutcome) -> None:
-        super().__init__(session)
-        self._outcome = outcome
-
-    def content(self) -> PageContent:
-        session, outcome = self.session, self._outcome
-        first = self.say("tutorial.mm", error=outcome.first_error_mm)
-        errors = (self.say("tutorial.mm", error=error) for error in outcome.errors_mm)
-        facts = (
-            Fact(self.say("tutorial-done.time"), session.duration(outcome.duration_s)),
-            Fact(self.say("tutorial-done.first"), first),
-            Fact(self.say("tutorial-done.touches"), session.texts.listed(errors)),
-        )
-        reason = obstacle(session, TRIAL_RUN)
-        start = partial(start_task, session, TRIAL_RUN)
-        rows = (
-            self.button("trial-run", start, is_enabled=not reason, help=reason),
-            self.button("again", session.begin_tutorial),
-            self.button("menu"),
-        )
-        text = self.say("tutorial-done.text", trainee=outcome.trainee)
-        return PageContent(self.say("tutorial-done.title"), (text,), facts, rows)
+    paused = say("tutorial.paused", step=step, steps=steps)
+    rows = (
+        page.button("resume", label=say("trial.resume")),
+        page.button("controls", page.open_page(controls_page)),
+        page.button("restart", partial(session.begin_tutorial, *session.practiced)),
+        page.button("leave", leave, say("tutorial.skip" if is_skipped else "tutorial.leave")),
+    )
+    return PageContent(session.practice_title, () if is_practice else (paused,), rows=rows)
 
 
-class PracticedPage(SessionPage):
-    """Says how exact the touch of a practiced point was, and offers another one."""
+@page_kind("tutorial-done")
+def tutorial_done_page(page: SessionPage, outcome: TutorialOutcome) -> PageContent:
+    """Say how exact the touches were, and lead to the trial run."""
+    session, say = page.session, page.say
+    errors = (say("tutorial.mm", error=error) for error in outcome.errors_mm)
+    facts = (
+        Fact(say("tutorial-done.time"), session.duration(outcome.duration_s)),
+        Fact(say("tutorial-done.first"), say("tutorial.mm", error=outcome.first_error_mm)),
+        Fact(say("tutorial-done.touches"), session.texts.listed(errors)),
+    )
+    reason = obstacle(session, TRIAL_RUN)
+    start = partial(start_task, session, TRIAL_RUN)
+    rows = (
+        page.button("trial-run", start, is_enabled=not reason, help=reason),
+        page.button("again", session.begin_tutorial),
+        page.button("menu"),
+    )
+    text = say("tutorial-done.text", trainee=outcome.trainee)
+    return PageContent(say("tutorial-done.title"), (text,), facts, rows)
 
-    name = "practiced"
 
-    def __init__(self, session: TrainingSession, outcome: TutorialOutcome) -> None:
-        super().__init__(session)
-        self._title, self._error_mm = session.practice_title, outcome.errors_mm[-1]
-
-    def content(self) -> PageContent:
-        error = self.say("tutorial.mm", error=self._error_mm)
-        fact = Fact(self.say("practiced.error"), error, error_tone(self._error_mm))
-        rows = (
-            self.button("again", self.session.restart_practice),
-            self.button("menu", label=self.say("tutorial-done.menu")),
-        )
-        return PageContent(self._title, (), (fact,), rows)
+@page_kind("practiced")
+def practiced_page(page: SessionPage, outcome: TutorialOutcome) -> PageContent:
+    """Say how exact the touch of a practiced point was, and offer another one."""
+    session, error_mm = page.session, outcome.errors_mm[-1]
+    error = page.say("tutorial.mm", error=error_mm)
+    fact = Fact(page.say("practiced.error"), error, error_tone(error_mm))
+    rows = (
+        page.button("again", partial(session.begin_tutorial, *session.practiced)),
+        page.button("menu", label=page.say("tutorial-done.menu")),
+    )
+    return PageContent(session.practice_title, (), (fact,), rows)

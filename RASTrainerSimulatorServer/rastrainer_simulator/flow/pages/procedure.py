@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -17,7 +17,7 @@ from rastrainer.trial.procedure_outcome import (
     PLUNGE_LIMIT_MM,
     TARGET_LIMIT_MM,
 )
-from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind
 from rastrainer_simulator.flow.pages.trial_review import ErrorsPage
 from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.plan_marks import (
@@ -57,38 +57,29 @@ _ITEMS: Mapping[Phase, tuple[str, ...]] = {
 }
 
 
-class ProcedurePage(SessionPage):
-    """Actions of the present phase besides moving the tool."""
+@page_kind("procedure")
+def procedure_page(page: SessionPage) -> PageContent:
+    """Show the actions of the present phase besides moving the tool; none where it has ended."""
+    session, training = page.session, page.session.training
+    can_align = session.control_loop.setup.settings.procedure.self_alignment
 
-    name = "procedure"
+    def carry_out(name: str) -> None:
+        page.back()
+        session.do(_COMMANDS[name], {"standOffMm": STAND_OFF_MM} if name == "align" else {})
 
-    def __init__(self, session: TrainingSession) -> None:
-        super().__init__(session)
-        alignment = session.state.alignment
-        is_far = alignment is not None and not alignment.is_exact
-        can_align = session.setup.settings.procedure.self_alignment
-        if session.training.phase is Phase.ALIGNING and is_far and can_align:
-            self.first = "align"
-
-    def content(self) -> PageContent:
-        """Return the choices of the phase; none where it has ended meanwhile."""
-        phase = self.session.training.phase
-        can_align = self.session.setup.settings.procedure.self_alignment
-        rows = (self._step(name) for name in _ITEMS.get(phase, ()) if name != "align" or can_align)
-        text = self.session.texts.again(self.session.training.instruction)
-        title = self.say(f"procedure.title.{phase.value}") if phase in _ITEMS else ""
-        return PageContent(title, (text,), rows=(*rows, self.button("work")))
-
-    def _step(self, name: str) -> PageRow:
-        procedure = self.session.training.procedure
+    def step(name: str) -> PageRow:
+        procedure = training.procedure
         waits = name == "accept" and (procedure is None or procedure.registration is None)
-        help_ = self.say("procedure.waits" if waits else f"procedure.{name} help")
-        return self.button(name, partial(self._do, name), is_enabled=not waits, help=help_)
+        help_ = page.say("procedure.waits" if waits else f"procedure.{name} help")
+        return page.button(name, partial(carry_out, name), is_enabled=not waits, help=help_)
 
-    def _do(self, name: str) -> None:
-        """Carry out a step; a refusal is shown over the picture."""
-        self.back()
-        self.session.do(_COMMANDS[name], {"standOffMm": STAND_OFF_MM} if name == "align" else {})
+    names = [n for n in _ITEMS.get(training.phase, ()) if n != "align" or can_align]
+    alignment = session.state.alignment
+    is_far = alignment is not None and not alignment.is_exact
+    title = page.say(f"procedure.title.{training.phase.value}") if names else ""
+    said = (session.texts.again(training.instruction),)
+    rows = (*map(step, names), page.button("work"))
+    return PageContent(title, said, rows=rows, first="align" if is_far else "")
 
 
 LONGEST_NAME = 60
@@ -140,29 +131,23 @@ class ProcedureErrorsPage(SessionPage):
     """The errors of one trajectory after the other, each split into registration and hand."""
 
     name = "procedure-errors"
-
-    def __init__(self, session: TrainingSession) -> None:
-        super().__init__(session)
-        self._number = 0
+    _number = 0
 
     def content(self) -> PageContent:
-        each = self._trajectories
+        each = _trajectories_of(procedure_details(self.session.training.result))
         details = each[self._number] if each else {}
         name = _text(details.get("name"))
-        choice = (self.choice("trajectory", name, self._step),) if len(each) > 1 else ()
+
+        def step(direction: int) -> None:
+            self._number = (self._number + direction) % len(each)
+
+        choice = (self.choice("trajectory", name, step),) if len(each) > 1 else ()
         lines = self.button("lines", self.open_page(ProcedureLinesPage))
         by_robot = details.get("selfAligned") is True
         text = self.say("procedure-errors.robot text" if by_robot else "procedure-errors.text")
         title = self.say("procedure-errors.title", name=name)
         rows = (*choice, lines, self.button("back"))
         return PageContent(title, (text,), self._facts(details), rows)
-
-    def _step(self, direction: int) -> None:
-        self._number = (self._number + direction) % len(self._trajectories)
-
-    @property
-    def _trajectories(self) -> Sequence[Mapping[str, Any]]:
-        return _trajectories_of(procedure_details(self.session.training.result))
 
     def _facts(self, details: Mapping[str, Any]) -> list[Fact]:
         facts = []
@@ -174,13 +159,7 @@ class ProcedureErrorsPage(SessionPage):
             unit = "deg" if name == "angle" else "mm"
             text = self.say(f"procedure-errors.split {unit}", **values)
             facts.append(Fact(self.say(f"procedure-errors.{name}"), text, _tone(numbers[0], limit)))
-        facts += self._drilled(details)
-        return facts
-
-    def _drilled(self, details: Mapping[str, Any]) -> list[Fact]:
-        """Return how deep the drill plunged, and the distance kept to the nearest structure."""
         plunge, kept = detail_number(details, "plungeMm"), detail_number(details, "keptMm")
-        facts = []
         label = self.say("procedure-errors.plunge")
         if plunge is None:
             missed = self.say("procedure-errors.no inner table")
@@ -189,9 +168,9 @@ class ProcedureErrorsPage(SessionPage):
             text = self.say("result.mm", error=plunge)
             facts.append(Fact(label, text, _tone(plunge, PLUNGE_LIMIT_MM)))
         if kept is not None:
-            nearest = _text(details.get("nearest"))
             key = "procedure-errors.hit" if kept <= 0.0 else "procedure-errors.kept"
             tone = Tone.ERROR if kept <= 0.0 else Tone.PLAIN
+            nearest = _text(details.get("nearest"))
             facts.append(Fact(nearest, self.say(key, distance=kept), tone))
         return facts
 
@@ -203,30 +182,25 @@ class ProcedureLinesPage(ErrorsPage):
 
     def screen(self) -> Screen:
         """Return the lines at the true pose of the head, which the score has revealed."""
-        session = self.session
-        lines = _lines(session) if session.training.result is not None else ()
+        is_scored = self.session.training.result is not None
+        lines = tuple(_lines(self.session)) if is_scored else ()
         return replace(super().screen(), errors=lines, is_head_clear=True)
 
     def title(self) -> str:
         return self.say("procedure-lines.title")
 
 
-def _lines(session: TrainingSession) -> tuple[ErrorArrow, ...]:
+def _lines(session: TrainingSession) -> Iterator[ErrorArrow]:
     procedure = session.training.procedure
     assert procedure is not None, "the page is opened for a procedure"
-    lines = []
     planned = session.scenario.procedure(procedure.name).trajectories
     for plan, trajectory in zip(planned, procedure.trajectories, strict=True):
-        entry, target = (
-            session.truly_in_world(plan.entry_ras),
-            session.truly_in_world(plan.target_ras),
-        )
-        lines.append(drawn(PlannedLine(plan.name, entry, target), PLANNED))
-        lines.append(drawn(trajectory.line, SHOWN))
+        entry, target = map(session.truly_in_world, (plan.entry_ras, plan.target_ras))
+        yield drawn(PlannedLine(plan.name, entry, target), PLANNED)
+        yield drawn(trajectory.line, SHOWN)
         placed = placed_line(trajectory)
         if placed is not None:
-            lines.append(drawn(placed, PLACED))
-    return tuple(lines)
+            yield drawn(placed, PLACED)
 
 
 def _tone(error: float | None, limit: float) -> Tone:

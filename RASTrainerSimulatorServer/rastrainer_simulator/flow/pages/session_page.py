@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TypeVar
 
-from rastrainer_simulator.flow.session.open_pages import Page
-from rastrainer_simulator.flow.session.operator_device import SHOW, TILT
+from rastrainer_simulator.flow.session.open_pages import Page, PageContent
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.inputs import ControlName, SourceKind
+from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.screen import PRESS, Hint
 
 T = TypeVar("T")
@@ -26,13 +26,55 @@ class SessionPage(Page):
     def say(self, key: str, **values: object) -> str:
         return self.session.texts.say(key, **values)
 
-    def open_page(self, page: Callable[..., SessionPage], *arguments: object) -> Callable[[], None]:
-        """Return a function that opens a page of this kind."""
+    def open_page(self, page: Callable[..., Page], *arguments: object) -> Callable[[], None]:
         return lambda: self.session.pages.open(page(self.session, *arguments))
 
-    def command(self, name: str, **arguments: object) -> Callable[[], None]:
-        """Return a function that has a command carried out."""
-        return lambda: self.session.do(name, arguments)
+
+@dataclass(frozen=True)
+class PageKind:
+    """A kind of page without a state of its own.
+
+    Attributes:
+        show: makes what a page shows now; it is given the page, and the arguments of the call.
+        leave: is called when the trainee goes back; None closes the page.
+    """
+
+    name: str
+    show: Callable[..., PageContent]
+    leave: Callable[[TrainingSession], object] | None = None
+    pause_goes_back: bool = False
+
+    def __call__(self, session: TrainingSession, *arguments: object) -> SessionPage:
+        return _ShownPage(session, self, arguments)
+
+
+def page_kind(
+    name: str,
+    leave: Callable[[TrainingSession], object] | None = None,
+    pause_goes_back: bool = False,
+) -> Callable[[Callable[..., PageContent]], PageKind]:
+    """Make a function that returns the content of a page the kind of this page."""
+    return lambda show: PageKind(name, show, leave, pause_goes_back)
+
+
+class _ShownPage(SessionPage):
+    """A page of a `PageKind`."""
+
+    def __init__(
+        self, session: TrainingSession, kind: PageKind, arguments: Sequence[object]
+    ) -> None:
+        super().__init__(session)
+        self._kind, self._arguments = kind, arguments
+        self.name, self.pause_goes_back = kind.name, kind.pause_goes_back
+
+    def content(self) -> PageContent:
+        return self._kind.show(self, *self._arguments)
+
+    def back(self) -> None:
+        if self._kind.leave is None:
+            super().back()
+        else:
+            self._kind.leave(self.session)
 
 
 def stepped(options: Sequence[T], value: T, direction: int) -> T:
@@ -42,28 +84,3 @@ def stepped(options: Sequence[T], value: T, direction: int) -> T:
 
 def clickable_hint(session: TrainingSession, control: ControlName, key: str) -> Hint:
     return Hint(session.operator.label(control), session.texts.say(key), PRESS + control.value)
-
-
-def slow_hint(session: TrainingSession) -> Hint:
-    """Return the hint of slow motion, which is held, or by a mouse switched on and off."""
-    say = session.texts.say
-    if not session.operator.steers_by_mouse:
-        return Hint(session.operator.label(ControlName.FINE), say("hint.fine"))
-    key = "hint.on" if session.screen_sticks.is_slow else "hint.off"
-    return clickable_hint(session, ControlName.FINE, key)
-
-
-def stick_hints(session: TrainingSession, can_tilt: bool = False) -> tuple[Hint, ...]:
-    """Return what shows the sticks on the screen to who clicks, and hides them again.
-
-    Where the tool can be tilted, the right stick does it, or lifts and lowers the tool.
-    """
-    say, sticks = session.texts.say, session.screen_sticks
-    if not session.operator.is_one_of((SourceKind.MOUSE,)):
-        return ()
-    action = say("hint.hide sticks" if sticks.is_shown else "hint.sticks")
-    hints = [Hint(say("hint.mouse"), action, PRESS + SHOW)]
-    if can_tilt and sticks.is_shown:
-        key = "hint.tilt" if sticks.is_tilting else "hint.up_and_down"
-        hints.append(Hint(say("hint.right stick"), say(key), PRESS + TILT))
-    return tuple(hints)

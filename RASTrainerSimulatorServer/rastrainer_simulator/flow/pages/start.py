@@ -6,10 +6,10 @@ import math
 from functools import partial
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.flow.pages.controls import ControlsPage
+from rastrainer_simulator.flow.pages.controls import controls_page
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.introduction import IntroductionPage
-from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind
 from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.preferences import (
     OF_A_TRIAL,
@@ -24,83 +24,68 @@ from rastrainer_simulator.ops.instructor_pin import LONGEST_PIN, SHORTEST_PIN
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 
 
-class StartPage(SessionPage):
-    """The first menu. A trainee who has not read the introduction is led through it once."""
-
-    name = "start"
-
-    def content(self) -> PageContent:
-        has_read = self.session.has_read_introduction
-        rows = (
-            self.button("train", self.open_page(ExperimentPage if has_read else IntroductionPage)),
-            self.button("introduction", self.open_page(IntroductionPage)),
-            self.button("controls", self.open_page(ControlsPage)),
-            self.button("settings", self.open_page(SettingsPage)),
-            self.button("quit", self.open_page(QuitPage)),
-        )
-        return PageContent(self.say("start.title"), (self.say("start.text"),), rows=rows)
-
-    def back(self) -> None:
-        """Do nothing: there is no previous page."""
+@page_kind("start", leave=lambda _session: None)
+def start_page(page: SessionPage) -> PageContent:
+    """Show the first menu. Who has not read the introduction is led through it once."""
+    has_read = page.session.has_read_introduction
+    rows = (
+        page.button("train", page.open_page(ExperimentPage if has_read else IntroductionPage)),
+        page.button("introduction", page.open_page(IntroductionPage)),
+        page.button("controls", page.open_page(controls_page)),
+        page.button("settings", page.open_page(settings_page)),
+        page.button("quit", page.open_page(quit_page)),
+    )
+    return PageContent(page.say("start.title"), (page.say("start.text"),), rows=rows)
 
 
-class QuitPage(SessionPage):
-    """Asks for confirmation before the simulator is shut down."""
+@page_kind("quit")
+def quit_page(page: SessionPage) -> PageContent:
+    """Ask for confirmation before the simulator is shut down."""
 
-    name = "quit"
-    first = "stay"
+    def leave() -> None:
+        page.session.services.quit()
+        page.back()
 
-    def content(self) -> PageContent:
-        rows = (self.button("stay"), self.button("leave", self._leave))
-        return PageContent(self.say("quit.title"), (self.say("quit.text"),), rows=rows)
-
-    def _leave(self) -> None:
-        self.session.quit()
-        self.back()
+    rows = (page.button("stay"), page.button("leave", leave))
+    return PageContent(page.say("quit.title"), (page.say("quit.text"),), rows=rows, first="stay")
 
 
-class SettingsPage(SessionPage):
-    """One choice for each preference; any that would change a running trial wait for its end."""
+@page_kind("settings")
+def settings_page(page: SessionPage) -> PageContent:
+    """Show one choice for each preference; any that would change a trial wait for its end."""
+    session, lock = page.session, page.session.lock
 
-    name = "settings"
-
-    def content(self) -> PageContent:
-        lock = self.session.lock
-        unlock = self.button("unlock", self.open_page(PinPage))
-        pin = unlock if lock.is_locked else self.button("lock", lock.lock)
-        rows = (
-            *map(self._setting, OPTIONS),
-            *((pin,) if lock.has_pin else ()),
-            self.button("back"),
-        )
-        return PageContent(self.say("settings.title"), rows=rows)
-
-    def _setting(self, name: str) -> PageRow:
-        lock = self.session.lock
-        waits = self.session.has_open_trial and name in OF_A_TRIAL
+    def setting(name: str) -> PageRow:
+        waits = session.has_open_trial and name in OF_A_TRIAL
         is_locked = lock.is_locked and name not in OF_TRAINEES
-        help_ = self.say(f"settings.{name} help", file=PREFERENCES_FILE)
+        help_ = page.say(f"settings.{name} help", file=PREFERENCES_FILE)
         if waits:
-            help_ = self.say("settings.waits")
+            help_ = page.say("settings.waits")
         elif is_locked:
-            help_ = self.say("settings.locked")
-        is_enabled = not waits and not is_locked and (lock.has_pin or name not in OF_INSTRUCTORS)
-        step = partial(self._step, name)
-        return self.choice(name, self._value(name), step, is_enabled=is_enabled, help=help_)
+            help_ = page.say("settings.locked")
+        is_free = lock.has_pin or name not in OF_INSTRUCTORS
 
-    def _step(self, name: str, direction: int) -> None:
-        """Choose another option, which takes effect at once."""
-        self.session.prefer(self.session.preferences.stepped(name, direction))
+        def step(direction: int) -> None:
+            session.prefer(session.preferences.stepped(name, direction))
 
-    def _value(self, name: str) -> str:
-        value = getattr(self.session.preferences, name)
+        return page.choice(
+            name, value(name), step, is_enabled=is_free and not waits and not is_locked, help=help_
+        )
+
+    def value(name: str) -> str:
+        chosen = getattr(session.preferences, name)
         if name == "volume":
-            return f"{value} %"
+            return f"{chosen} %"
         if name in ("coarse", "fine"):
-            return f"{value} mm/s"
-        if isinstance(value, bool):
-            value = "yes" if value else "no"
-        return self.say(f"settings.{name}.{value}")
+            return f"{chosen} mm/s"
+        if isinstance(chosen, bool):
+            chosen = "yes" if chosen else "no"
+        return page.say(f"settings.{name}.{chosen}")
+
+    unlock = page.button("unlock", page.open_page(PinPage))
+    pin = unlock if lock.is_locked else page.button("lock", lock.lock)
+    rows = (*map(setting, OPTIONS), *((pin,) if lock.has_pin else ()), page.button("back"))
+    return PageContent(page.say("settings.title"), rows=rows)
 
 
 DIGITS = "1234567890"

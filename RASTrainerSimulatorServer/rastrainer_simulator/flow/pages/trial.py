@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import RASTrainerError
@@ -15,9 +16,9 @@ from rastrainer.protocol import TRIAL_RUN, AbortReason, Phase
 from rastrainer.registration.fits import RIGID
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.touch_registration import GivenPoints, register_trial
-from rastrainer_simulator.flow.pages.controls import ControlsPage
-from rastrainer_simulator.flow.pages.session_page import SessionPage
-from rastrainer_simulator.flow.pages.start import SettingsPage
+from rastrainer_simulator.flow.pages.controls import controls_page
+from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind
+from rastrainer_simulator.flow.pages.start import settings_page
 from rastrainer_simulator.flow.session.open_pages import PageContent
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.loop.timing import raise_thread_priority
@@ -47,20 +48,7 @@ class MatchReport:
     codes: tuple[str, ...] = ()
 
 
-def look_at_match(training: TrainingState, scenario: Scenario) -> Future[MatchReport]:
-    """Have the trace of an open trial matched as it will be when it is registered.
-
-    The result raises an InputError where it cannot be.
-    """
-    # Set aside while it holds the interpreter, it would make the control loop wait.
-    worker = ThreadPoolExecutor(1, "match", raise_thread_priority)
-    looked = worker.submit(match_report, training, scenario)
-    worker.shutdown(wait=False)
-    return looked
-
-
 def match_report(training: TrainingState, scenario: Scenario) -> MatchReport:
-    """Return the figures of the match of a trial's trace."""
     answer = {"task": training.task, "method": training.method.value, **given(training)}
     registered = register_trial(GivenPoints.of_answer(answer), scenario)
     match, error = registered.match, registered.target_errors[RIGID]
@@ -75,168 +63,148 @@ def match_report(training: TrainingState, scenario: Scenario) -> MatchReport:
     )
 
 
-class MatchPage(SessionPage):
-    """Shows the figures of a match; the trial is registered only when it is accepted."""
-
-    name = "match"
-    # A double press must not accept a match that was not read.
-    first = "draw"
-
-    def __init__(self, session: TrainingSession, looked: Future[MatchReport]) -> None:
-        super().__init__(session)
-        self._looked = looked
-
-    def content(self) -> PageContent:
-        report: MatchReport | None = None
-        said: tuple[str, ...] = (self.say("match.looking"),)
-        if self._looked.done():
-            try:
-                report = self._looked.result()
-            except (RASTrainerError, OSError) as error:
-                said = (self.say("match.impossible", reason=str(error)),)
-            else:
-                wrong = (self.say(f"match.{code}", slide=report.slide_mm) for code in report.codes)
-                said = (*wrong, self.say("match.residual and error"))
-        register = self.command(CommandName.REGISTER)
-        rows = (
-            self.button("accept", register, is_enabled=report is not None),
-            self.button("draw", lambda: self.session.pages.show(None)),
-        )
-        facts = () if report is None else self._facts(report)
-        return PageContent(self.say("match.title"), said, facts, rows)
-
-    def _facts(self, report: MatchReport) -> tuple[Fact, ...]:
+@page_kind("match")
+def match_page(page: SessionPage, looked: Future[MatchReport]) -> PageContent:
+    """Show the figures of a match; the trial is registered only when it is accepted."""
+    session, say = page.session, page.say
+    report: MatchReport | None = None
+    said: tuple[str, ...] = (say("match.looking"),)
+    facts: tuple[Fact, ...] = ()
+    if looked.done():
+        try:
+            report = looked.result()
+        except (RASTrainerError, OSError) as error:
+            said = (say("match.impossible", reason=str(error)),)
+    if report is not None:
+        wrong = (say(f"match.{code}", slide=report.slide_mm) for code in report.codes)
+        said = (*wrong, say("match.residual and error"))
         low, high = report.interval_mm
         tone = Tone.WARNING if report.codes else Tone.PLAIN
-        expected = self.say("result.mm", error=report.expected_mm)
-        return (
-            Fact(self.say("match.residual"), self.say("result.mm", error=report.residual_mm)),
-            Fact(self.say("match.counts"), f"{100.0 * report.inlier_share:.0f} %"),
-            Fact(self.say("result.expected tre"), expected, tone),
-            Fact(self.say("match.interval"), self.say("match.interval value", low=low, high=high)),
+        expected = say("result.mm", error=report.expected_mm)
+        facts = (
+            Fact(say("match.residual"), say("result.mm", error=report.residual_mm)),
+            Fact(say("match.counts"), f"{100.0 * report.inlier_share:.0f} %"),
+            Fact(say("result.expected tre"), expected, tone),
+            Fact(say("match.interval"), say("match.interval value", low=low, high=high)),
         )
+    register = partial(session.do, CommandName.REGISTER)
+    rows = (
+        page.button("accept", register, is_enabled=report is not None),
+        page.button("draw", lambda: session.pages.show(None)),
+    )
+    # A double press must not accept a match that was not read.
+    return PageContent(say("match.title"), said, facts, rows, first="draw")
 
 
-class TrialPage(SessionPage):
-    """The menu during a trial, which is paused while it is open."""
+def _resume(session: TrainingSession) -> None:
+    if session.training.phase is Phase.PAUSED:
+        session.do(CommandName.RESUME)
+    else:
+        session.pages.close()
 
-    name = "trial"
-    pause_goes_back = True
 
-    def content(self) -> PageContent:
-        training = self.session.training
-        is_complete = training.phase is Phase.COMPLETE
-        traced = 0 if training.trace is None else len(training.trace.points)
-        key = ("trial.complete" if is_complete else "trial.paused") + (" trace" if traced else "")
-        text = self.say(key, trainee=training.trainee, kept=len(training.touches), traced=traced)
-        is_run = training.task == TRIAL_RUN
-        finish = self.command(CommandName.ABORT, reason=AbortReason.TRAINEE.value)
-        may_register = training.touches and is_complete
-        rows = (
-            self.button("resume"),
-            *((self.button("register", self._register),) if may_register else ()),
-            self.button("controls", self.open_page(ControlsPage)),
-            self.button("settings", self.open_page(SettingsPage)),
-            self.button("finish", finish)
-            if is_run
-            else self.button("abort", self.open_page(AbortPage)),
-        )
-        title = self.say("trial.title", task=self.session.task_title(training.task))
-        return PageContent(title, (text,), rows=rows)
+@page_kind("trial", leave=_resume, pause_goes_back=True)
+def trial_page(page: SessionPage) -> PageContent:
+    """Show the menu during a trial, which is paused while it is open."""
+    session, training = page.session, page.session.training
+    is_complete = training.phase is Phase.COMPLETE
+    traced = 0 if training.trace is None else len(training.trace.points)
+    key = ("trial.complete" if is_complete else "trial.paused") + (" trace" if traced else "")
+    text = page.say(key, trainee=training.trainee, kept=len(training.touches), traced=traced)
 
-    def back(self) -> None:
-        """Resume the trial."""
-        if self.session.training.phase is Phase.PAUSED:
-            self.session.do(CommandName.RESUME)
-        else:
-            self.session.pages.close()
-
-    def _register(self) -> None:
+    def register() -> None:
         """Register the trial; if there is a trace, its match is shown first."""
-        session = self.session
         if session.training.trace is None:
             session.do(CommandName.REGISTER)
-        else:
-            looked = look_at_match(session.training, session.scenario)
-            session.pages.open(MatchPage(session, looked))
+            return
+        # Set aside while it holds the interpreter, it would make the control loop wait.
+        worker = ThreadPoolExecutor(1, "match", raise_thread_priority)
+        looked = worker.submit(match_report, session.training, session.scenario)
+        worker.shutdown(wait=False)
+        session.pages.open(match_page(session, looked))
+
+    end = page.button("abort", page.open_page(abort_page))
+    if training.task == TRIAL_RUN:
+        end = page.button("finish", _abort(session, AbortReason.TRAINEE))
+    rows = (
+        page.button("resume"),
+        *((page.button("register", register),) if training.touches and is_complete else ()),
+        page.button("controls", page.open_page(controls_page)),
+        page.button("settings", page.open_page(settings_page)),
+        end,
+    )
+    title = page.say("trial.title", task=session.task_title(training.task))
+    return PageContent(title, (text,), rows=rows)
+
+
+def _abort(session: TrainingSession, reason: AbortReason) -> partial[None]:
+    return partial(session.do, CommandName.ABORT, {"reason": reason.value})
 
 
 class PreparingPage(SessionPage):
     """A trial is paused until the trainee's view has drawn its picture; then it goes on."""
 
     name = "preparing"
-    first = "menu"
     _is_resumed = False
 
     def content(self) -> PageContent:
-        task = self.session.task_title(self.session.training.task)
-        said = (self.say("preparing.text", task=task), self.session.preparing())
+        session = self.session
+
+        def begin_without_picture() -> None:
+            session.goes_on_blind = session.training.trial_id
+            session.do(CommandName.RESUME)
+
+        task = session.task_title(session.training.task)
+        said = (self.say("preparing.text", task=task), session.preparing())
         rows = (
             self.button("menu", label=self.say("hint.menu")),
-            self.button("begin", self._begin_without_picture),
+            self.button("begin", begin_without_picture),
         )
-        return PageContent(self.say("preparing.title"), said, rows=rows)
+        return PageContent(self.say("preparing.title"), said, rows=rows, first="menu")
 
     def back(self) -> None:
-        self.session.pages.replace(TrialPage(self.session))
+        self.session.pages.replace(trial_page(self.session))
 
     def advance(self, dt: float) -> None:  # noqa: ARG002
         if self.session.picture_share is None and not self._is_resumed:
             self._is_resumed = True
             self.session.do(CommandName.RESUME)
 
-    def _begin_without_picture(self) -> None:
-        self.session.goes_on_blind = self.session.training.trial_id
-        self.session.do(CommandName.RESUME)
+
+@page_kind("abort")
+def abort_page(page: SessionPage) -> PageContent:
+    """Ask for confirmation before a trial is aborted."""
+    training = page.session.training
+    text = page.say("abort.text", trainee=training.trainee, kept=len(training.touches))
+    abort = _abort(page.session, AbortReason.TRAINEE)
+    rows = (page.button("keep"), page.button("abort", abort))
+    return PageContent(page.say("abort.title"), (text,), rows=rows, first="keep")
 
 
-class AbortPage(SessionPage):
-    """Asks for confirmation before a trial is aborted."""
+@page_kind("practice", leave=lambda session: session.do(CommandName.RESUME))
+def practice_page(page: SessionPage) -> PageContent:
+    """Say that the trial run's minutes are over: the trainee decides how to continue."""
+    session = page.session
+    is_led = session.trial_step is not None
+    key = "practice.study" if is_led else "practice.text"
 
-    name = "abort"
-    first = "keep"
+    def finish() -> None:
+        session.note_done()
+        _abort(session, AbortReason.PRACTICE_OVER)()
 
-    def content(self) -> PageContent:
-        training = self.session.training
-        text = self.say("abort.text", trainee=training.trainee, kept=len(training.touches))
-        abort = self.command(CommandName.ABORT, reason=AbortReason.TRAINEE.value)
-        rows = (self.button("keep"), self.button("abort", abort))
-        return PageContent(self.say("abort.title"), (text,), rows=rows)
-
-
-class PracticePage(SessionPage):
-    """The trial run's minutes are over: the trainee decides how to continue."""
-
-    name = "practice"
-    first = "resume"
-
-    def content(self) -> PageContent:
-        trainee = self.session.training.trainee
-        is_led = self.session.trial_step is not None
-        text = self.say("practice.study" if is_led else "practice.text", trainee=trainee)
-        rows = (self.button("finish", self._finish), self.button("resume"))
-        return PageContent(self.say("practice.title"), (text,), rows=rows)
-
-    def back(self) -> None:
-        """Keep practicing."""
-        self.session.do(CommandName.RESUME)
-
-    def _finish(self) -> None:
-        self.session.note_done()
-        self.session.do(CommandName.ABORT, {"reason": AbortReason.PRACTICE_OVER.value})
+    rows = (page.button("finish", finish), page.button("resume"))
+    text = page.say(key, trainee=session.training.trainee)
+    return PageContent(page.say("practice.title"), (text,), rows=rows, first="resume")
 
 
-class CompletePage(SessionPage):
-    """All points are touched: they are registered, or the last one is undone."""
-
-    name = "complete"
-
-    def content(self) -> PageContent:
-        training = self.session.training
-        text = self.say("complete.text", trainee=training.trainee, count=len(training.touches))
-        rows = (
-            self.button("register", self.command(CommandName.REGISTER)),
-            self.button("undo", self.command(CommandName.UNDO)),
-            self.button("abort", self.open_page(AbortPage)),
-        )
-        return PageContent(self.say("complete.title"), (text,), rows=rows)
+@page_kind("complete")
+def complete_page(page: SessionPage) -> PageContent:
+    """Say that all points are touched: they are registered, or the last one is undone."""
+    session, training = page.session, page.session.training
+    text = page.say("complete.text", trainee=training.trainee, count=len(training.touches))
+    rows = (
+        page.button("register", partial(session.do, CommandName.REGISTER)),
+        page.button("undo", partial(session.do, CommandName.UNDO)),
+        page.button("abort", page.open_page(abort_page)),
+    )
+    return PageContent(page.say("complete.title"), (text,), rows=rows)

@@ -48,13 +48,16 @@ class ErrorsPage(SessionPage):
     name = "errors"
 
     def content(self) -> PageContent:
-        """Return what a view that draws no arrows would show."""
         return PageContent(self.title(), rows=(self.button("back"),))
 
     def screen(self) -> Screen:
         """Return the arrows; they show the true errors, which the score has already revealed."""
         session = self.session
         touches = session.training.touches if session.training.result is not None else ()
+        fiducials = session.control_loop.truth.fiducials_ras
+        errors = (
+            error_arrow(session.truly_in_world(fiducials[t.label]), t.position) for t in touches
+        )
         back = Hint(session.operator.label(ControlName.BACK), self.say("hint.result"), "back")
         hints: tuple[Hint, ...] = (back,)
         if not session.operator.is_one_of((SourceKind.XR,)):
@@ -66,11 +69,10 @@ class ErrorsPage(SessionPage):
             instruction=ScreenMessage(self.title()),
             hints=hints,
             language=session.preferences.language,
-            errors=tuple(error_arrow(session.fiducial(t.label), t.position) for t in touches),
+            errors=tuple(errors),
         )
 
     def pressed(self, control: ControlName) -> bool:
-        """Turn the view around the head."""
         if control not in _TURNS:
             return False
         session = self.session
@@ -124,7 +126,15 @@ class ReplayPage(SessionPage):
         if self._player is None or self.playback is None:
             return None
         session = self.session
-        shown = self._player.screen(session.texts, self._hints(), session.preferences.language)
+        label, pair_label = session.operator.label, session.operator.pair_label
+        hints = (
+            clickable_hint(session, ControlName.ACCEPT, "hint.play"),
+            Hint(pair_label(ControlName.LEFT, ControlName.RIGHT), self.say("hint.seek")),
+            clickable_hint(session, ControlName.UP, "hint.worst"),
+            clickable_hint(session, ControlName.CAMERA, "hint.camera"),
+            Hint(label(ControlName.BACK), self.say("hint.result"), "back"),
+        )
+        shown = self._player.screen(session.texts, hints, session.preferences.language)
         procedure = self.playback.latest.training.procedure
         if procedure is None or procedure.present is None:
             return shown
@@ -132,14 +142,12 @@ class ReplayPage(SessionPage):
         return replace(shown, errors=marks, is_head_clear=True)
 
     def advance(self, dt: float) -> None:
-        """Play, as soon as the trial is loaded."""
         if self.playback is not None:
             self.playback.advance(dt)
         elif self._loading.loaded.done():
             self._begin()
 
     def pressed(self, control: ControlName) -> bool:
-        """Steer the playback; while it is being loaded, the menu is steered."""
         if self._player is None:
             return False
         if control in ACTIONS:
@@ -147,8 +155,7 @@ class ReplayPage(SessionPage):
         return True
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """Process inputs without a function in menus: the worst touch, and the camera."""
-        bindings = self.session.bindings
+        bindings = self.session.controls.bindings
         if self._player is None or bindings.control(device, name, ControlContext.MENU) is not None:
             return False
         is_camera = name in bindings.table(device)[ControlName.CAMERA]
@@ -164,7 +171,7 @@ class ReplayPage(SessionPage):
             self.back()
             session.complain(str(error))
             return
-        self.playback = Playback(trial, session.setup)
+        self.playback = Playback(trial, session.control_loop.setup)
         self._player = Player(self.playback, self.back)
         self.playback.subscribe(self._feel)
         if self._begins_at_worst and trial.worst is None:
@@ -173,7 +180,6 @@ class ReplayPage(SessionPage):
             self._do(self._player, PlayerAction.WORST)
 
     def _do(self, player: Player, action: PlayerAction) -> None:
-        """Carry out an action; the worst touch is shown from where it is seen best."""
         player.do(action)
         if action is PlayerAction.WORST and player.playback.trial.worst is not None:
             self.session.view.want_best()
@@ -183,14 +189,3 @@ class ReplayPage(SessionPage):
             felt = feedback_event(event, result.state.touch)
             if felt is not None:
                 self.session.happened(felt)
-
-    def _hints(self) -> tuple[Hint, ...]:
-        label, say = self.session.operator.label, self.session.texts.say
-        seek = self.session.operator.pair_label(ControlName.LEFT, ControlName.RIGHT)
-        return (
-            clickable_hint(self.session, ControlName.ACCEPT, "hint.play"),
-            Hint(seek, say("hint.seek")),
-            clickable_hint(self.session, ControlName.UP, "hint.worst"),
-            clickable_hint(self.session, ControlName.CAMERA, "hint.camera"),
-            Hint(label(ControlName.BACK), say("hint.result"), "back"),
-        )

@@ -18,94 +18,74 @@ PLAYED, ANSWERED = "played", "answered"
 """In place of a step's kind: the step is done here, and Slicer will send the next."""
 
 
-class StudySteps:
-    """Keeps the next step of each trainee; a trainee without one practices freely.
+class AssignedTraining:
+    """Keeps the next step of each trainee, and the standing in a curriculum.
 
-    Nothing of it outlives the process: Slicer, which keeps the study, sends everything again once
-    it is connected. Answers that it has not received by then are asked for again.
+    A trainee without a step practices freely. Nothing of it outlives the process: Slicer, which
+    keeps the study, sends everything again once it is connected. Answers that it has not received
+    by then are asked for again. A curriculum does not outlive the connection either: it may have
+    ended by then.
+
+    Attributes:
+        steps, curricula: of each trainee.
+        answers: of each trainee to a questionnaire, until Slicer has acknowledged them.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self.steps: dict[str, StudyStep] = {}
+        self.answers: dict[str, StepAnswers] = {}
+        self.curricula: dict[str, CurriculumMessage] = {}
         self._clock = clock
-        self._steps: dict[str, StudyStep] = {}
         self._received_at: dict[str, float] = {}
-        self._answers: dict[str, StepAnswers] = {}
 
-    def take(self, step: StudyStep) -> None:
+    def take_step(self, step: StudyStep) -> None:
         name = step.trainee
-        answers = self._answers.get(name)
+        answers = self.answers.get(name)
         if answers is not None and not answers.belong_to(step):
-            del self._answers[name]
-        self._steps.pop(name, None)
+            del self.answers[name]
+        self.steps.pop(name, None)
         if step.kind != FREE:
-            self._steps[name] = replace(step, kind=ANSWERED) if name in self._answers else step
+            self.steps[name] = replace(step, kind=ANSWERED) if name in self.answers else step
             self._received_at[name] = self._clock()
-        if len(self._steps) > MAX_TRAINEES:
-            self._forget(next(iter(self._steps)))
+        if len(self.steps) > MAX_TRAINEES:
+            oldest = next(iter(self.steps))
+            for kept in (self.steps, self._received_at, self.answers):
+                kept.pop(oldest, None)
 
-    def step_of(self, trainee: str) -> StudyStep | None:
-        return self._steps.get(trainee)
+    def take_curriculum(self, curriculum: CurriculumMessage) -> None:
+        self.curricula.pop(curriculum.trainee, None)
+        if curriculum.assignments:
+            self.curricula[curriculum.trainee] = curriculum
+        if len(self.curricula) > MAX_TRAINEES:
+            del self.curricula[next(iter(self.curricula))]
 
     def break_left_s(self, trainee: str) -> float:
         """Return how long the trainee's break still lasts, in s; 0 without one."""
-        step = self._steps.get(trainee)
+        step = self.steps.get(trainee)
         if step is None or step.kind != StepKind.BREAK:
             return 0.0
         return step.left_s(self._clock() - self._received_at[trainee])
 
     def note_registered(self, trainee: str, task: str, mode: str) -> None:
         """Note a trial: what the study has requested is not started twice."""
-        step = self._steps.get(trainee)
+        step = self.steps.get(trainee)
         wanted = (StepKind.TRIAL.value, task, mode)
         if step is not None and (step.kind, step.task, step.mode) == wanted:
-            self._steps[trainee] = replace(step, kind=PLAYED)
+            self.steps[trainee] = replace(step, kind=PLAYED)
 
     def answer(self, trainee: str, answers: Sequence[int]) -> None:
         """Keep the answers to the questionnaire that comes next, until Slicer has received them."""
-        step = self._steps.get(trainee)
+        step = self.steps.get(trainee)
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
             step_data = {"number": step.number, "questionnaire": step.questionnaire}
-            self._answers[trainee] = StepAnswers.from_json(
+            self.answers[trainee] = StepAnswers.from_json(
                 {"trainee": trainee, "answers": list(answers), **step_data}
             )
-            self._steps[trainee] = replace(step, kind=ANSWERED)
-
-    def unacknowledged_answers(self) -> tuple[StepAnswers, ...]:
-        """Return the answers that Slicer has not acknowledged."""
-        return tuple(self._answers.values())
-
-    def _forget(self, trainee: str) -> None:
-        for kept in (self._steps, self._received_at, self._answers):
-            kept.pop(trainee, None)
+            self.steps[trainee] = replace(step, kind=ANSWERED)
 
 
 Titles = Callable[[str], str]
 """Maps the name of a task or a procedure to its title."""
-
-
-class Curricula:
-    """Keeps where each trainee stands.
-
-    Nothing of it outlives the connection: Slicer, which keeps the study, tells everything again
-    once it is connected, and by then a curriculum may have ended, or the study be another.
-    """
-
-    def __init__(self) -> None:
-        self._messages: dict[str, CurriculumMessage] = {}
-
-    def take(self, curriculum: CurriculumMessage) -> None:
-        self._messages.pop(curriculum.trainee, None)
-        if curriculum.assignments:
-            self._messages[curriculum.trainee] = curriculum
-        if len(self._messages) > MAX_TRAINEES:
-            del self._messages[next(iter(self._messages))]
-
-    def forget_all(self) -> None:
-        """Forget all trainees, when no Slicer is connected any more."""
-        self._messages.clear()
-
-    def of(self, trainee: str) -> CurriculumMessage | None:
-        return self._messages.get(trainee)
 
 
 class AssignmentTexts:
@@ -136,11 +116,9 @@ class AssignmentTexts:
             special = self._say(f"method.{each.method}")
         else:
             special = self._say(f"mode.{each.mode}") if each.mode else ""
-        title = self._task_title(each.task)
-        return f"{title} · {special}" if special else title
+        return " · ".join(filter(None, (self._task_title(each.task), special)))
 
     def progress(self, each: AssignmentStanding) -> str:
-        """Return the trainee's progress, in few characters."""
         if each.is_reached:
             return self._say("assignments.reached")
         if each.is_locked:
@@ -157,7 +135,6 @@ class AssignmentTexts:
         return self._say(key, needed=each.needed, mark=each.mark)
 
     def gate(self, curriculum: CurriculumMessage, each: AssignmentStanding) -> str:
-        """Return what a locked assignment waits for."""
         missing = [found for name in each.missing if (found := curriculum.find(name)) is not None]
         names = self._texts.listed(self.title(one) for one in missing) or "–"
         return self._say("assignments.gate", assignments=names)
@@ -177,7 +154,6 @@ class AssignmentTexts:
         return f"{self.summary(curriculum)} · {following}"
 
     def advice(self, curriculum: CurriculumMessage) -> str:
-        """Return what to practice next, and why."""
         best = curriculum.find(curriculum.next)
         if best is None:
             return self._say("assignments.all reached")

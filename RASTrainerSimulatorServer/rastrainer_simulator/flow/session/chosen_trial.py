@@ -15,11 +15,12 @@ from rastrainer.protocol import (
 )
 from rastrainer.scenario.scenario import method_of, playable_methods
 from rastrainer.study_messages import AssignmentStanding
-from rastrainer_simulator.flow.session.preferences import faded_guidance
 from rastrainer_simulator.flow.session.session import TrainingSession
 
 FIRST_ID = "trainee-1"
 """An ID is a pseudonym that files keep: it is the same in every language."""
+_ARROW_TASKS = 2
+"""How many tasks after the trial run have an arrow, where guidance fades."""
 
 
 def start_task(session: TrainingSession, task: str) -> None:
@@ -64,8 +65,12 @@ def guidance_of(session: TrainingSession) -> Guidance:
     """Return how the trainee is guided in the present trial, by the study or the setting."""
     training, step = session.training, session.trial_step
     choice = step.guidance if step is not None and step.guidance else session.preferences.guidance
-    order = [task.name for task in session.scenario.tasks]
-    return faded_guidance(choice, training.task, order)
+    if choice != Guidance.FADING:
+        return Guidance(choice)
+    if training.task == TRIAL_RUN:
+        return Guidance.WORDS
+    tasks = [task.name for task in session.scenario.tasks if task.name != TRIAL_RUN]
+    return Guidance.ARROW if training.task in tasks[:_ARROW_TASKS] else Guidance.NONE
 
 
 def begin_ghost(session: TrainingSession, head_to_world: np.ndarray) -> None:
@@ -80,7 +85,9 @@ def begin_ghost(session: TrainingSession, head_to_world: np.ndarray) -> None:
     rule = GhostRule.OFF if is_none else GhostRule(choice)
     who = training.trainee if rule is GhostRule.OWN else session.preferences.expert
     journals = () if rule is GhostRule.OFF else session.history.best(who, training.task)
-    session.ghost.begin(rule, journals, training.trial_id, session.setup, head_to_world)
+    session.ghost.begin(
+        rule, journals, training.trial_id, session.control_loop.setup, head_to_world
+    )
 
 
 def obstacle(session: TrainingSession, task: str) -> str:
@@ -158,8 +165,7 @@ def tutorial_obstacle(session: TrainingSession) -> str:
     if step is None:
         return ""
     is_asked = step.kind == StepKind.TRIAL_RUN and step.mode == session.mode
-    has_done = session.tutorials.has_done(session.trainee_id, session.operator.learned)
-    if is_asked and not has_done:
+    if is_asked and not has_learned(session):
         return ""
     return session.texts.say("experiment.study", step=session.step_sentence(step))
 
@@ -198,20 +204,12 @@ def skippable(session: TrainingSession) -> str:
     return "tutorial" if needs_tutorial(session) else "trial run"
 
 
-def skip(session: TrainingSession) -> None:
-    trainee, what = session.trainee_id, skippable(session)
-    if what == "tutorial":
-        session.tutorials.skip(trainee)
-    elif what:
-        session.progress.skip_trial_run(trainee, session.scenario.name)
-
-
 def usual_id(session: TrainingSession) -> str:
     """Return the ID of who trains here alone: the only one so far, or one to begin with.
 
     It is "" where several train, and where an instructor gives each an ID.
     """
-    if session.is_slicer_connected() or session.lock.has_pin:
+    if session.services.is_slicer_connected() or session.lock.has_pin:
         return ""
     known = session.progress.latest_trainees(2)
     return FIRST_ID if not known else known[0] if len(known) == 1 else ""
@@ -219,7 +217,13 @@ def usual_id(session: TrainingSession) -> str:
 
 def needs_tutorial(session: TrainingSession) -> bool:
     """Return whether the trial run waits for the tutorial with the device in use."""
-    is_skipped = may_skip(session) and session.tutorials.has_skipped(session.trainee_id)
+    is_skipped = may_skip(session) and session.trainee_id in session.tutorials.skipped
     if is_skipped or tutorial_rule(session) is not TutorialRule.REQUIRED:
         return False
-    return not session.tutorials.has_done(session.trainee_id, session.operator.learned)
+    return not has_learned(session)
+
+
+def has_learned(session: TrainingSession) -> bool:
+    """Return whether the trainee has finished the tutorial with the device in use."""
+    device = session.operator.learned(session.mode)
+    return session.tutorials.has_done(session.trainee_id, device)

@@ -59,7 +59,6 @@ class _Job(NamedTuple):
 
 
 def _job(training: TrainingState, is_in_study: bool) -> _Job | None:
-    """Return the job for a trial, or None if there is nothing to do."""
     procedure = training.procedure
     if training.phase is Phase.REGISTERED and not is_in_study:
         return _Job(training.trial_id, training.phase, 0)
@@ -200,7 +199,6 @@ def _asked(ask: Ask, command: str, arguments: Mapping[str, Any]) -> Mapping[str,
 
 
 def _with_progress(analysis: TrialAnalysis, earlier: Sequence[PastTrial]) -> TrialAnalysis:
-    """Return the analysis of a scored trial with the trainee's progress."""
     record, score = analysis.record, analysis.score
     if score is None or record.task == TRIAL_RUN:
         return analysis

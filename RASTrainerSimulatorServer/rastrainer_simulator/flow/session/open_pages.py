@@ -42,7 +42,12 @@ class PageRow:
 
 @dataclass(frozen=True)
 class PageContent:
-    """The content of a page, in the order of `Menu`."""
+    """The content of a page, in the order of `Menu`.
+
+    Attributes:
+        first: name of the row that has the focus when the page opens; "" is the first that can be
+            chosen.
+    """
 
     title: str
     paragraphs: Sequence[str] = ()
@@ -50,6 +55,7 @@ class PageContent:
     rows: Sequence[PageRow] = ()
     picture: ControlsPicture = ""
     trend: ScoreTrend | None = None
+    first: str = ""
 
 
 class Page:
@@ -57,39 +63,23 @@ class Page:
 
     Attributes:
         name: of the menu.
-        first: name of the row that has the focus at first; "" is the first that can be chosen.
         is_private: whether its rows are only for the views of who operates.
         pause_goes_back: whether the control that pauses, which opened the page, also closes it.
     """
 
-    name: ClassVar[str] = ""
-    first: str = ""
+    name: str = ""
     is_private: ClassVar[bool] = False
-    pause_goes_back: ClassVar[bool] = False
+    pause_goes_back: bool = False
 
     def content(self) -> PageContent:
         raise NotImplementedError
 
     def say(self, key: str, **values: object) -> str:
-        """Return a sentence in the chosen language."""
         raise NotImplementedError
 
     def back(self) -> None:
         """Leave the page, as the trainee wants."""
         raise NotImplementedError
-
-    def menu(self) -> Menu:
-        """Return the menu without a focus."""
-        shown = self.content()
-        return Menu(
-            self.name,
-            shown.title,
-            tuple(shown.paragraphs),
-            tuple(shown.facts),
-            tuple(row.item for row in shown.rows),
-            picture=shown.picture,
-            trend=shown.trend,
-        )
 
     def button(
         self, name: str, accept: Callable[[], object] | None = None, label: str = "", **others: Any
@@ -101,7 +91,6 @@ class Page:
     def choice(
         self, name: str, value: str, step: Callable[[int], object], label: str = "", **others: Any
     ) -> PageRow:
-        """Return a choice; accepting it steps on."""
         row = self.button(name, lambda: step(1), label, kind=ItemKind.CHOICE, value=value, **others)
         return dataclasses.replace(row, step=step)
 
@@ -136,8 +125,9 @@ class OpenPages:
         home: makes the page that all others lie over.
     """
 
+    home: Callable[[], Page]
+
     def __init__(self, happened: Callable[[FeedbackEvent], None]) -> None:
-        self.home: Callable[[], Page] = _no_home
         self._happened = happened
         self._open: list[Page] = []
         self._focus: list[str] = []
@@ -148,7 +138,6 @@ class OpenPages:
         return self._open[-1] if self._open else None
 
     def show(self, page: Page | None, ignore_input_briefly: bool = False) -> None:
-        """Close all pages and open one, or none."""
         while self._open:
             self.close()
         if page is not None:
@@ -160,14 +149,13 @@ class OpenPages:
             self.top.advance(dt)
 
     def show_start(self) -> None:
-        """Close all pages except the first."""
         self.show(self.home())
 
     def open(self, page: Page, ignore_input_briefly: bool = False) -> None:
         """Open a page over the others; with a grace time where it opens automatically."""
         self._grace_s = GRACE_S if ignore_input_briefly else 0.0
         self._open.append(page)
-        self._focus.append(page.first)
+        self._focus.append(page.content().first)
 
     def close(self) -> None:
         if self._open:
@@ -179,11 +167,19 @@ class OpenPages:
         self.open(page)
 
     def menu(self) -> Menu | None:
-        page = self.top
-        if page is None:
+        if self.top is None:
             return None
-        menu = page.menu()
-        return dataclasses.replace(menu, focus=self._focused(menu))
+        shown = self.top.content()
+        return Menu(
+            self.top.name,
+            shown.title,
+            tuple(shown.paragraphs),
+            tuple(shown.facts),
+            tuple(row.item for row in shown.rows),
+            self._focused(shown.rows),
+            shown.picture,
+            shown.trend,
+        )
 
     def pressed(self, control: ControlName) -> None:
         page = self.top
@@ -192,9 +188,13 @@ class OpenPages:
         if control in _MOVES:
             self.move(_MOVES[control])
         elif control in _STEPS:
-            self._step(_STEPS[control])
+            row = self._row()
+            if row is not None and row.item.kind is ItemKind.CHOICE:
+                self._happened(FeedbackEvent.FOCUS if row.item.is_enabled else FeedbackEvent.ERROR)
+                if row.item.is_enabled:
+                    row.step(_STEPS[control])
         elif control is ControlName.ACCEPT:
-            self.choose(self._focused(page.menu()))
+            self.choose(self._focused(page.content().rows))
         elif control is ControlName.PAUSE and page.pause_goes_back:
             page.back()
         elif control in (ControlName.BACK, ControlName.MENU):
@@ -203,14 +203,13 @@ class OpenPages:
 
     def move(self, direction: int) -> None:
         """Move the focus to the next (1) or previous (−1) row, around the ends."""
-        page = self.top
-        if page is None:
+        if self.top is None:
             return
-        menu = page.menu()
-        names = [item.name for item in menu.items if item.kind is not ItemKind.AXIS]
+        rows = self.top.content().rows
+        names = [row.item.name for row in rows if row.item.kind is not ItemKind.AXIS]
         if names:
-            place = names.index(self._focused(menu)) + direction
-            self._focus[-1] = names[place % len(names)]
+            place = names.index(self._focused(rows)) + direction
+            self.focus(names[place % len(names)])
             self._happened(FeedbackEvent.FOCUS)
 
     def focus(self, name: str) -> None:
@@ -221,7 +220,7 @@ class OpenPages:
         """Choose a row: press a button, step a choice, go to a text."""
         row = self._row(name)
         if row is not None:
-            self._focus[-1] = name
+            self.focus(name)
             self._happened(FeedbackEvent.ACCEPT if row.item.is_enabled else FeedbackEvent.ERROR)
             if row.item.is_enabled:
                 row.accept()
@@ -229,12 +228,12 @@ class OpenPages:
     def write(self, name: str, value: str) -> None:
         row = self._row(name)
         if row is not None and row.item.kind is ItemKind.TEXT:
-            self._focus[-1] = name
+            self.focus(name)
             row.write(value)
 
     def typed(self, code: str, text: str) -> tuple[str, str] | None:
         """Return the text that has the focus, and its value after a key; None without one."""
-        row, is_deleting = self._focused_row(), code == "Backspace"
+        row, is_deleting = self._row(), code == "Backspace"
         if row is None or row.item.kind is not ItemKind.TEXT:
             return None
         if not is_deleting and (len(text) != 1 or not text.isprintable()):
@@ -242,31 +241,20 @@ class OpenPages:
         value = row.item.value
         return row.item.name, value[:-1] if is_deleting else value + text
 
-    def _step(self, direction: int) -> None:
-        row = self._focused_row()
-        if row is not None and row.item.kind is ItemKind.CHOICE:
-            self._happened(FeedbackEvent.FOCUS if row.item.is_enabled else FeedbackEvent.ERROR)
-            if row.item.is_enabled:
-                row.step(direction)
-
-    def _focused_row(self) -> PageRow | None:
-        return None if self.top is None else self._row(self._focused(self.top.menu()))
-
-    def _row(self, name: str) -> PageRow | None:
+    def _row(self, name: str | None = None) -> PageRow | None:
+        """Return the row of that name, or the one with the focus."""
         rows = () if self.top is None else self.top.content().rows
+        if rows and name is None:
+            name = self._focused(rows)
         return next((row for row in rows if row.item.name == name), None)
 
-    def _focused(self, menu: Menu) -> str:
+    def _focused(self, rows: Sequence[PageRow]) -> str:
         """Return the row with the focus: the first that can be chosen, where it is gone."""
         if self._grace_s > 0.0:
             return ""
-        items = [item for item in menu.items if item.kind is not ItemKind.AXIS]
+        items = [row.item for row in rows if row.item.kind is not ItemKind.AXIS]
         names = [item.name for item in items]
         if self._focus[-1] in names:
             return self._focus[-1]
         chosen = next((item.name for item in items if item.is_enabled), "")
         return chosen or (names[0] if names else "")
-
-
-def _no_home() -> Page:
-    raise RuntimeError("There is no home page yet.")

@@ -23,23 +23,21 @@ SHOW, TILT = "sticks", "tilt"
 """Names of the hints that show or hide the sticks, and have the right stick tilt the tool."""
 
 
-@dataclass(frozen=True)
 class OperatorDevice:
     """The device of the holder of control, or the likely one before anyone has it.
 
     Attributes:
         controls: who has control, and which input does what.
         texts: name the inputs in the chosen language.
-        mode: "desktop" or "hmd".
-        has_screen_sticks: whether views draw sticks for a mouse.
         layouts: labels of the keys of each view, by their W3C codes.
+        screen_sticks: those that views draw for a mouse.
     """
 
-    controls: Controls
-    texts: Texts
-    mode: str
-    has_screen_sticks: bool
-    layouts: dict[int, Mapping[str, str]]
+    def __init__(self, controls: Controls, texts: Texts) -> None:
+        self.controls = controls
+        self.texts = texts
+        self.layouts: dict[int, Mapping[str, str]] = {}
+        self.screen_sticks = ScreenSticks()
 
     @property
     def kind(self) -> InputDevice:
@@ -51,32 +49,31 @@ class OperatorDevice:
             has_pad = holder.kind not in (SourceKind.KEYBOARD, SourceKind.MOUSE)
         return InputDevice.GAMEPAD if has_pad else InputDevice.KEYBOARD
 
-    @property
-    def learned(self) -> SourceKind:
-        """The device that drives the arm, if it has its own controls to be learned."""
+    def learned(self, mode: str) -> SourceKind:
+        """Return the device that drives the arm, if it has its own controls to be learned.
+
+        `mode` is "desktop" or "hmd".
+        """
         holder = self.controls.holder
         if holder is not None and holder.kind in (SourceKind.XR, SourceKind.TOUCH_SCREEN):
             return holder.kind
         if self.steers_by_mouse:
             return SourceKind.MOUSE
-        has_pad = self.kind is InputDevice.GAMEPAD
         # In a headset the trainee holds its controllers, unless a gamepad is in use.
-        other = SourceKind.XR if self.mode == Mode.HMD.value else SourceKind.KEYBOARD
-        return SourceKind.GAMEPAD if has_pad else other
+        other = SourceKind.XR if mode == Mode.HMD.value else SourceKind.KEYBOARD
+        return SourceKind.GAMEPAD if self.kind is InputDevice.GAMEPAD else other
 
     @property
     def steers_by_mouse(self) -> bool:
-        return self.has_screen_sticks and self.is_one_of((SourceKind.MOUSE,))
+        return self.screen_sticks.is_shown and self.is_one_of((SourceKind.MOUSE,))
 
     @property
     def picture(self) -> ControlsPicture:
-        """Which drawing shows what the operator uses."""
         if self.is_one_of((SourceKind.XR,)):
             return "controllers"
         return "gamepad" if self.kind is InputDevice.GAMEPAD else "keyboard"
 
     def is_one_of(self, kinds: tuple[SourceKind, ...]) -> bool:
-        """Return whether what the operator uses is one of these."""
         holder = self.controls.holder
         return holder is not None and holder.kind in kinds
 
@@ -106,10 +103,6 @@ class OperatorDevice:
             shared += 1
         return " ".join(words[0][:shared] or labels)
 
-    def input_labels(self, device: InputDevice, control: ControlName) -> str:
-        names = self.controls.bindings.table(device)[control]
-        return self.texts.listed(self.input_label(device, name) for name in names)
-
     def input_label(self, device: InputDevice, name: str) -> str:
         """Return the name of an input; of a key, as on the operator's keyboard if it is known."""
         holder = self.controls.holder
@@ -119,6 +112,7 @@ class OperatorDevice:
         return input_label(self.texts, device.value, name, names)
 
 
+@dataclass
 class ScreenSticks:
     """Whether the sticks are shown, and their functions that a click switches.
 
@@ -131,10 +125,9 @@ class ScreenSticks:
         is_tilting: whether the right stick tilts the tool in place of lifting and lowering it.
     """
 
-    def __init__(self) -> None:
-        self.is_shown = False
-        self.is_slow = False
-        self.is_tilting = False
+    is_shown: bool = False
+    is_slow: bool = False
+    is_tilting: bool = False
 
     def pressed(self, name: str) -> bool:
         """Switch what a click stands for; return whether it concerns the sticks."""
@@ -151,7 +144,6 @@ class ScreenSticks:
     def moved(
         self, translation: tuple[float, float, float], rotation: tuple[float, float]
     ) -> OperatorInput:
-        """Return what the sticks mean, as `OperatorInput` has it."""
         right, forward, up = translation
         if self.is_tilting:
             rotation, up = (rotation[0], up), 0.0

@@ -5,7 +5,7 @@ Checkpoints are marks on the patient's skin, as fiducials are: they are drawn wh
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 
 from rastrainer.procedure.geometry import BoneAhead
 from rastrainer.transforms import MM_PER_M
@@ -25,27 +25,23 @@ def plan_marks(
 ) -> tuple[ErrorArrow, ...]:
     """Return the lines of a plan as they are drawn, by the registration; () before it is accepted.
 
+    The current one has its entry and the tables of the skull on it.
+
     Args:
         procedure: its progress.
         bone: where its lines go through bone.
     """
-    return () if procedure.present is None else tuple(_line_marks(procedure, bone))
-
-
-def checkpoint_marks(
-    procedure: ProcedureState, places: Mapping[str, Vector]
-) -> tuple[ErrorArrow, ...]:
-    """Return the checkpoints as named marks; those touched by this registration are green.
-
-    Args:
-        procedure: its progress.
-        places: of the checkpoints by name, World, m.
-    """
-    touched = {each.name for each in procedure.checkpoints}
-    return tuple(
-        ErrorArrow(place, place, Tone.GOOD if name in touched else Tone.WARNING, name)
-        for name, place in places.items()
-    )
+    marks: list[ErrorArrow] = []
+    for number, trajectory in enumerate(procedure.trajectories if procedure.present else ()):
+        line = trajectory.line
+        if number != procedure.trajectory:
+            marks.append(drawn(line, Tone.PLAIN))
+            continue
+        marks += [drawn(line, PLANNED, BEFORE_ENTRY_M), ball(line.entry, PLANNED)]
+        tables = bone[number] if number < len(bone) else None
+        depths = () if tables is None else (tables.outer_mm, tables.inner_mm)
+        marks += [ball(_on(line, depth), SHOWN) for depth in depths if depth is not None]
+    return tuple(marks)
 
 
 def depth_ruler(
@@ -71,12 +67,7 @@ def depth_ruler(
         None if bone is None else along(_on(line, bone.outer_mm)),
         None if inner is None else along(_on(line, inner)),
         along(line.target),
-        (
-            texts.say("ruler.entry"),
-            texts.say("ruler.outer"),
-            texts.say("ruler.inner"),
-            texts.say("ruler.target"),
-        ),
+        tuple(texts.say(f"ruler.{name}") for name in ("entry", "outer", "inner", "target")),
     )
 
 
@@ -94,26 +85,8 @@ def drawn(line: PlannedLine, tone: Tone, before_m: float = 0.0) -> ErrorArrow:
     return ErrorArrow(begin, line.target, tone)
 
 
-def ball(place: Vector, tone: Tone) -> ErrorArrow:
-    return ErrorArrow(place, place, tone)
-
-
-def _line_marks(
-    procedure: ProcedureState, bone: Sequence[BoneAhead | None]
-) -> Iterator[ErrorArrow]:
-    """Yield the lines; the current one with its entry and the tables of the skull on it."""
-    for number, trajectory in enumerate(procedure.trajectories):
-        line = trajectory.line
-        if number != procedure.trajectory:
-            yield drawn(line, Tone.PLAIN)
-            continue
-        yield drawn(line, PLANNED, BEFORE_ENTRY_M)
-        yield ball(line.entry, PLANNED)
-        tables = bone[number] if number < len(bone) else None
-        depths = () if tables is None else (tables.outer_mm, tables.inner_mm)
-        for depth_mm in depths:
-            if depth_mm is not None:
-                yield ball(_on(line, depth_mm), SHOWN)
+def ball(place: Vector, tone: Tone, name: str = "") -> ErrorArrow:
+    return ErrorArrow(place, place, tone, name)
 
 
 def _on(line: PlannedLine, depth_mm: float) -> Vector:

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
+from enum import Enum
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, get_type_hints
 
-from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import write_private_json
-from rastrainer.json_checks import accepted, text
-from rastrainer.protocol import TRIAL_RUN, GhostRule, Guidance, TouchRule, TutorialRule
+from rastrainer.json_checks import text
+from rastrainer.json_records import record_from_json, record_to_json
+from rastrainer.protocol import GhostRule, Guidance, TouchRule, TutorialRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.ops.instructor_pin import PinAnswer, PinGuesses
@@ -22,13 +23,27 @@ from rastrainer_simulator.texts.texts import LANGUAGES
 
 PREFERENCES_FILE = "preferences.json"
 MAX_BYTES = 2**14
-_ARROW_TASKS = 2
-"""How many tasks after the trial run have an arrow, where guidance fades."""
+
+
+class _OneOf:
+    """Accepts one of some options; 1 is not true."""
+
+    def __init__(self, *options: Any) -> None:
+        self.options = options
+
+    def __call__(self, value: Any) -> Any:
+        if not any(type(value) is type(each) and value == each for each in self.options):
+            raise ValueError("one of " + ", ".join(map(json.dumps, self.options)))
+        return value
+
+
+def _any_of(kind: type[Enum]) -> _OneOf:
+    return _OneOf(*(each.value for each in kind))
 
 
 @dataclasses.dataclass(frozen=True)
 class Preferences:
-    """Each but the expert is one of its `OPTIONS`.
+    """What was chosen; each but the expert has `OPTIONS`.
 
     Attributes:
         language: of everything the trainee reads.
@@ -49,22 +64,22 @@ class Preferences:
         tutorial: whether it comes before the trial run, unless a study says otherwise.
     """
 
-    language: str = "en"
-    volume: int = 70
-    muted: bool = False
-    speech: bool = False
-    order: str = "fixed"
-    coarse: int = 150
-    fine: int = 20
-    axes: str = AxesChoice.CAMERA.value
-    direction: str = ToolDirection.CLEAR.value
-    touch: str = TouchRule.ON_SKIN.value
-    self_alignment: bool = True
-    view: str = "practice"
-    guidance: str = Guidance.FADING.value
-    ghost: str = GhostRule.OFF.value
-    expert: str = ""
-    tutorial: str = TutorialRule.REQUIRED.value
+    language: Annotated[str, _OneOf(*LANGUAGES)] = "en"
+    volume: Annotated[int, _OneOf(*range(0, 101, 10))] = 70
+    muted: Annotated[bool, _OneOf(False, True)] = False
+    speech: Annotated[bool, _OneOf(False, True)] = False
+    order: Annotated[str, _OneOf("fixed", "any")] = "fixed"
+    coarse: Annotated[int, _OneOf(50, 100, 150, 200, 300)] = 150
+    fine: Annotated[int, _OneOf(5, 10, 20, 40)] = 20
+    axes: Annotated[str, _any_of(AxesChoice)] = AxesChoice.CAMERA.value
+    direction: Annotated[str, _any_of(ToolDirection)] = ToolDirection.CLEAR.value
+    touch: Annotated[str, _any_of(TouchRule)] = TouchRule.ON_SKIN.value
+    self_alignment: Annotated[bool, _OneOf(True, False)] = True
+    view: Annotated[str, _OneOf("practice", "always", "never")] = "practice"
+    guidance: Annotated[str, _any_of(Guidance)] = Guidance.FADING.value
+    ghost: Annotated[str, _any_of(GhostRule)] = GhostRule.OFF.value
+    expert: Annotated[str, text(64, 0)] = ""
+    tutorial: Annotated[str, _any_of(TutorialRule)] = TutorialRule.REQUIRED.value
 
     def stepped(self, name: str, direction: int) -> Preferences:
         """Return the preferences with one of them moved to its next or previous option."""
@@ -73,7 +88,6 @@ class Preferences:
         return dataclasses.replace(self, **{name: options[place]})
 
     def applied_to(self, settings: SimulationSettings) -> SimulationSettings:
-        """Return the simulation's settings as preferred."""
         teleoperation = settings.teleoperation
         return dataclasses.replace(
             settings,
@@ -92,24 +106,11 @@ class Preferences:
 
 
 OPTIONS: Mapping[str, tuple[Any, ...]] = {
-    "language": tuple(LANGUAGES),
-    "volume": tuple(range(0, 101, 10)),
-    "muted": (False, True),
-    "speech": (False, True),
-    "order": ("fixed", "any"),
-    "coarse": (50, 100, 150, 200, 300),
-    "fine": (5, 10, 20, 40),
-    "axes": tuple(choice.value for choice in AxesChoice),
-    "direction": tuple(choice.value for choice in ToolDirection),
-    "touch": tuple(rule.value for rule in TouchRule),
-    "self_alignment": (True, False),
-    "view": ("practice", "always", "never"),
-    "guidance": tuple(choice.value for choice in Guidance),
-    "ghost": tuple(rule.value for rule in GhostRule),
-    "tutorial": tuple(rule.value for rule in TutorialRule),
+    name: mark.options
+    for name, hint in get_type_hints(Preferences, include_extras=True).items()
+    for mark in hint.__metadata__
+    if isinstance(mark, _OneOf)
 }
-
-EXPERT = "expert"
 OF_THE_SIMULATION = ("coarse", "fine", "axes", "direction", "touch", "self_alignment")
 OF_INSTRUCTORS = ("order", "tutorial")
 """Preferences that are changed in the file, or with the instructor's PIN where there is one.
@@ -123,33 +124,12 @@ OF_A_TRIAL = (*OF_THE_SIMULATION, "guidance", "ghost")
 
 
 def read_preferences(path: Path) -> Preferences:
-    """Return the preferences of a file; missing ones have their defaults."""
     values = read_json(path, MAX_BYTES)
-    if not isinstance(values, dict) or not values.keys() <= {*OPTIONS, EXPERT}:
-        known = ", ".join((*OPTIONS, EXPERT))
-        raise InputError(f"{path} must be a JSON object with any of {known}.")
-    expert = accepted(text(64, 0), values.pop(EXPERT, ""), f"{path}: {EXPERT}")
-    for name, value in values.items():
-        options = OPTIONS[name]
-        if not any(type(value) is type(option) and value == option for option in options):
-            listed = ", ".join(json.dumps(option) for option in options)
-            raise InputError(f"{path}: {name} must be one of {listed}.")
-    return Preferences(**values, expert=expert)
+    return record_from_json(Preferences, values, str(path), only_known=True)
 
 
 def write_preferences(path: Path, preferences: Preferences) -> None:
-    """Save the preferences."""
-    write_private_json(path, dataclasses.asdict(preferences))
-
-
-def faded_guidance(choice: str, task: str, order: Sequence[str]) -> Guidance:
-    """Return the guidance of a task: `choice` is a `Guidance`, `order` names all tasks."""
-    if choice != Guidance.FADING:
-        return Guidance(choice)
-    if task == TRIAL_RUN:
-        return Guidance.WORDS
-    tasks = [name for name in order if name != TRIAL_RUN]
-    return Guidance.ARROW if task in tasks[:_ARROW_TASKS] else Guidance.NONE
+    write_private_json(path, record_to_json(preferences, with_defaults=True))
 
 
 class InstructorLock:
@@ -173,7 +153,6 @@ class InstructorLock:
 
     @property
     def is_locked(self) -> bool:
-        """Whether the PIN has to be entered first."""
         return self.has_pin and not self._is_open
 
     def guess(self, pin: str) -> None:
@@ -193,7 +172,6 @@ class InstructorLock:
         return answer
 
     def forget_guess(self) -> None:
-        """Unlock nothing by a PIN that is still being checked."""
         self._asked = None
 
     def lock(self) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from rastrainer.scenario.library import ListedScenario
 from rastrainer_simulator.core.settings import SimulationSettings
-from rastrainer_simulator.flow.session.assigned_training import Curricula, StudySteps
+from rastrainer_simulator.flow.session.assigned_training import AssignedTraining
 from rastrainer_simulator.loop.control_loop import BEING_SET_UP, TRIAL_IS_OPEN, ControlLoop
 from rastrainer_simulator.ops.instructor_pin import PinGuesses
 from rastrainer_simulator.state import Answer
@@ -41,8 +41,7 @@ class FlowServices:
     use_scenario: Callable[[str], Future[Answer]]
     is_slicer_connected: Callable[[], bool]
     quit: Callable[[], None]
-    study: StudySteps = field(default_factory=StudySteps)
-    curricula: Curricula = field(default_factory=Curricula)
+    assigned: AssignedTraining = field(default_factory=AssignedTraining)
     scores_alone: bool = False
     pin: PinGuesses | None = None
 
@@ -53,7 +52,6 @@ class SimulationReload:
     def __init__(
         self, services: FlowServices, control_loop: ControlLoop, complain: Callable[[str], None]
     ) -> None:
-        """`complain` is called with the reason for a failure."""
         self._services = services
         self._control_loop = control_loop
         self._complain = complain

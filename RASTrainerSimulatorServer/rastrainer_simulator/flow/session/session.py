@@ -16,13 +16,10 @@ from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Mode, RegistrationMethod
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
 from rastrainer.study_messages import AssignmentStanding, CurriculumMessage, StudyStep
-from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.flow.session.assigned_training import (
-    AssignmentTexts,
-)
+from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
 from rastrainer_simulator.flow.session.local_scorer import LocalScorer
 from rastrainer_simulator.flow.session.open_pages import OpenPages
-from rastrainer_simulator.flow.session.operator_device import OperatorDevice, ScreenSticks
+from rastrainer_simulator.flow.session.operator_device import OperatorDevice
 from rastrainer_simulator.flow.session.preferences import (
     PREFERENCES_FILE,
     InstructorLock,
@@ -46,7 +43,7 @@ from rastrainer_simulator.presentation.screen import Notices, Tone
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.replay.ghost import TrialGhost
 from rastrainer_simulator.replay.recorded_trial import TrialLoading, load_trial
-from rastrainer_simulator.state import Answer, OperatorInput, SimulationState, TrainingState
+from rastrainer_simulator.state import Answer, SimulationState, TrainingState
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from rastrainer_simulator.vectors import Vector, in_meters
 from rastrainer_simulator.viewpoint.view_control import Orbit
@@ -67,11 +64,11 @@ class TrainingSession:
         has_read_introduction: whether the pages before the experiment menu can be skipped.
         local_scorer: scores a trial if no Slicer does; None if only Slicer may.
         happened: gives feedback by sound and vibration.
-        layouts: labels of the keys of each view, by their W3C codes.
         picture_share: how much of its picture the trainee's view has, 0 to 1, while it is awaited;
             else None.
         goes_on_blind: the trial that the trainee wants to go on without its picture; "" for none.
         reload: has the simulation continue with other settings, or on another head.
+        practiced: task and point of the latest practice; no point for the tutorial.
     """
 
     def __init__(
@@ -100,24 +97,20 @@ class TrainingSession:
         )
         self.happened = happened
         self.pages = OpenPages(happened)
+        self.operator = OperatorDevice(controls, self.texts)
         self.view = TrialView()
         self.ghost = TrialGhost()
         self.places = TracePlaces()
         self.tutorial: Tutorial | None = None
         self.tutorials = FinishedTutorials(services.records)
-        self.screen_sticks = ScreenSticks()
-        self.layouts: dict[int, Mapping[str, str]] = {}
+        self.screen_sticks = self.operator.screen_sticks
         self.lock = InstructorLock(services.pin)
-        self.list_scenarios = services.list_scenarios
-        self.is_slicer_connected = services.is_slicer_connected
-        self.quit = services.quit
-        self.study = services.study
         self.reload = SimulationReload(services, control_loop, self.complain)
-        self._services = services
-        self._control_loop = control_loop
-        self._controls = controls
+        self.services = services
+        self.control_loop = control_loop
+        self.controls = controls
+        self.practiced = TRIAL_RUN, ""
         self._asked: list[tuple[str, Future[Answer]]] = []
-        self._practiced = TRIAL_RUN, ""
         self.notices = Notices()
         self.picture_share: float | None = None
         self.goes_on_blind = ""
@@ -135,13 +128,12 @@ class TrainingSession:
 
     @property
     def step(self) -> StudyStep | None:
-        """The next step of the trainee's study; None without a study."""
-        return self.study.step_of(self.trainee_id)
+        return self.services.assigned.steps.get(self.trainee_id)
 
     @property
     def trial_step(self) -> StudyStep | None:
         """The same for the trainee of the present trial."""
-        return self.study.step_of(self.training.trainee)
+        return self.services.assigned.steps.get(self.training.trainee)
 
     @property
     def has_open_trial(self) -> bool:
@@ -153,25 +145,8 @@ class TrainingSession:
         return tuple(self.state.tool_tip_to_world[:3, 3].tolist())
 
     @property
-    def setup(self) -> SimulationSetup:
-        return self._control_loop.setup
-
-    @property
     def scenario(self) -> Scenario:
-        return self.setup.scenario
-
-    @property
-    def bindings(self) -> Bindings:
-        return self._controls.bindings
-
-    @property
-    def held(self) -> OperatorInput:
-        return self._controls.held
-
-    @property
-    def operator(self) -> OperatorDevice:
-        has_sticks = self.screen_sticks.is_shown
-        return OperatorDevice(self._controls, self.texts, self.mode, has_sticks, self.layouts)
+        return self.control_loop.setup.scenario
 
     @property
     def curriculum(self) -> CurriculumMessage | None:
@@ -179,9 +154,9 @@ class TrainingSession:
 
         None without one, in a study, which comes before it, and while no Slicer is connected.
         """
-        if self.step is not None or not self.is_slicer_connected():
+        if self.step is not None or not self.services.is_slicer_connected():
             return None
-        return self._services.curricula.of(self.trainee_id)
+        return self.services.assigned.curricula.get(self.trainee_id)
 
     @property
     def next_assignment(self) -> AssignmentStanding | None:
@@ -194,7 +169,6 @@ class TrainingSession:
         return AssignmentTexts(self.texts, self.task_title, self.procedure_title)
 
     def advance(self, dt: float, state: SimulationState) -> None:
-        """Process the newest state, and the answers of the last `dt` seconds."""
         self.notices.advance(dt)
         self.state = state
         self.places.advance(dt, state)
@@ -203,26 +177,31 @@ class TrainingSession:
         if self.local_scorer is not None:
             is_in_study = self.trial_step is not None
             self.local_scorer.advance(dt, self.training, self.scenario, is_in_study)
-        self._take_answers()
+        asked, self._asked = self._asked, []
+        for command, answer in asked:
+            if not answer.done():
+                self._asked.append((command, answer))
+            # A touch that does not count comes as a separate event, with its own sound.
+            elif not answer.result().ok and command != CommandName.CAPTURE:
+                self.complain(answer.result().message)
         self._note_reached()
         self.reload.advance(dt, self.has_open_trial)
 
     def do(self, command: str, arguments: Mapping[str, Any] | None = None) -> None:
-        holder = self._controls.holder
+        holder = self.controls.holder
         sender = "" if holder is None else holder.kind.value
         try:
             checked = check_arguments(command, arguments or {})
         except InputError as error:
             self.complain(str(error))
         else:
-            self._asked.append((command, self._control_loop.submit(command, checked, sender)))
+            self._asked.append((command, self.control_loop.submit(command, checked, sender)))
 
-    def begin_tutorial(self) -> None:
-        """Open the tutorial, in place of any page, unless its head is about to go."""
-        self.begin_practice(TRIAL_RUN)
+    def begin_tutorial(self, task: str = TRIAL_RUN, point: str = "") -> None:
+        """Open the tutorial, or the practice of a task's point, in place of any page.
 
-    def begin_practice(self, task: str, point: str = "") -> None:
-        """Open the practice of a task's point, recorded nowhere; without one the tutorial."""
+        It is recorded nowhere, and refused while its head is about to go.
+        """
         if self.reload.is_under_way:
             self.complain(self.texts.say("being set up"))
             return
@@ -232,15 +211,14 @@ class TrainingSession:
         except InputError as error:
             self.complain(str(error))
             return
-        self.tutorial = Tutorial(self.setup, self.state, arguments, point)
-        self._practiced = task, point
+        self.tutorial = Tutorial(self.control_loop.setup, self.state, arguments, point)
+        self.practiced = task, point
         practice = self.tutorial.practice
-        self.view.begin(self.setup, practice.truth, practice.shown(self.state))
+        self.view.begin(
+            self.control_loop.setup, practice.training.truth, practice.shown(self.state)
+        )
         self.view.control.go(TUTORIAL_VIEW)
         self.pages.show(None)
-
-    def restart_practice(self) -> None:
-        self.begin_practice(*self._practiced)
 
     def end_tutorial(self) -> TutorialOutcome | None:
         """Leave the tutorial; if all of it is done, keep its outcome and return it."""
@@ -250,35 +228,30 @@ class TrainingSession:
         self.view.close()
         if tutorial.step is not None:
             return None
-        outcome = tutorial.outcome(self.operator.learned)
+        outcome = tutorial.outcome(self.operator.learned(self.mode))
         if not tutorial.practiced:
             self._save(lambda: self.tutorials.keep(outcome))
         return outcome
 
     def prefer(self, preferences: Preferences) -> None:
-        before = self._control_loop.setup.settings
+        before = self.control_loop.setup.settings
         self.preferences = preferences
-        self.texts = Texts(LANGUAGES[preferences.language])
+        self.texts = self.operator.texts = Texts(LANGUAGES[preferences.language])
         self.reload.request(before, preferences.applied_to(before))
-        self._save(lambda: write_preferences(self._services.config / PREFERENCES_FILE, preferences))
-
-    def fiducial(self, label: str) -> Vector:
-        """Return where a fiducial of the present trial is, World, m: only after the score."""
-        return self.truly_in_world(self._control_loop.truth.fiducials_ras[label])
+        self._save(lambda: write_preferences(self.services.config / PREFERENCES_FILE, preferences))
 
     def truly_in_world(self, point: np.ndarray) -> Vector:
         """Return where a point of the MRI (RAS mm) truly is, World, m: only after the score."""
-        return in_meters(self._control_loop.truth.in_world(point))
+        return in_meters(self.control_loop.truth.in_world(point))
 
     def planned_bone(self, procedure: str) -> tuple[BoneAhead | None, ...]:
-        """Return where the lines of a procedure go through bone, as planned."""
-        return self._control_loop.planned_bone.get(procedure, ())
+        return self.control_loop.planned_bone.get(procedure, ())
 
     def load_trial(self, trial_id: str) -> TrialLoading:
-        found = journals_of(self._services.records, trial_id)
+        found = journals_of(self.services.records, trial_id)
         if not found:
             raise InputError(self.texts.say("replay.no journal"))
-        return load_trial(found[0], self._control_loop.setup)
+        return load_trial(found[0], self.control_loop.setup)
 
     def note_done(self) -> None:
         self.progress.note(self.training.trainee, self.scenario.name, self.training.task)
@@ -298,8 +271,8 @@ class TrainingSession:
         return "done" if self.progress.has_done(trainee, scenario, task) else ""
 
     def rebind(self, bindings: Bindings) -> None:
-        self._controls.bindings = bindings
-        self._save(lambda: write_bindings(self._services.config / BINDINGS_FILE, bindings))
+        self.controls.bindings = bindings
+        self._save(lambda: write_bindings(self.services.config / BINDINGS_FILE, bindings))
 
     def complain(self, text: str) -> None:
         self.notices.add(self.texts.again(text), Tone.ERROR)
@@ -318,12 +291,11 @@ class TrainingSession:
 
     @property
     def practice_title(self) -> str:
-        task, point = self._practiced
+        task, point = self.practiced
         key = "tutorial.practice" if point else "tutorial.title"
         return self.texts.say(key, task=self.task_title(task), point=point)
 
     def preparing(self) -> str:
-        """Return how far the awaited picture is; "" where none is awaited."""
         share = self.picture_share
         if share is None:
             return ""
@@ -340,12 +312,11 @@ class TrainingSession:
             task=f"{task} {self.texts.say(by)}" if by in self.texts else task,
             mode=self.texts.say(f"study.{step.mode}") if step.mode else "",
             minutes=step.minutes,
-            left=self.duration(self.study.break_left_s(step.trainee)),
+            left=self.duration(self.services.assigned.break_left_s(step.trainee)),
             questionnaire=step.questionnaire if asked is None else asked.title,
         )
 
     def duration(self, seconds: float) -> str:
-        """Return minutes and seconds, such as 03:21."""
         whole = int(seconds)
         return f"{whole // 60:02d}:{whole % 60:02d}"
 
@@ -367,13 +338,3 @@ class TrainingSession:
             write()
         except InputError as error:
             self.complain(str(error))
-
-    def _take_answers(self) -> None:
-        """Show why answered commands were refused."""
-        asked, self._asked = self._asked, []
-        for command, answer in asked:
-            if not answer.done():
-                self._asked.append((command, answer))
-            # A touch that does not count comes as a separate event, with its own sound.
-            elif not answer.result().ok and command != CommandName.CAPTURE:
-                self.complain(answer.result().message)

@@ -83,7 +83,6 @@ class TracePlaces:
         return TraceGuidance(COVERED_MM, self._place)
 
     def in_world(self) -> Vector | None:
-        """Return the next place in World, m; None if there is none."""
         if self._trial is None or self._place is None:
             return None
         place = self._trial[2].in_world(np.array(self._place.position_mm))

@@ -7,11 +7,10 @@ import json
 import re
 import uuid
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from pathlib import Path
-from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
@@ -49,13 +48,14 @@ class DoneTasks:
 
     Attributes:
         journals: of each trainee, oldest first; only those that were there at the beginning.
+        skipped: trainees and scenarios whose tasks do not wait for the trial run.
     """
 
     def __init__(self, records: Path) -> None:
         """Look through the folder's journals: at the first line and the end of each."""
         self.journals: dict[str, list[Path]] = defaultdict(list)
         self._done: dict[tuple[str, str], set[str]] = defaultdict(set)
-        self._skipped: set[tuple[str, str]] = set()
+        self.skipped: set[tuple[str, str]] = set()
         for path in sorted(records.glob("*.journal")):
             self._take(path)
 
@@ -65,16 +65,11 @@ class DoneTasks:
     def has_done(self, trainee: str, scenario: str, task: str) -> bool:
         return task in self._done.get((trainee, scenario), ())
 
-    def skip_trial_run(self, trainee: str, scenario: str) -> None:
-        """Have a trainee's tasks in a scenario not wait for the trial run."""
-        self._skipped.add((trainee, scenario))
-
     def needs_no_trial_run(self, trainee: str, scenario: str) -> bool:
         head = trainee, scenario
-        return head in self._skipped or bool(self._done.get(head))
+        return head in self.skipped or bool(self._done.get(head))
 
     def latest_trainees(self, count: int) -> tuple[str, ...]:
-        """Return at most this many trainees, the most recent first."""
         known = (trainee for trainee, journals in self.journals.items() if journals)
         latest = sorted(known, key=lambda trainee: self.journals[trainee][-1].name, reverse=True)
         return tuple(latest[:count])
@@ -88,7 +83,6 @@ class DoneTasks:
         return next((name for name in order[: order.index(task)] if name not in done), None)
 
     def _take(self, path: Path) -> None:
-        """Add a journal; ignore it if it cannot be read."""
         try:
             with path.open("rb") as file:
                 header = decode_line(file.readline(MAX_LINE_BYTES).rstrip(b"\n"), 1, NO_LINE)
@@ -116,34 +110,27 @@ _MAX_TUTORIAL_BYTES = 1 << 20
 
 
 class FinishedTutorials:
-    """Knows the devices that each trainee has finished the tutorial with."""
+    """Knows the devices that each trainee has finished the tutorial with.
+
+    Attributes:
+        latest: outcome of each trainee.
+        skipped: trainees whose trial run does not wait for the tutorial until the simulator ends.
+    """
 
     def __init__(self, records: Path) -> None:
         """Read the files of the folder; ignore unusable files."""
         self._records = records
         self._devices: dict[str, set[str]] = defaultdict(set)
-        self._latest: dict[str, TutorialOutcome] = {}
-        self._skipped: set[str] = set()
+        self.latest: dict[str, TutorialOutcome] = {}
+        self.skipped: set[str] = set()
         for path in sorted(records.glob(f"*{TUTORIAL_SUFFIX}")):
             with contextlib.suppress(InputError, OSError):
                 self._note(record_from_json(TutorialOutcome, read_json(path, _MAX_TUTORIAL_BYTES)))
 
-    def skip(self, trainee: str) -> None:
-        """Have a trainee's trial run not wait for the tutorial until the simulator ends."""
-        self._skipped.add(trainee)
-
-    def has_skipped(self, trainee: str) -> bool:
-        return trainee in self._skipped
-
     def has_done(self, trainee: str, device: SourceKind) -> bool:
-        """Return whether a trainee has finished the tutorial with a device."""
         return device.value in self._devices.get(trainee, ())
 
-    def latest(self, trainee: str) -> TutorialOutcome | None:
-        return self._latest.get(trainee)
-
     def keep(self, outcome: TutorialOutcome) -> None:
-        """Count a finished tutorial, and write its file."""
         self._note(outcome)
         utc = iso(datetime.now(timezone.utc))
         path = self._records / f"{file_stamp(utc)}_{uuid.uuid4()}{TUTORIAL_SUFFIX}"
@@ -157,7 +144,7 @@ class FinishedTutorials:
 
     def _note(self, outcome: TutorialOutcome) -> None:
         self._devices[outcome.trainee].update(_COUNTS_FOR.get(outcome.device, (outcome.device,)))
-        self._latest[outcome.trainee] = outcome
+        self.latest[outcome.trainee] = outcome
 
 
 MAX_SHOWN = 20
@@ -177,12 +164,14 @@ class OwnTrial:
         scenario: name of the head.
         started_utc: ISO 8601.
         is_passed: None without a pass mark.
+        journal: file in which it is recorded.
     """
 
     past: PastTrial
     scenario: str
     started_utc: str
     is_passed: bool | None
+    journal: Path = Path()
 
 
 class ScoreHistory:
@@ -210,7 +199,6 @@ class ScoreHistory:
         return tuple(trial for trial in found if trial is not None)
 
     def of(self, trainee: str) -> tuple[PastTrial, ...]:
-        """Return the same as progress is computed from it."""
         return tuple(trial.past for trial in self.own(trainee))
 
     def best(self, trainee: str, task: str) -> tuple[Path, ...]:
@@ -218,15 +206,15 @@ class ScoreHistory:
 
         Only fiducials are compared.
         """
-        self.of(trainee)
-        found = []
-        for path in self._journals.get(trainee, ()):
-            own = self._own[path]
-            if own is None or own.past.task != task or not own.past.acceptable:
-                continue
-            if own.past.method is RegistrationMethod.FIDUCIALS:
-                found.append((own.past.score, path))
-        return tuple(path for _score, path in sorted(found, key=lambda each: -each[0]))
+        found = [
+            own
+            for own in self.own(trainee)
+            if own.past.task == task
+            and own.past.acceptable
+            and own.past.method is RegistrationMethod.FIDUCIALS
+        ]
+        found.sort(key=lambda own: -own.past.score)
+        return tuple(own.journal for own in found)
 
     def trend(self, trainee: str, mode: str) -> tuple[float, ...]:
         """Return the newest scores of a trainee in a mode, by fiducials."""
@@ -242,11 +230,17 @@ class ScoreHistory:
 def _own_trial(journal: Path) -> OwnTrial | None:
     """Return the scored or failed trial of a journal; None for other and damaged journals."""
     try:
-        last = {entry["kind"]: entry for entry in _last_entries(journal)}
+        with journal.open("rb") as file:
+            file.seek(max(0, journal.stat().st_size - _TAIL_BYTES))
+            lines = file.read(_TAIL_BYTES).split(b"\n")
+        # The entries with the trial's outcome, each as it was written.
+        found = ((line, start) for line in lines if (start := _START.match(line)))
+        entries = (decode_line(line, int(start[1]), start[2].decode()) for line, start in found)
+        last = {entry["kind"]: entry for entry in entries}
         if "attempt" in last:
             aborted = record_from_json(AbortedTrial, last["attempt"]["record"])
             failed = PastTrial.failed(aborted)
-            own = OwnTrial(failed, aborted.scenario, aborted.started_utc, is_passed=False)
+            own = OwnTrial(failed, aborted.scenario, aborted.started_utc, False, journal)
             return own if aborted.counts_as_failed else None
         if "registered" not in last or "scored" not in last:
             return None
@@ -259,16 +253,6 @@ def _own_trial(journal: Path) -> OwnTrial | None:
         acceptable = details["isAccurate"] is True and not beyond_limits(details)
         past = PastTrial.scored(record, score, acceptable)
         verdict = is_passed(record.task, score, details)
-        return OwnTrial(past, record.scenario, record.started_utc, verdict)
+        return OwnTrial(past, record.scenario, record.started_utc, verdict, journal)
     except (OSError, DamagedLineError, InputError, KeyError, TypeError, ValueError):
         return None
-
-
-def _last_entries(journal: Path) -> Iterator[dict[str, Any]]:
-    """Yield the entries with a trial's outcome at the end of a journal, each as it was written."""
-    with journal.open("rb") as file:
-        file.seek(max(0, journal.stat().st_size - _TAIL_BYTES))
-        for line in file.read(_TAIL_BYTES).split(b"\n"):
-            found = _START.match(line)
-            if found is not None:
-                yield decode_line(line, int(found[1]), found[2].decode("ascii"))

@@ -75,7 +75,6 @@ class TrialView:
         self._went_for, self._is_wanted = None, False
 
     def has_moved_to(self, label: str | None) -> bool:
-        """Return whether the view has arrived at the best view of a point."""
         is_there = not self._is_wanted and not self.control.is_traveling
         return label is not None and label == self._went_for and is_there
 
@@ -92,7 +91,6 @@ class TrialView:
         sticks: OperatorInput,
         follows: bool,
     ) -> None:
-        """Move the view by `dt` seconds; `follows` has it go to each next point by itself."""
         camera = scenario.cameras[state.camera]
         self.control.use(state.camera)
         label = state.training.next_point

@@ -9,7 +9,7 @@ from enum import Enum
 
 from rastrainer.protocol import Mode
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.input.inputs import SourceKind
+from rastrainer_simulator.input.inputs import ControlName, SourceKind
 from rastrainer_simulator.record.trial_context import GUIDED_TOUCHES
 from rastrainer_simulator.state import TouchStage
 from rastrainer_simulator.teleoperation.steering import Axes
@@ -99,34 +99,48 @@ class TutorialObservation:
     has_paused: bool = False
 
 
+Amount = Callable[[float, TutorialObservation, TutorialObservation, TutorialObservation], float]
+"""Returns the amount after an observation; it is given the amount before, and the first, the
+previous and the newest observation of the step."""
+
+
 @dataclass(frozen=True)
-class StepMeasure:
-    """How much there is to do in a step, and how much of it is done.
+class StepRule:
+    """What there is to do in a step, and how much of it is done.
 
     Attributes:
+        controls: that do it; its sentence names the first, or the first two as a pair. Where slow
+            motion is among them, the tip may go anywhere.
         goal: 1 for a condition.
-        done: returns the amount after an observation; it is given the amount before, and the first,
-            the previous and the newest observation of the step.
+        done: how much is done.
+        shown: key of the text that says how much is done; "" for none.
     """
 
+    controls: tuple[ControlName, ...]
     goal: float
-    done: Callable[[float, TutorialObservation, TutorialObservation, TutorialObservation], float]
+    done: Amount
+    shown: str = ""
 
 
-def _moved(right: float = 0.0, forward: float = 0.0, up: float = 0.0) -> StepMeasure:
+DONE_MM, DONE_DEG = "tutorial.done mm", "tutorial.done degrees"
+
+
+def _moved(
+    control: ControlName, right: float = 0.0, forward: float = 0.0, up: float = 0.0
+) -> StepRule:
     """Measure how far the tip has moved in one direction, mm, since it last moved the other way."""
 
-    def along(before: TutorialObservation, now: TutorialObservation) -> float:
+    def done(
+        done: float, _first: object, before: TutorialObservation, now: TutorialObservation
+    ) -> float:
         way = now.axes.to_world((right, forward, up))
-        return MM_PER_M * dot(subtract(now.tip, before.tip), way)
+        return max(0.0, done + MM_PER_M * dot(subtract(now.tip, before.tip), way))
 
-    return StepMeasure(
-        MOVE_MM, lambda done, _first, before, now: max(0.0, done + along(before, now))
-    )
+    return StepRule((control,), MOVE_MM, done, DONE_MM)
 
 
 def _moved_slowly(
-    done: float, _first: TutorialObservation, before: TutorialObservation, now: TutorialObservation
+    done: float, _first: object, before: TutorialObservation, now: TutorialObservation
 ) -> float:
     """Return how far the tip has moved while the control for slow motion was held, mm."""
     is_slow = before.is_slow and now.is_slow
@@ -134,7 +148,7 @@ def _moved_slowly(
 
 
 def _view_turned(
-    done: float, first: TutorialObservation, _before: TutorialObservation, now: TutorialObservation
+    done: float, first: TutorialObservation, _before: object, now: TutorialObservation
 ) -> float:
     """Return by how much the view was turned, to any side, degrees."""
     turn = math.remainder(now.orbit.azimuth_deg - first.orbit.azimuth_deg, 360.0)
@@ -142,7 +156,7 @@ def _view_turned(
 
 
 def _looked_around(
-    done: float, first: TutorialObservation, _before: TutorialObservation, now: TutorialObservation
+    done: float, first: TutorialObservation, _before: object, now: TutorialObservation
 ) -> float:
     """Return by how much the eyes were turned while the sticks were pushed, degrees."""
     if first.yaw_deg is None or now.yaw_deg is None:
@@ -150,29 +164,42 @@ def _looked_around(
     return max(done, abs(math.remainder(now.yaw_deg - first.yaw_deg, 360.0)))
 
 
-def _until(condition: Callable[[TutorialObservation], bool]) -> StepMeasure:
-    return StepMeasure(1.0, lambda done, _first, _before, now: 1.0 if condition(now) else done)
+def _until(condition: Callable[[TutorialObservation], bool], *controls: ControlName) -> StepRule:
+    return StepRule(
+        controls, 1.0, lambda done, _first, _before, now: 1.0 if condition(now) else done
+    )
 
 
-def _touched(goal: int) -> StepMeasure:
-    return StepMeasure(goal, lambda _done, _first, _before, now: now.touched)
+def _touched(goal: int, *controls: ControlName, shown: str = "") -> StepRule:
+    return StepRule(controls, goal, lambda _done, _first, _before, now: now.touched, shown)
 
 
-MEASURES: Mapping[TutorialStep, StepMeasure] = {
-    TutorialStep.RIGHT: _moved(right=1.0),
-    TutorialStep.LEFT: _moved(right=-1.0),
-    TutorialStep.FORWARD: _moved(forward=1.0),
-    TutorialStep.BACK: _moved(forward=-1.0),
-    TutorialStep.UP: _moved(up=1.0),
-    TutorialStep.DOWN: _moved(up=-1.0),
-    TutorialStep.SLOW: StepMeasure(SLOW_MM, _moved_slowly),
-    TutorialStep.TURN_VIEW: StepMeasure(TURN_DEG, _view_turned),
-    TutorialStep.LOOK_AROUND: StepMeasure(LOOK_DEG, _looked_around),
-    TutorialStep.BEST_VIEW: _until(lambda now: now.has_best_view),
-    TutorialStep.LOWER: _until(lambda now: now.touch is TouchStage.ON_SKIN or now.touched > 0),
-    TutorialStep.TOUCH: _touched(1),
-    TutorialStep.UNDO: _until(lambda now: now.undone > 0),
-    TutorialStep.PAUSE: _until(lambda now: now.has_paused),
-    TutorialStep.GUIDED: _touched(GUIDED_TOUCHES),
-    TutorialStep.AGAIN: _touched(1),
+_CAREFULLY = (ControlName.FINE, ControlName.BEST_VIEW)
+STEPS: Mapping[TutorialStep, StepRule] = {
+    TutorialStep.RIGHT: _moved(ControlName.MOVE_RIGHT, right=1.0),
+    TutorialStep.LEFT: _moved(ControlName.MOVE_LEFT, right=-1.0),
+    TutorialStep.FORWARD: _moved(ControlName.MOVE_FORWARD, forward=1.0),
+    TutorialStep.BACK: _moved(ControlName.MOVE_BACK, forward=-1.0),
+    TutorialStep.UP: _moved(ControlName.MOVE_UP, up=1.0),
+    TutorialStep.DOWN: _moved(ControlName.MOVE_DOWN, up=-1.0),
+    TutorialStep.SLOW: StepRule((ControlName.FINE,), SLOW_MM, _moved_slowly, DONE_MM),
+    TutorialStep.TURN_VIEW: StepRule(
+        (ControlName.VIEW_LEFT, ControlName.VIEW_RIGHT), TURN_DEG, _view_turned, DONE_DEG
+    ),
+    TutorialStep.LOOK_AROUND: StepRule(
+        (ControlName.MOVE_FORWARD,), LOOK_DEG, _looked_around, DONE_DEG
+    ),
+    TutorialStep.BEST_VIEW: _until(lambda now: now.has_best_view, ControlName.BEST_VIEW),
+    TutorialStep.LOWER: _until(
+        lambda now: now.touch is TouchStage.ON_SKIN or now.touched > 0, *_CAREFULLY
+    ),
+    TutorialStep.TOUCH: _touched(1, ControlName.TOUCH, *_CAREFULLY),
+    TutorialStep.UNDO: _until(lambda now: now.undone > 0, ControlName.UNDO),
+    TutorialStep.PAUSE: _until(lambda now: now.has_paused, ControlName.MENU),
+    TutorialStep.GUIDED: _touched(
+        GUIDED_TOUCHES,
+        *(ControlName.TOUCH, ControlName.UNDO, *_CAREFULLY),
+        shown="tutorial.done points",
+    ),
+    TutorialStep.AGAIN: _touched(1, ControlName.TOUCH, *_CAREFULLY),
 }

@@ -6,7 +6,6 @@ Its touches go by the rules of a trial, but are recorded nowhere.
 from __future__ import annotations
 
 import uuid
-from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -18,8 +17,8 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.flow.tutorial.steps import (
-    MEASURES,
     OF_PRACTICE,
+    STEPS,
     WITH_POINTS,
     TutorialObservation,
     TutorialStep,
@@ -28,10 +27,9 @@ from rastrainer_simulator.flow.tutorial.steps import (
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.record.trial_context import GUIDED_TOUCHES, TutorialOutcome
 from rastrainer_simulator.state import OperatorCommand, SimulationState, TouchStage, TrainingState
-from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.training.rules import TouchMoment, touch_stage
 from rastrainer_simulator.training.training import Training, TrainingReply
-from rastrainer_simulator.vectors import ZERO, Vector, distance, in_millimeters, vector
+from rastrainer_simulator.vectors import ZERO, Vector, distance, in_meters, in_millimeters, vector
 
 _NOT_MOVED = Perturbation(0.0, 0.0, 0.0)
 PRAISE_S = 0.8
@@ -39,7 +37,6 @@ PRAISE_S = 0.8
 CENTERED_M = 0.003
 """The longest distance of a touch to its point: trials allow more, but the center is aimed at."""
 _MAY_TOUCH = (TutorialStep.LOWER, TutorialStep.TOUCH, TutorialStep.GUIDED, TutorialStep.AGAIN)
-_MAY_UNDO = (TutorialStep.UNDO, TutorialStep.GUIDED)
 
 
 class TouchPractice:
@@ -49,7 +46,7 @@ class TouchPractice:
     the journals know nothing of it: only what the views show is changed (`shown`).
 
     Attributes:
-        truth: where the head and the points are.
+        training: the state machine, which knows where the head and the points are.
         has_points: whether the views mark the next point.
     """
 
@@ -76,45 +73,31 @@ class TouchPractice:
         self._settings = replace(setup.settings.training, acceptance_radius=CENTERED_M)
         self._of_trials = setup.settings.training
         scenario = _short_scenario(setup.scenario, task, state.head_to_world, points)
-        self._training = Training(scenario, 0, self._settings)
+        self.training = Training(scenario, 0, self._settings)
         start = {**arguments, "task": scenario.tasks[0].name}
-        self._training.handle(OperatorCommand(CommandName.START_TASK, start), _moment(state))
+        self.training.handle(OperatorCommand(CommandName.START_TASK, start), _moment(state))
         self.has_points = False
         self._shown = self._present()
 
-    @property
-    def truth(self) -> Truth:
-        return self._training.truth
-
-    @property
-    def goal(self) -> Vector | None:
-        """Where the next point is, World, m; None without one."""
-        return self._training.goal
-
-    @property
-    def state(self) -> TrainingState:
-        return self._training.state
-
     def end_refusal(self, sim_time: float) -> None:
         """Forget a refusal that has been shown long enough."""
-        self._training.end_refusal(sim_time)
+        self.training.end_refusal(sim_time)
         self._shown = self._present()
 
-    def touch(self, state: SimulationState) -> TrainingReply:
-        return self._handle(CommandName.CAPTURE, state)
-
-    def undo(self, state: SimulationState) -> TrainingReply:
-        return self._handle(CommandName.UNDO, state)
+    def handle(self, command: str, state: SimulationState) -> TrainingReply:
+        reply = self.training.handle(OperatorCommand(command), _moment(state))
+        self._shown = self._present()
+        return reply
 
     def show_points(self) -> None:
-        """Have the views mark the next point from now on."""
         self.has_points = True
         self._shown = self._present()
 
     def errors_mm(self) -> tuple[float, ...]:
         """Return how far each kept touch is from its point, in mm."""
-        touches = ((t.label, in_millimeters(t.position)) for t in self.state.touches)
-        return tuple(self.truth.touch_errors_mm(touches).values())
+        touches = self.training.state.touches
+        places = ((t.label, in_millimeters(t.position)) for t in touches)
+        return tuple(self.training.truth.touch_errors_mm(places).values())
 
     def shown(self, state: SimulationState) -> SimulationState:
         """Return a state of the simulation as the views show it; called in any thread."""
@@ -126,32 +109,25 @@ class TouchPractice:
         )
         is_on_point = stage in (TouchStage.ON_SKIN, TouchStage.PRESSED)
         is_beside = is_on_point and distance(_tip(state), goal or ZERO) > CENTERED_M
-        if is_beside or (stage is TouchStage.ELSEWHERE and self._is_at_rest(state)):
+        radius = self._of_trials.acceptance_radius
+        is_at_rest = self._rest is not None and distance(_tip(state), self._rest) <= radius
+        if is_beside or (stage is TouchStage.ELSEWHERE and is_at_rest):
             stage = TouchStage.NEAR
         return replace(state, training=training, touch=stage)
 
     def off_center_mm(self, state: SimulationState) -> float | None:
         """Return how far from a point's center the tip is on the skin, mm; None elsewhere."""
-        goal, tip = self._training.goal, _tip(state)
+        goal, tip = self.training.goal, _tip(state)
         if goal is None or state.tip_clearance > self._settings.skin_tolerance:
             return None
         off = distance(tip, goal)
         is_beside = CENTERED_M < off <= self._of_trials.acceptance_radius
         return MM_PER_M * off if is_beside else None
 
-    def _is_at_rest(self, state: SimulationState) -> bool:
-        radius = self._of_trials.acceptance_radius
-        return self._rest is not None and distance(_tip(state), self._rest) <= radius
-
-    def _handle(self, command: str, state: SimulationState) -> TrainingReply:
-        reply = self._training.handle(OperatorCommand(command), _moment(state))
-        self._shown = self._present()
-        return reply
-
     def _present(self) -> tuple[TrainingState, Vector | None]:
         if self.has_points:
-            return self.state, self._training.goal
-        return replace(self.state, next_point=None), None
+            return self.training.state, self.training.goal
+        return replace(self.training.state, next_point=None), None
 
 
 def _short_scenario(
@@ -180,6 +156,7 @@ class Tutorial:
         mode: display mode.
         setup: the simulation's, at the beginning.
         steps: in order, for the device in use.
+        points: that are touched: label → World, m.
         praised: the step that was just done, while it is praised; else None.
         practiced: the point that is practiced instead of all that; "" in the tutorial itself.
     """
@@ -196,7 +173,7 @@ class Tutorial:
         self.setup = setup
         trial = {**arguments, "trialId": str(uuid.uuid4())}
         self._first = TouchPractice(setup, state, trial, slice(1))
-        guided, rest, task = slice(1, 1 + GUIDED_TOUCHES), self._first.goal, TRIAL_RUN
+        guided, rest, task = slice(1, 1 + GUIDED_TOUCHES), self._first.training.goal, TRIAL_RUN
         self.practiced = practiced
         if practiced:
             task, rest = arguments["task"], None
@@ -204,6 +181,12 @@ class Tutorial:
             guided = slice(place, place + 1)
         self._guided = TouchPractice(setup, state, trial, guided, rest, task)
         self._guided.show_points()
+        truths = self._first.training.truth, self._guided.training.truth
+        self.points = {
+            label: in_meters(truth.in_world(point))
+            for truth in truths
+            for label, point in truth.fiducials_ras.items()
+        }
         self.praised: TutorialStep | None = None
         self._praise_s = 0.0
         self.use(SourceKind.KEYBOARD)
@@ -221,22 +204,8 @@ class Tutorial:
         return self._guided if is_guided else self._first
 
     @property
-    def fiducials(self) -> Mapping[str, Vector]:
-        """The points that are touched: label → World, mm."""
-        practices = (self._first.truth, self._guided.truth)
-        return {
-            label: vector(truth.in_world(point).tolist())
-            for truth in practices
-            for label, point in truth.fiducials_ras.items()
-        }
-
-    @property
     def step(self) -> TutorialStep | None:
         return next((step for step in self.steps if step not in self._done), None)
-
-    @property
-    def is_done(self) -> bool:
-        return self.step is None and self.praised is None
 
     @property
     def place(self) -> tuple[int, int]:
@@ -246,10 +215,9 @@ class Tutorial:
 
     @property
     def amount(self) -> tuple[float, float]:
-        """How much of the step is done, and how much there is to do."""
         if self.step is None or self._first_seen is None:
             return 0.0, 1.0
-        goal = MEASURES[self.step].goal
+        goal = STEPS[self.step].goal
         return min(self._amount, goal), goal
 
     @property
@@ -261,16 +229,10 @@ class Tutorial:
     def may_touch(self) -> bool:
         return self.step in _MAY_TOUCH
 
-    @property
-    def may_undo(self) -> bool:
-        return self.step in _MAY_UNDO
-
     def use(self, device: SourceKind) -> None:
-        """Teach the controls of a device from now on."""
         self.steps = OF_PRACTICE if self.practiced else steps_for(device, self.mode)
 
     def advance(self, dt: float, now: TutorialObservation) -> TutorialStep | None:
-        """Advance by `dt` seconds; return the step that has just been done."""
         before, self._before = self._before or now, now
         if self.praised is not None:
             self._praise_s -= dt
@@ -288,9 +250,9 @@ class Tutorial:
             first = before
         self._first_seen = first
         self._seconds[step.value] = self._seconds.get(step.value, 0.0) + dt
-        measure = MEASURES[step]
-        self._amount = measure.done(self._amount, first, before, now)
-        if self._amount < measure.goal:
+        rule = STEPS[step]
+        self._amount = rule.done(self._amount, first, before, now)
+        if self._amount < rule.goal:
             return None
         self._done.append(step)
         self._amount, self._first_seen = 0.0, None
@@ -298,7 +260,7 @@ class Tutorial:
         return step
 
     def touch(self, state: SimulationState) -> TrainingReply:
-        reply = self.practice.touch(state)
+        reply = self.practice.handle(CommandName.CAPTURE, state)
         if reply.ok and self.practice is self._first and TutorialStep.TOUCH not in self._done:
             (self._first_error_mm,) = self._first.errors_mm()
         return reply
