@@ -11,7 +11,6 @@ from pathlib import Path
 from aiohttp import hdrs, web
 
 from rastrainer.errors import InputError
-from rastrainer.json_records import record_from_json
 from rastrainer.study.database.database import StudyPlace
 from rastrainer_simulator.assets import page_folder
 from rastrainer_simulator.board.board_messages import (
@@ -30,21 +29,18 @@ from rastrainer_simulator.board.seats import (
     checked_fingerprint,
 )
 from rastrainer_simulator.board.watched_seat import SEAT_PATH, LiveView, WatchedSeat
-from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.views.access_control import (
     ROLE,
     PairingCode,
     Sessions,
     read_body,
-    read_object,
 )
-from rastrainer_simulator.net.views.limited_server import GuardedServer, page_answer
-from rastrainer_simulator.presentation.messages import OrderRequest, ViewRole, message_text
+from rastrainer_simulator.net.views.guarded_server import GuardedServer, page_answer
+from rastrainer_simulator.presentation.messages import OrderRequest, message_text
 
 TILES_S = 0.25
 """Between two messages to a teacher's page."""
 HEARTBEAT_S = 20.0
-MOST_TEACHERS = 16
 ONLY_TEACHERS = "This browser only watches the board: pair it with the board again."
 
 
@@ -60,7 +56,6 @@ class BoardServer:
         config: Path,
         client: SeatClient,
         on_new_code: Callable[[str], None],
-        limits: ViewLimits | None = None,
         study: StudyPlace | None = None,
     ) -> None:
         """Watch the seats that the folder of settings lists; in the event loop's thread.
@@ -69,7 +64,6 @@ class BoardServer:
             config: Folder of settings.
             client: Talks to the seats.
             on_new_code: Called with each new code for browsers.
-            limits: What connections may cost.
             study: Whose trainees are the class; None for a board of seats alone.
         """
         self._client = client
@@ -82,11 +76,19 @@ class BoardServer:
         self._pins: dict[str, str] = {}
         self._class = ClassWatch(study)
         self._page = page_folder()
-        sessions = Sessions(dict.fromkeys(ViewRole, MOST_TEACHERS))
         self.code = PairingCode(asyncio.get_running_loop().time, on_new_code)
-        self._http = GuardedServer(
-            sessions, self.code, limits or ViewLimits(), self._routes(), self._page
-        )
+        live = LiveView(self._entry, self._client)
+        routes = [
+            web.get("/", self._send_page),
+            web.get("/tiles", self._send_tiles),
+            web.get("/class", self._class.send),
+            web.get("/paired", _confirm_pairing),
+            web.post("/seats", self._add),
+            web.delete(SEAT_PATH, self._remove),
+            web.post(f"{SEAT_PATH}/order", self._order),
+            *live.routes(),
+        ]
+        self._http = GuardedServer(Sessions(), self.code, routes, self._page)
 
     async def listen(self, host: str, port: int) -> int:
         """Listen and return the port; 0 is any free one."""
@@ -99,19 +101,6 @@ class BoardServer:
         await asyncio.gather(*(seat.close() for seat in self._seats.values()))
         await self._http.close()
         await self._class.close()
-
-    def _routes(self) -> list[web.RouteDef]:
-        live = LiveView(self._entry, self._client)
-        return [
-            web.get("/", self._send_page),
-            web.get("/tiles", self._send_tiles),
-            web.get("/class", self._class.send),
-            web.get("/paired", _confirm_pairing),
-            web.post("/seats", self._add),
-            web.delete(SEAT_PATH, self._remove),
-            web.post(f"{SEAT_PATH}/order", self._order),
-            *live.routes(),
-        ]
 
     def _notify(self) -> None:
         for page in self._pages:
@@ -159,8 +148,8 @@ class BoardServer:
     async def _add(self, request: web.Request) -> web.Response:
         """Pair with a simulator. Without its fingerprint, return it for comparison."""
         _check_teacher(request)
+        asked = await read_body(request, NewSeat)
         try:
-            asked = record_from_json(NewSeat, await read_object(request), "The seat")
             name, address = asked.name.strip(), checked_address(asked.address)
             fingerprint = ""
             if address.startswith("https:"):

@@ -25,7 +25,7 @@ from rastrainer_simulator.board.seats import (
     SeatEntry,
     UnpairedError,
 )
-from rastrainer_simulator.net.views.limited_server import page_answer
+from rastrainer_simulator.net.views.guarded_server import page_answer
 from rastrainer_simulator.presentation.messages import (
     SUBPROTOCOL,
     Hello,

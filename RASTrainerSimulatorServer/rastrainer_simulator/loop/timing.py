@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
 import math
 import os
@@ -222,24 +221,6 @@ class TrialLimits:
 
 _TOLERANCE_S = 1e-9
 _SAVED_AT_MOST_S = 0.02
-
-
-class AsyncRateLimiter:
-    """Lets `per_s` pass in a second on average, and as many at once after a quiet second.
-
-    It belongs to one event loop. A waiting task does not block the others.
-    """
-
-    def __init__(self, per_s: float) -> None:
-        self._period_s = 1.0 / per_s
-        self._next = -1.0
-
-    async def passed(self) -> None:
-        """Return when it is the caller's turn."""
-        now = asyncio.get_running_loop().time()
-        self._next = max(self._next, now - 1.0) + self._period_s
-        if self._next > now:
-            await asyncio.sleep(self._next - now)
 
 
 class Pacer:

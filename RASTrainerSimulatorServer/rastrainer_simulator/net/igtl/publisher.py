@@ -17,7 +17,8 @@ from rastrainer.igtl.message import Message
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName, Rate
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.loop.timing import Pacer
-from rastrainer_simulator.net.igtl.connection import ClientConnection, Outgoing
+from rastrainer_simulator.net.igtl.outgoing import Outgoing
+from rastrainer_simulator.net.igtl.server import ClientConnection
 from rastrainer_simulator.net.igtl.told import told
 from rastrainer_simulator.state import SimulationState, TrainingState
 from rastrainer_simulator.training.tracing import stroke_data

@@ -35,14 +35,14 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.steps import StepAnswers
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
-from rastrainer_simulator.net.igtl.connection import ClientConnection, Outgoing
+from rastrainer_simulator.net.igtl.outgoing import Outgoing
 from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher, heartbeat
 from rastrainer_simulator.net.igtl.registration_check import (
     CHECKED,
     RegistrationCheck,
     SubmitCommand,
 )
-from rastrainer_simulator.net.igtl.server import IgtlServer
+from rastrainer_simulator.net.igtl.server import ClientConnection, IgtlServer
 from rastrainer_simulator.net.igtl.told import told
 from rastrainer_simulator.net.limits import LinkLimits
 from rastrainer_simulator.state import Answer, SimulationState
@@ -56,6 +56,10 @@ _OWN_DEVICES = frozenset(
         *DeviceName.LINK_TO_WORLD,
     }
 )
+COMMANDS_AT_ONCE = 16
+"""Commands of one client that are submitted to the control loop at a time."""
+WAITING_COMMANDS, WAITING_COMMAND_BYTES = 4096, 2**20
+"""Further ones that may wait for their turn; one more is refused."""
 OFFERS_AT_ONCE = 8
 """Trials in one round of offers."""
 _NUMBERS = 2**32
@@ -81,10 +85,9 @@ class CommandHandler:
     that no client can crowd the others out of a tick.
     """
 
-    def __init__(self, submit: Submit, limits: LinkLimits):
+    def __init__(self, submit: Submit):
         """`submit` takes checked arguments and returns the answer's future immediately."""
         self._submit = submit
-        self._limits = limits
         self._loop = asyncio.get_running_loop()
         self._queues: dict[ClientConnection, _CommandQueue] = {}
 
@@ -96,8 +99,8 @@ class CommandHandler:
             self._refuse(connection, command, str(error))
             return
         queue = self._queues.setdefault(connection, _CommandQueue())
-        is_full = len(queue.waiting) >= self._limits.waiting_commands
-        if is_full or queue.waiting_bytes > self._limits.waiting_command_bytes:
+        is_full = len(queue.waiting) >= WAITING_COMMANDS
+        if is_full or queue.waiting_bytes > WAITING_COMMAND_BYTES:
             self._refuse(connection, command, "Too many commands wait: wait for their answers.")
             return
         queue.waiting.append((command, arguments))
@@ -109,7 +112,7 @@ class CommandHandler:
         self._queues.pop(connection, None)
 
     def _submit_waiting(self, connection: ClientConnection, queue: _CommandQueue) -> None:
-        while queue.waiting and queue.running < self._limits.commands_at_once:
+        while queue.waiting and queue.running < COMMANDS_AT_ONCE:
             is_checked = queue.waiting[0][0].name in CHECKED
             if queue.is_checking or (is_checked and queue.running):
                 return
@@ -213,7 +216,7 @@ class SimulatorLink:
         self._health = health
         self._answers = answers
         self._slicer_left = slicer_left
-        self._commands = CommandHandler(self._submit, self.server.limits)
+        self._commands = CommandHandler(self._submit)
 
     def connected(self, connection: ClientConnection) -> None:
         connection.send_latest(self._heartbeat())

@@ -16,7 +16,6 @@ from rastrainer_simulator.loop.timing import Pacer
 from rastrainer_simulator.presentation.messages import (
     CoveringBodies,
     GuideAim,
-    HeadsetPose,
     Pose,
     ProcedureNews,
     SceneNews,
@@ -232,36 +231,3 @@ def _in_head(places: Sequence[Sequence[float]], head_to_world: np.ndarray) -> tu
         return ()
     away = np.array(places) - head_to_world[:3, 3]
     return tuple(map(vector, np.round(MM_PER_M * away @ head_to_world[:3, :3], 2).tolist()))
-
-
-class Mirror:
-    """Keeps what the newest headset has sent; one that reconnects is another view.
-
-    Attributes:
-        pose: what it sent last; None while nobody wears one.
-    """
-
-    def __init__(self) -> None:
-        self._headsets: set[int] = set()
-        self.pose: HeadsetPose | None = None
-
-    @property
-    def eyes(self) -> Vector | None:
-        """Where the wearer's eyes are, World, m; None without one."""
-        return vector(self.pose.eyes[:3]) if self.pose and self.pose.eyes else None
-
-    def joined(self, view: int) -> None:
-        """Follow a headset from now on."""
-        self._headsets.add(view)
-        self.pose = None
-
-    def left(self, view: int) -> None:
-        """Forget a view; the previous one, if any, is followed again."""
-        if view in self._headsets and view == max(self._headsets):
-            self.pose = None
-        self._headsets.discard(view)
-
-    def take(self, view: int, pose: HeadsetPose) -> None:
-        """Process what a headset sends; only the newest is followed."""
-        if view == max(self._headsets, default=None):
-            self.pose = pose if pose.eyes is not None else None
