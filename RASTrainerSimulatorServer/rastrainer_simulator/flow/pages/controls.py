@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 
 from rastrainer.errors import InputError
@@ -10,7 +9,7 @@ from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage, stepped
 from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS, LAYOUTS, preset_name
 from rastrainer_simulator.input.inputs import (
     IN_MENUS,
     OF_VIEW,
@@ -20,7 +19,6 @@ from rastrainer_simulator.input.inputs import (
     ControlName,
     InputDevice,
 )
-from rastrainer_simulator.input.presets import preset_name, presets_of
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 from rastrainer_simulator.presentation.screen import Fact, ItemKind
 
@@ -165,11 +163,10 @@ class BindingsPage(SessionPage):
         return preset_name(self._device, self.session.bindings.table(self._device))
 
     def _step_preset(self, direction: int) -> None:
-        presets = presets_of(self._device)
+        presets = LAYOUTS[self._device]
         names = tuple(presets)
         name = names[0] if self._preset is None else stepped(names, self._preset, direction)
-        changed = {self._device.value: presets[name]}
-        self.session.rebind(dataclasses.replace(self.session.bindings, **changed))
+        self.session.rebind(self.session.bindings.with_table(self._device, presets[name]))
 
     def _control(self, control: ControlName) -> PageRow:
         """Return a control with its inputs; accepting it waits for a new one."""
