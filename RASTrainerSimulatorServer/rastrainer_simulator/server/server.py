@@ -42,7 +42,7 @@ from rastrainer_simulator.record.journal_writer import RecordsFolder
 from rastrainer_simulator.record.trial_context import setup_of, versions
 from rastrainer_simulator.robot.kinematics import kinematics_name
 from rastrainer_simulator.server.scenario_loader import ScenarioLoader
-from rastrainer_simulator.state import Answer
+from rastrainer_simulator.state import Answer, answered
 
 if TYPE_CHECKING:
     from rastrainer_simulator.flow.running_presenter import RunningPresenter
@@ -305,14 +305,14 @@ class SimulatorServer:
             return self._scenarios.load(arguments["folder"])
         if name == CommandName.STUDY_STEP:
             self._study.take(StudyStep.from_arguments(arguments))
-            return _answered(Answer(0, True))
+            return answered(Answer(0, True))
         if name == CommandName.CURRICULUM:
             self._curricula.take(CurriculumMessage.from_arguments(arguments))
-            return _answered(Answer(0, True))
+            return answered(Answer(0, True))
         if name == CommandName.START_TUTORIAL:
             if self._presenter is None:
-                return _answered(Answer(0, True, data={"isNeeded": False}))
-            return _answered(self._presenter.presenter.start_tutorial(**arguments))
+                return answered(Answer(0, True, data={"isNeeded": False}))
+            return answered(self._presenter.presenter.start_tutorial(**arguments))
         return self._control_loop.submit(name, arguments, sender)
 
     def _health(self) -> dict[str, Any]:
@@ -324,9 +324,3 @@ class SimulatorServer:
             "skippedTicks": statistics.skipped,
             "worstDelayMs": round(1000.0 * statistics.worst_delay_s, 3),
         }
-
-
-def _answered(answer: Answer) -> Future[Answer]:
-    done: Future[Answer] = Future()
-    done.set_result(answer)
-    return done
