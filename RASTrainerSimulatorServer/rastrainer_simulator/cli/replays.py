@@ -8,19 +8,22 @@ import random
 from dataclasses import asdict
 from functools import partial
 
-from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.study.database.study import Study
 from rastrainer.study.ratings import FORMS, RatingStore, find_form
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Subcommand, announce, check_ports
+from rastrainer_simulator.cli.options import Subcommand, announce
 
 REPLAYS = 20
 
 
 def replay(arguments: argparse.Namespace) -> int:
     if not arguments.verify:
-        return _show(arguments)
+        from rastrainer_simulator.server.replay_server import show
+
+        playback = arguments.scenario, arguments.view_port, arguments.window
+        show(arguments.journal, *playback, partial(announce, "replay"))
+        return 0
     # Only here: the robot and the scenario take time to import.
     from rastrainer_simulator.record.trial_context import setup_of
     from rastrainer_simulator.replay import resimulation
@@ -33,15 +36,6 @@ def replay(arguments: argparse.Namespace) -> int:
     else:
         print(_summary(reading.sentence, report))
     return 0 if report.is_identical else 1
-
-
-def _show(arguments: argparse.Namespace) -> int:
-    check_ports(arguments)
-    from rastrainer_simulator.server.replay_server import show
-
-    playback = arguments.scenario, arguments.view_port, arguments.window
-    show(arguments.journal, *playback, partial(announce, "replay"))
-    return 0
 
 
 def _summary(sentence: str, report) -> str:
@@ -60,9 +54,6 @@ def _summary(sentence: str, report) -> str:
 
 
 def rate(arguments: argparse.Namespace) -> int:
-    check_ports(arguments)
-    if arguments.replays < 1:
-        raise InputError("--replays must be at least 1.")
     # Only here: the robot and the scenario take time to import.
     from rastrainer_simulator.rating.rating_pages import RatingWork
     from rastrainer_simulator.server.replay_server import serve_rating, trials_to_show
@@ -82,7 +73,7 @@ def rate(arguments: argparse.Namespace) -> int:
 
 
 PLAYBACK = (
-    arg.option("--view-port", type=int, metavar="PORT", help="where views are served"),
+    arg.port("--view-port", None, "where views are served"),
     arg.switch("--window", "open the window"),
 )
 COMMANDS = (
@@ -117,7 +108,7 @@ COMMANDS = (
             ),
             arg.RECORDS,
             arg.number(
-                "--replays", REPLAYS, "how many trials are drawn for all raters", metavar="N"
+                "--replays", REPLAYS, "how many trials are drawn for all raters", 1, metavar="N"
             ),
             arg.option(
                 "--form",

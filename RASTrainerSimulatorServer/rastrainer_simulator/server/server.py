@@ -29,7 +29,7 @@ from rastrainer_simulator.flow.session.preferences import (
     read_preferences,
 )
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.loop.results import StateFeed, TrialLog
+from rastrainer_simulator.loop.results import StateFeed, trial_log
 from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.net.igtl.simulator_link import SimulatorLink
 from rastrainer_simulator.net.limits import read_limits
@@ -143,7 +143,7 @@ class SimulatorServer:
             InputError: the address cannot be listened on.
             RASTrainerError: the control loop has broken down.
         """
-        for problem in self._control_loop.problems:
+        for problem in self._control_loop.archive.problems:
             _log.warning("%s", problem)
         if self._control_loop.is_first_in_line:
             raise_thread_priority()
@@ -151,8 +151,8 @@ class SimulatorServer:
         link = SimulatorLink(
             latest=lambda: self._control_loop.latest,
             submit=self._submit,
-            unacknowledged=self._control_loop.unacknowledged,
-            arrivals=lambda: self._control_loop.arrivals,
+            unacknowledged=self._control_loop.archive.unacknowledged,
+            arrivals=lambda: self._control_loop.archive.arrivals,
             find_scenario=self._scenarios.find,
             health=self._health,
             limits=self._limits.clients,
@@ -161,7 +161,7 @@ class SimulatorServer:
         )
         feed = StateFeed(link.publisher.is_due, link.publish, loop)
         unsubscribe = self._control_loop.subscribe(feed)
-        self._control_loop.subscribe(TrialLog(loop))
+        self._control_loop.subscribe(trial_log(loop))
         tasks = [loop.create_task(link.beat())]
         stop = asyncio.Event()
         presenter = self._make_presenter(link, stop) if self._options.has_views else None
@@ -297,7 +297,7 @@ class SimulatorServer:
         while not stop.is_set():
             with contextlib.suppress(asyncio.TimeoutError):
                 await asyncio.wait_for(stop.wait(), _LOOP_CHECK_PERIOD_S)
-            if not self._control_loop.is_running:
+            if not self._control_loop.thread.is_alive():
                 raise RASTrainerError("The control loop has failed: the log says why.")
 
     def _submit(self, name: str, arguments: Mapping[str, Any], sender: str) -> Future[Answer]:

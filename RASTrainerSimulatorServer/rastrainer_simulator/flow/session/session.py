@@ -264,15 +264,15 @@ class TrainingSession:
 
     def fiducial(self, label: str) -> Vector:
         """Return where a fiducial of the present trial is, World, m: only after the score."""
-        return self.truly_in_world(self._control_loop.truth.fiducials_ras[label])
+        return self.truly_in_world(self._control_loop.simulation.truth.fiducials_ras[label])
 
     def truly_in_world(self, point: np.ndarray) -> Vector:
         """Return where a point of the MRI (RAS mm) truly is, World, m: only after the score."""
-        return in_meters(self._control_loop.truth.in_world(point))
+        return in_meters(self._control_loop.simulation.truth.in_world(point))
 
     def planned_bone(self, procedure: str) -> tuple[BoneAhead | None, ...]:
         """Return where the lines of a procedure go through bone, as planned."""
-        return self._control_loop.planned_bone.get(procedure, ())
+        return self._control_loop.simulation.planned_bone.get(procedure, ())
 
     def load_trial(self, trial_id: str) -> TrialLoading:
         found = journals_of(self._services.records, trial_id)
