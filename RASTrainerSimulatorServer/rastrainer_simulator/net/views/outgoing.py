@@ -80,12 +80,20 @@ def state_news(
         ghost: poses of `GHOST_BODIES`, (4, 4) float, to World, m; None without a ghost.
     """
     training, planned = now.training, now.planned_target
+    # Where the registration in use puts the MRI; else World's origin.
+    procedure = now.training.procedure
+    used = None if procedure is None else procedure.registration
+    plan = None if used is None else RegisteredPlan.of(used.matrix)
+    plan_to_world = np.eye(4)
+    if plan is not None:
+        plan_to_world[:3, :3] = np.transpose(plan.rows)
+        plan_to_world[:3, 3] = plan.in_world((0.0, 0.0, 0.0))
     matrices = (
         *now.link_to_world,
         now.tool_tip_to_world,
         now.head_to_world,
         now.stand_to_world,
-        _plan_to_world(now),
+        plan_to_world,
     )
     return StateNews(
         tick=now.tick,
@@ -112,18 +120,6 @@ def state_news(
 def screen_text(screen: Screen) -> str:
     """Return the message of what the trainee reads."""
     return with_units(message_text(ScreenNews(screen)))
-
-
-def _plan_to_world(now: SimulationState) -> np.ndarray:
-    """Return where the registration in use puts the MRI, (4, 4) float, m; else World's origin."""
-    procedure = now.training.procedure
-    used = None if procedure is None else procedure.registration
-    plan = None if used is None else RegisteredPlan.of(used.matrix)
-    pose = np.eye(4)
-    if plan is not None:
-        pose[:3, :3] = np.transpose(plan.rows)
-        pose[:3, 3] = plan.in_world((0.0, 0.0, 0.0))
-    return pose
 
 
 def _procedure(now: SimulationState, pictures: Pictures) -> ProcedureNews | None:
