@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from concurrent.futures import Future
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import Annotated, Any
@@ -133,6 +134,13 @@ class Answer:
     ok: bool
     message: str = ""
     data: Mapping[str, Any] = field(default_factory=dict)
+
+
+def answered(answer: Answer) -> Future[Answer]:
+    """Return the future of an answer that is known already."""
+    done: Future[Answer] = Future()
+    done.set_result(answer)
+    return done
 
 
 @dataclass(frozen=True)

@@ -47,8 +47,8 @@ class Server:
             SimulatorLink,
             latest=lambda: self._loop.latest,
             submit=self._loop.submit,
-            unacknowledged=self._loop.unacknowledged,
-            arrivals=lambda: self._loop.arrivals,
+            unacknowledged=self._loop.archive.unacknowledged,
+            arrivals=lambda: self._loop.archive.arrivals,
             find_scenario=lambda _name: load_scenario(COLIN),
         )
         self.port = thread.run(self._link.server.listen(HOST, 0))
@@ -59,7 +59,7 @@ class Server:
 
     @property
     def undelivered(self):
-        return len(self._loop.unacknowledged())
+        return len(self._loop.archive.unacknowledged())
 
     def close(self):
         self._thread.run(self._link.server.close())

@@ -14,7 +14,7 @@ from Testing.end_to_end.simulator_process import SimulatorProcess
 
 GUIDE = Path(__file__).parents[2] / "docs" / "how-to" / "drive-with-another-device.md"
 PROGRAM = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-HELLO = {"protocolVersion": 2, "client": "watcher", "linksHz": 0, "steady": True}
+HELLO = {"protocolVersion": 1, "client": "watcher", "linksHz": 0, "steady": True}
 LINES = 10
 
 

@@ -9,7 +9,7 @@ import itertools
 from collections import Counter
 
 from rastrainer.igtl.message import CONTENTS, MessageReader, StreamError
-from rastrainer_simulator.net.limits import LinkLimits
+from rastrainer_simulator.net.igtl.server import MESSAGE_BYTES
 from Testing.security.mutated_messages import MutatedMessages
 from Testing.security.wire_checker import WireChecker
 
@@ -118,7 +118,7 @@ class _Messages:
 
     def __init__(self, seed: int) -> None:
         self._messages = MutatedMessages(seed)
-        self._reader = MessageReader(dict.fromkeys(CONTENTS, LinkLimits().message_bytes))
+        self._reader = MessageReader(dict.fromkeys(CONTENTS, MESSAGE_BYTES))
         self._swallowed = 0
         self.sent = self.decoded = 0
 

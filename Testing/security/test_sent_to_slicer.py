@@ -13,7 +13,7 @@ from hypothesis import strategies as some
 from rastrainer.errors import InputError
 from rastrainer.igtl.content import Command, CommandReply, Point, Points, Status, String, Transform
 from rastrainer.igtl.message import Message, pack
-from rastrainer_simulator.net.igtl.connection import Outgoing, OutgoingQueue
+from rastrainer_simulator.net.igtl.outgoing import Outgoing, OutgoingQueue
 from Testing.security.wire_checker import SENT_TYPES, OffenseError, WireChecker
 
 SIMULATOR = Path(__file__).parents[2] / "RASTrainerSimulatorServer/rastrainer_simulator"
@@ -133,7 +133,7 @@ def test_bytes_reach_a_client_in_one_place_and_only_through_the_gate():
     writes, queued, packs = [], [], []
     gate = next(
         node
-        for node in ast.walk(ast.parse((LINK / "connection.py").read_text(encoding="utf-8")))
+        for node in ast.walk(ast.parse((LINK / "outgoing.py").read_text(encoding="utf-8")))
         if isinstance(node, ast.ClassDef) and node.name == Outgoing.__name__
     )
     for path in sorted(LINK.glob("*.py")):
@@ -145,9 +145,9 @@ def test_bytes_reach_a_client_in_one_place_and_only_through_the_gate():
             # A content by itself is packed to be compared, and goes nowhere.
             if name == "pack" and ast.unparse(call) != "message.content.pack()":
                 packs.append((path.name, call.lineno))
-    assert writes == [("connection.py", "self._queue.take(self._limits.buffer_bytes)")]
-    assert set(queued) == {("connection.py", "data")}
-    assert {name for name, _line in packs} == {"connection.py"}
+    assert writes == [("server.py", "self._queue.take(BUFFER_BYTES)")]
+    assert set(queued) == {("server.py", "data")}
+    assert {name for name, _line in packs} == {"outgoing.py"}
     assert all(gate.lineno < line <= gate.end_lineno for _name, line in packs)
 
 
@@ -159,12 +159,12 @@ def test_no_other_part_of_the_simulator_packs_messages_or_writes_to_sockets():
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.ImportFrom) and node.module == "rastrainer.igtl.message":
                 packing |= {place for alias in node.names if alias.name == "pack"}
-    assert packing == {"net/igtl/connection.py"}
+    assert packing == {"net/igtl/outgoing.py"}
     assert sending == {("net/igtl/server.py", "create_connection")}
 
 
 def test_the_queue_returns_only_whole_messages():
-    queue, police = OutgoingQueue(100, 10**6), WireChecker()
+    queue, police = OutgoingQueue(), WireChecker()
     for number in range(50):
         data = Outgoing(Message("Text", String("x" * 100 * number), {"n": "1"})).packed(2)
         queue.put(data) if number % 2 else queue.put_latest(("STRING", str(number)), data)

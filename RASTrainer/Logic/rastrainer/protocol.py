@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from enum import Enum
 
-PROTOCOL_VERSION = 2
+PROTOCOL_VERSION = 1
 DEFAULT_HOST = "127.0.0.1"
 DEFAULT_PORT = 18944
 DEFAULT_VIEW_PORT = 18945

@@ -1,4 +1,9 @@
-"""The teacher's board: a page of live tiles, the seats' scenes, and orders to the seats."""
+"""The teacher's board: a page of live tiles, the seats' scenes, and orders to the seats.
+
+The browser sees a seat's scene by way of the board, which has the key; nothing that it sends goes
+to the seat. The page and its code are the board's own; only the scene, sounds, pictures and what
+moves come from the simulator.
+"""
 
 from __future__ import annotations
 
@@ -8,10 +13,10 @@ import secrets
 from collections.abc import Callable
 from pathlib import Path
 
-from aiohttp import hdrs, web
+import aiohttp
+from aiohttp import WSMsgType, hdrs, web
 
 from rastrainer.errors import InputError
-from rastrainer.json_records import record_from_json
 from rastrainer.study.database.database import StudyPlace
 from rastrainer_simulator.assets import page_folder
 from rastrainer_simulator.board.board_messages import (
@@ -29,22 +34,39 @@ from rastrainer_simulator.board.seats import (
     checked_address,
     checked_fingerprint,
 )
-from rastrainer_simulator.board.watched_seat import SEAT_PATH, LiveView, WatchedSeat
-from rastrainer_simulator.net.limits import ViewLimits
+from rastrainer_simulator.board.watched_seat import WatchedSeat
 from rastrainer_simulator.net.views.access_control import (
     ROLE,
     PairingCode,
     Sessions,
     read_body,
-    read_object,
 )
-from rastrainer_simulator.net.views.limited_server import GuardedServer, page_answer
-from rastrainer_simulator.presentation.messages import OrderRequest, ViewRole, message_text
+from rastrainer_simulator.net.views.guarded_server import GuardedServer, page_answer
+from rastrainer_simulator.presentation.messages import (
+    SUBPROTOCOL,
+    Hello,
+    OrderRequest,
+    ViewRole,
+    message_text,
+    read_view_input,
+)
 
 TILES_S = 0.25
 """Between two messages to a teacher's page."""
 HEARTBEAT_S = 20.0
-MOST_TEACHERS = 16
+SEAT_PATH = "/seat/{seat:[0-9a-f]{12}}"
+FILES = (
+    "scene/{name:[0-9a-f]{64}}.glb",
+    "sounds/{name:[a-z-]{1,32}}.wav",
+    "scenarios/{name:[a-z0-9-]{1,40}}.png",
+)
+"""What a page may request of a simulator."""
+FILE_TYPES = {"glb": "model/gltf-binary", "wav": "audio/wav", "png": "image/png"}
+"""Their types, whatever the simulator says."""
+_KEPT_HEADERS = (hdrs.CONTENT_ENCODING, hdrs.CACHE_CONTROL, hdrs.VARY, "X-File-Size")
+_SPECTATOR_HELLO = message_text(Hello("spectator"))
+_HELLO_S = 5.0
+SPECTATORS_ONLY = "This stream is only for watching: the first message must be a spectator's hello."
 ONLY_TEACHERS = "This browser only watches the board: pair it with the board again."
 
 
@@ -60,7 +82,6 @@ class BoardServer:
         config: Path,
         client: SeatClient,
         on_new_code: Callable[[str], None],
-        limits: ViewLimits | None = None,
         study: StudyPlace | None = None,
     ) -> None:
         """Watch the seats that the folder of settings lists; in the event loop's thread.
@@ -69,7 +90,6 @@ class BoardServer:
             config: Folder of settings.
             client: Talks to the seats.
             on_new_code: Called with each new code for browsers.
-            limits: What connections may cost.
             study: Whose trainees are the class; None for a board of seats alone.
         """
         self._client = client
@@ -82,11 +102,22 @@ class BoardServer:
         self._pins: dict[str, str] = {}
         self._class = ClassWatch(study)
         self._page = page_folder()
-        sessions = Sessions(dict.fromkeys(ViewRole, MOST_TEACHERS))
         self.code = PairingCode(asyncio.get_running_loop().time, on_new_code)
-        self._http = GuardedServer(
-            sessions, self.code, limits or ViewLimits(), self._routes(), self._page
-        )
+        routes = [
+            web.get("/", self._send_page),
+            web.get(f"{SEAT_PATH}/", self._send_page),
+            web.get(f"{SEAT_PATH}/{{name:page\\.(?:js|css)}}", self._send_page),
+            web.get(f"{SEAT_PATH}/role", self._send_role),
+            web.get(f"{SEAT_PATH}/stream", self._stream),
+            *(web.get(f"{SEAT_PATH}/{path}", self._send_file) for path in FILES),
+            web.get("/tiles", self._send_tiles),
+            web.get("/class", self._class.send),
+            web.get("/paired", _confirm_pairing),
+            web.post("/seats", self._add),
+            web.delete(SEAT_PATH, self._remove),
+            web.post(f"{SEAT_PATH}/order", self._order),
+        ]
+        self._http = GuardedServer(Sessions(), self.code, routes, self._page)
 
     async def listen(self, host: str, port: int) -> int:
         """Listen and return the port; 0 is any free one."""
@@ -100,19 +131,6 @@ class BoardServer:
         await self._http.close()
         await self._class.close()
 
-    def _routes(self) -> list[web.RouteDef]:
-        live = LiveView(self._entry, self._client)
-        return [
-            web.get("/", self._send_page),
-            web.get("/tiles", self._send_tiles),
-            web.get("/class", self._class.send),
-            web.get("/paired", _confirm_pairing),
-            web.post("/seats", self._add),
-            web.delete(SEAT_PATH, self._remove),
-            web.post(f"{SEAT_PATH}/order", self._order),
-            *live.routes(),
-        ]
-
     def _notify(self) -> None:
         for page in self._pages:
             page.set()
@@ -123,8 +141,56 @@ class BoardServer:
             raise web.HTTPNotFound(text="There is no such seat on this board.")
         return seat.entry
 
-    async def _send_page(self, _request: web.Request) -> web.StreamResponse:
-        return page_answer(self._page, "board.html")
+    async def _send_page(self, request: web.Request) -> web.StreamResponse:
+        """Send the board's page, or the page of a seat or its code."""
+        if "seat" not in request.match_info:
+            return page_answer(self._page, "board.html")
+        self._entry(request)
+        return page_answer(self._page, request.match_info.get("name", "index.html"))
+
+    async def _send_role(self, request: web.Request) -> web.Response:
+        self._entry(request)
+        role = {"role": ViewRole.SPECTATOR.value}
+        return web.json_response(role, headers={hdrs.CACHE_CONTROL: "no-store"})
+
+    async def _send_file(self, request: web.Request) -> web.Response:
+        entry = self._entry(request)
+        path = request.path.removeprefix(f"/seat/{entry.id}")
+        try:
+            content, found = await self._client.request(entry, path)
+        except RefusedError:
+            raise web.HTTPNotFound from None
+        except InputError as error:
+            raise web.HTTPBadGateway(text=str(error)) from None
+        headers = {name: found[name] for name in _KEPT_HEADERS if name in found}
+        kind = FILE_TYPES[path.rpartition(".")[2]]
+        return web.Response(body=content, content_type=kind, headers=headers)
+
+    async def _stream(self, request: web.Request) -> web.StreamResponse:
+        entry = self._entry(request)
+        page = web.WebSocketResponse(protocols=(SUBPROTOCOL,), compress=False, writer_limit=0)
+        if page.can_prepare(request).protocol != SUBPROTOCOL:
+            raise web.HTTPBadRequest(text=f"Ask for a WebSocket with {SUBPROTOCOL}.")
+        try:
+            simulator = await self._client.stream(entry)
+        except InputError as error:
+            raise web.HTTPBadGateway(text=str(error)) from None
+        hello = None
+        try:
+            await page.prepare(request)
+            with contextlib.suppress(asyncio.TimeoutError):
+                first = await page.receive(_HELLO_S)
+                hello = read_view_input(first.data) if first.type is WSMsgType.TEXT else None
+            if not isinstance(hello, Hello) or hello.kind != "spectator":
+                raise InputError(SPECTATORS_ONLY)
+            await simulator.send_str(_SPECTATOR_HELLO)
+            await _pass_on(simulator, page)
+        except InputError as error:
+            await page.close(code=1008, message=str(error).encode()[:120])
+        finally:
+            await simulator.close()
+        await page.close()
+        return page
 
     async def _send_tiles(self, request: web.Request) -> web.StreamResponse:
         socket = web.WebSocketResponse(
@@ -136,7 +202,17 @@ class BoardServer:
         is_changed = asyncio.Event()
         is_changed.set()
         self._pages.add(is_changed)
-        sending = asyncio.create_task(self._keep_sending(socket, is_changed))
+
+        async def send() -> None:
+            with contextlib.suppress(ConnectionError):
+                while True:
+                    await is_changed.wait()
+                    is_changed.clear()
+                    tiles = TilesNews(tuple(seat.tile() for seat in self._seats.values()))
+                    await socket.send_str(message_text(tiles))
+                    await asyncio.sleep(TILES_S)
+
+        sending = asyncio.create_task(send())
         try:
             async for _message in socket:
                 # A board's page has nothing to send here.
@@ -147,20 +223,11 @@ class BoardServer:
             await asyncio.gather(sending, return_exceptions=True)
         return socket
 
-    async def _keep_sending(self, socket: web.WebSocketResponse, is_changed: asyncio.Event) -> None:
-        with contextlib.suppress(ConnectionError):
-            while True:
-                await is_changed.wait()
-                is_changed.clear()
-                tiles = TilesNews(tuple(seat.tile() for seat in self._seats.values()))
-                await socket.send_str(message_text(tiles))
-                await asyncio.sleep(TILES_S)
-
     async def _add(self, request: web.Request) -> web.Response:
         """Pair with a simulator. Without its fingerprint, return it for comparison."""
         _check_teacher(request)
+        asked = await read_body(request, NewSeat)
         try:
-            asked = record_from_json(NewSeat, await read_object(request), "The seat")
             name, address = asked.name.strip(), checked_address(asked.address)
             fingerprint = ""
             if address.startswith("https:"):
@@ -222,6 +289,31 @@ class BoardServer:
 async def _confirm_pairing(_request: web.Request) -> web.Response:
     """Confirm to a browser, which cannot read its cookie, that it has one; else refuse it."""
     return web.json_response({}, headers={hdrs.CACHE_CONTROL: "no-store"})
+
+
+async def _pass_on(simulator: aiohttp.ClientWebSocketResponse, page: web.WebSocketResponse) -> None:
+    """Send the page what the simulator says, until one of them ends it.
+
+    A page that reads slowly makes the simulator wait, which then sends only the latest.
+    """
+
+    async def send() -> None:
+        with contextlib.suppress(ConnectionError):
+            async for message in simulator:
+                if message.type is WSMsgType.TEXT:
+                    await page.send_str(message.data)
+
+    async def ignore() -> None:
+        async for _message in page:
+            pass
+
+    tasks = [asyncio.create_task(send()), asyncio.create_task(ignore())]
+    try:
+        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
 
 
 def _check_teacher(request: web.Request) -> None:

@@ -21,7 +21,6 @@ from rastrainer.study.curriculum.standing import (
 from rastrainer.study.database.database import LockWait, StudyBusyError, StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import utc_now
-from rastrainer.study_messages import AssignmentStanding
 from rastrainer_simulator.board.board_messages import (
     AssignmentCell,
     AssignmentColumn,
@@ -222,13 +221,12 @@ def _table(
     first = next(iter(group.values()))
     return CurriculumTable(
         curriculum.title,
-        tuple(_column(each, words) for each in first.standings),
+        tuple(
+            AssignmentColumn(each.name, words.label(each), words.goal(each))
+            for each in first.standings
+        ),
         tuple(_row(name, standing, words) for name, standing in group.items()),
     )
-
-
-def _column(standing: AssignmentStanding, words: AssignmentTexts) -> AssignmentColumn:
-    return AssignmentColumn(standing.name, words.label(standing), words.goal(standing))
 
 
 def _row(name: str, standing: CurriculumStanding, words: AssignmentTexts) -> TraineeRow:

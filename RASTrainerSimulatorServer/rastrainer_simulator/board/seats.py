@@ -12,7 +12,7 @@ import ssl
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 from urllib.parse import urlsplit
 
 import aiohttp
@@ -21,7 +21,7 @@ from aiohttp import hdrs
 from rastrainer.errors import InputError
 from rastrainer.files.reading import printable_name, read_json
 from rastrainer.files.writing import write_private_json
-from rastrainer.json_checks import decode_message_object, text, whole_number
+from rastrainer.json_checks import decode_message_object, identifier, text, whole_number
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer_simulator.net.listener import is_loopback
 from rastrainer_simulator.net.views.access_control import LONGEST_KEY, SHORTEST_KEY
@@ -37,13 +37,6 @@ FORMAT_VERSION = 1
 MOST_SEATS = 64
 _MAX_BYTES = 200_000
 _FINGERPRINT = re.compile(r"([0-9A-F]{2}:){31}[0-9A-F]{2}")
-_ID = re.compile(r"[0-9a-f]{12}")
-
-
-def _checked_id(value: Any) -> str:
-    if not isinstance(value, str) or _ID.fullmatch(value) is None:
-        raise ValueError("12 hexadecimal digits")
-    return value
 
 
 @dataclass(frozen=True)
@@ -59,7 +52,7 @@ class SeatEntry:
             TLS.
     """
 
-    id: Annotated[str, _checked_id]
+    id: Annotated[str, identifier]
     name: Annotated[str, text(40)]
     address: Annotated[str, text(300)]
     key: Annotated[str, text(LONGEST_KEY)]
@@ -89,7 +82,9 @@ class SeatList:
         self._path = config / SEATS_FILE
         self._entries: dict[str, SeatEntry] = {}
         if self._path.exists():
-            self._entries = {entry.id: entry for entry in _read(self._path)}
+            values = read_json(self._path, _MAX_BYTES)
+            file = record_from_json(SeatsFile, values, str(self._path), only_known=True)
+            self._entries = {entry.id: entry for entry in file.seats}
 
     def __iter__(self) -> Iterator[SeatEntry]:
         """Return the seats in the order in which they were added."""
@@ -145,11 +140,6 @@ def checked_fingerprint(value: str) -> str:
     return shown
 
 
-def _read(path: Path) -> tuple[SeatEntry, ...]:
-    values = read_json(path, _MAX_BYTES)
-    return record_from_json(SeatsFile, values, str(path), only_known=True).seats
-
-
 TIMEOUT_S = 8.0
 FILE_S = 120.0
 """For a scene, which is some megabytes, over a slow network."""
@@ -161,10 +151,6 @@ MAX_REASON = 300
 AWAY = "The simulator does not answer at {address}."
 OTHER_CERTIFICATE = "The certificate has changed: compare its fingerprint again."
 NOT_OURS = "The server at {address} is not a simulator of this version."
-
-
-class SeatUnreachableError(InputError):
-    """The simulator does not answer."""
 
 
 class OtherCertificateError(InputError):
@@ -182,7 +168,8 @@ class RefusedError(InputError):
 class SeatClient:
     """Requests to simulators; certificates are checked by fingerprint, not by issuer.
 
-    They raise `SeatUnreachableError`, `OtherCertificateError`, `UnpairedError` or `RefusedError`.
+    They raise `OtherCertificateError`, `UnpairedError`, `RefusedError`, or another `InputError`
+    where the simulator does not answer.
     """
 
     def __init__(self) -> None:
@@ -207,7 +194,7 @@ class SeatClient:
         try:
             text = await asyncio.to_thread(ssl.get_server_certificate, place, timeout=TIMEOUT_S)
         except (OSError, ValueError):
-            raise SeatUnreachableError(AWAY.format(address=address)) from None
+            raise InputError(AWAY.format(address=address)) from None
         digest = hashlib.sha256(ssl.PEM_cert_to_DER_cert(text)).digest()
         return digest.hex(":").upper()
 
@@ -234,7 +221,7 @@ class SeatClient:
                 ssl=_certificate(entry),
             )
         except aiohttp.WSServerHandshakeError as error:
-            raise _problem(entry, error.status) from None
+            raise _refusal(entry, error.status) from None
         except (aiohttp.ClientError, OSError, asyncio.TimeoutError) as error:
             raise _no_connection(entry, error) from None
 
@@ -260,7 +247,7 @@ class SeatClient:
         if response.status == 200:
             return content, response.headers
         if response.status in (401, 503):
-            raise _problem(entry, response.status)
+            raise _refusal(entry, response.status)
         raise RefusedError(content[:MAX_REASON].decode(errors="replace"))
 
 
@@ -290,10 +277,10 @@ def _certificate(entry: SeatEntry) -> aiohttp.Fingerprint | bool:
 def _no_connection(entry: SeatEntry, error: Exception) -> InputError:
     if isinstance(error, aiohttp.ServerFingerprintMismatch):
         return OtherCertificateError(OTHER_CERTIFICATE)
-    return SeatUnreachableError(AWAY.format(address=entry.address))
+    return InputError(AWAY.format(address=entry.address))
 
 
-def _problem(entry: SeatEntry, status: int) -> InputError:
+def _refusal(entry: SeatEntry, status: int) -> InputError:
     if status == 401:
         return UnpairedError("The simulator no longer knows this board: pair again.")
-    return SeatUnreachableError(AWAY.format(address=entry.address))
+    return InputError(AWAY.format(address=entry.address))

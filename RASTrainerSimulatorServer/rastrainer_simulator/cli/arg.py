@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
@@ -28,9 +29,36 @@ def output(help_text: str, **settings: Any) -> Argument:
     return option("-o", "--output", type=Path, metavar="DIR", help=help_text, **settings)
 
 
-def number(name: str, default: float, help_text: str, **settings: Any) -> Argument:
-    """Return an option with a number, which is of the type of its default."""
-    return option(name, type=type(default), default=default, help=help_text, **settings)
+def number(
+    name: str,
+    default: float | None,
+    help_text: str,
+    least: float | None = None,
+    most: float = math.inf,
+    **settings: Any,
+) -> Argument:
+    """Return an option with a number, of the type of its default or of `least`, up to `most`."""
+    kind = float if isinstance(default if least is None else least, float) else int
+
+    def read(text: str) -> float:
+        try:
+            value = kind(text)
+            is_right = least is None or least <= value <= most
+        except (ValueError, OverflowError):
+            is_right = False
+        if not is_right:
+            words = "a whole number" if kind is int else "a number"
+            limits = "" if least is None else f" from {least}"
+            limits += "" if math.isinf(most) else f" to {most}"
+            raise argparse.ArgumentTypeError(f"must be {words}{limits}")
+        return value
+
+    return option(name, type=read, default=default, help=help_text, **settings)
+
+
+def port(name: str, default: int | None, help_text: str) -> Argument:
+    """Return an option with a port; 0 is any free one."""
+    return number(name, default, help_text, 0, 65535, metavar="PORT")
 
 
 def flag(name: str, help_text: str) -> Argument:

@@ -28,29 +28,18 @@ TYPICAL_FLE_MM = 1.5
 TRIAL_TIME_SD = 0.12
 """SD of the logarithm of drawn times besides the tempo: heads, paths and slips of the hand."""
 MAX_TRAINEES = 100_000
+MAX_STUDIES = 100_000
 
 
 def run(arguments: argparse.Namespace) -> int:
-    if not 2 <= arguments.trainees <= MAX_TRAINEES or arguments.seed < 0:
-        raise InputError(f"A cohort has 2 to {MAX_TRAINEES} trainees, and its seed is 0 or above.")
     protocol = read_study_protocol(arguments.protocol or asset_path(*SHIPPED_PROTOCOL))
     if arguments.power is not None:
         print(_power(protocol, arguments))
         return 0
     if arguments.output is None:
         raise InputError("Name the folder of the study with -o.")
-    _check_playing(arguments)
     _play(protocol, arguments)
     return 0
-
-
-def _check_playing(arguments: argparse.Namespace) -> None:
-    if not 5 <= arguments.speed <= 450 or not 0 <= arguments.aim <= 3:
-        raise InputError("The speed must be from 5 to 450 mm/s, the aim's SD from 0 to 3 mm.")
-    if not 0.002 <= arguments.step <= 0.1:
-        raise InputError("A step of the simulation must be from 0.002 to 0.1 s.")
-    if arguments.workers is not None and not 1 <= arguments.workers <= 1024:
-        raise InputError("There must be 1 to 1024 workers.")
 
 
 def _play(protocol: StudyProtocol, arguments: argparse.Namespace) -> None:
@@ -111,8 +100,8 @@ def _population(arguments: argparse.Namespace) -> Population:
 
 
 def _power(protocol: StudyProtocol, arguments: argparse.Namespace) -> str:
-    if not 10 <= arguments.power <= 100_000 or len(protocol.modes) != 2:
-        raise InputError("Power needs 10 to 100000 studies of a protocol with two modes.")
+    if len(protocol.modes) != 2:
+        raise InputError("Power needs a protocol with two modes.")
     population = _population(arguments)
     scenario = load_scenario(arguments.scenario or asset_path("scenarios", "colin27"))
     times_s = [score_reference(scenario, task).time_s for task in protocol.tasks]
@@ -162,8 +151,8 @@ def _power(protocol: StudyProtocol, arguments: argparse.Namespace) -> str:
 
 SKILLS = arg.group(
     "the trainees",
-    arg.number("--speed", 120.0, "of the tip between points", metavar="MM/S"),
-    arg.number("--aim", 0.8, "SD along each axis", metavar="MM"),
+    arg.number("--speed", 120.0, "of the tip between points", 5.0, 450.0, metavar="MM/S"),
+    arg.number("--aim", 0.8, "SD along each axis", 0.0, 3.0, metavar="MM"),
     arg.number("--hmd-speed", 1.0, "of the speed in the headset", metavar="FACTOR"),
     arg.number("--hmd-aim", 1.0, "of the SD in the headset", metavar="FACTOR"),
     arg.option(
@@ -192,11 +181,11 @@ ENGINE = arg.group(
     arg.option(
         "--engine", choices=("processes", "dask"), default="processes", help="what plays the trials"
     ),
-    arg.option(
-        "--workers", type=int, metavar="N", help="that play at once (default: one per core)"
+    arg.number(
+        "--workers", None, "that play at once (default: one per core)", 1, 1024, metavar="N"
     ),
     arg.option("--address", metavar="URL", help="of a Dask scheduler"),
-    arg.number("--step", 0.05, "of the simulation", metavar="S"),
+    arg.number("--step", 0.05, "of the simulation", 0.002, 0.1, metavar="S"),
     arg.path("--scenario", "DIR", "whose head and tasks are used (default: Colin27)"),
 )
 COMMANDS = (
@@ -205,12 +194,14 @@ COMMANDS = (
         "simulate a study of virtual trainees whose parameters you set",
         run,
         (
-            arg.number("--trainees", 20, "how many", metavar="N"),
+            arg.number("--trainees", 20, "how many", 2, MAX_TRAINEES, metavar="N"),
             arg.path("--protocol", "FILE", "of the study (default: the published one)"),
-            arg.number("--seed", 0, "of everything that is drawn"),
+            arg.number("--seed", 0, "of everything that is drawn", 0),
             arg.output("an empty folder, or one to resume"),
             arg.flag("--records", "write the journals too"),
-            arg.option("--power", type=int, metavar="STUDIES", help="number of studies to draw"),
+            arg.number(
+                "--power", None, "number of studies to draw", 10, MAX_STUDIES, metavar="STUDIES"
+            ),
             SKILLS,
             ENGINE,
         ),

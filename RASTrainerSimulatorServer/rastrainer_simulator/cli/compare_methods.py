@@ -73,10 +73,6 @@ def _simulated(arguments: argparse.Namespace, scenario: Scenario, notes: list[st
     # Only here: a study is compared without the virtual trials.
     from rastrainer_simulator.virtual.method_trials import METHODS, MethodStudy
 
-    if not 1 <= arguments.trials <= MOST_TRIALS:
-        raise InputError(f"--trials must be 1 to {MOST_TRIALS}, not {arguments.trials}.")
-    if arguments.seed < 0:
-        raise InputError(f"--seed must not be negative, as {arguments.seed} is.")
     task = arguments.task or scenario.tasks[-1].name
     scenario.task(task)
     trials = MethodStudy(scenario, task, arguments.skin_shift, arguments.indentation)
@@ -200,8 +196,8 @@ COMMANDS = (
             arg.study(nargs="?"),
             arg.path("--scenario", "DIR", "default: Colin27"),
             arg.option("--task", help="of simulated trials; default: the scenario's last one"),
-            arg.number("--trials", 20, "number of simulated trials"),
-            arg.number("--seed", 0, "of the first"),
+            arg.number("--trials", 20, "number of simulated trials", 1, MOST_TRIALS),
+            arg.number("--seed", 0, "of the first", 0),
             arg.number(
                 "--skin-shift",
                 0.0,

@@ -15,7 +15,7 @@ import json
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -69,11 +69,22 @@ def play_demo(output: Path, seed: int, speed: float) -> None:
     with _simulator(output, seed, speed) as port, _slicer(output, port) as slicer:
         states, record = _play(port, scenario, seed, speed)
         print("Slicer's side registers, scores, stores and draws ...", flush=True)
-        _wait_for(slicer, output / "slicer.log")
+        log = output / "slicer.log"
+        try:
+            status = slicer.wait(SLICER_TIMEOUT_S)
+        except subprocess.TimeoutExpired:
+            status = None
+        if status != 0:
+            raise RASTrainerError(f"Slicer's side did not finish its work; see {log}.")
     lines = (output / "results.jsonl").read_text(encoding="utf-8").splitlines()
     trials = [json.loads(line) for line in lines]
     _draw_robot(output / "robot.png", scenario, states[-1], trials[-1])
-    _write_points(output, scenario, record)
+    task = scenario.task(record.task)
+    fiducials = zip(task.labels, task.fiducials.tolist(), strict=True)
+    touches = ((point.label, point.position_mm) for point in record.points)
+    for name, points in ((TOUCHES, touches), (FIDUCIALS, fiducials)):
+        rows = (",".join(map(str, (label, *place))) for label, place in points)
+        write_text(output / name, "\n".join(["label,x,y,z", *rows, ""]))
     head_to_world = np.reshape(trials[-1]["truth"]["headToWorld"], (4, 4))
     _draw_procedure(output / "procedure.png", scenario, record, head_to_world)
     for trial in trials:
@@ -191,15 +202,6 @@ class _Bar:
             print(line, end="\r" if sys.stdout.isatty() else "\n", flush=True)
 
 
-def _wait_for(process: subprocess.Popen, log: Path) -> None:
-    try:
-        status = process.wait(SLICER_TIMEOUT_S)
-    except subprocess.TimeoutExpired:
-        status = None
-    if status != 0:
-        raise RASTrainerError(f"Slicer's side did not finish its work; see {log}.")
-
-
 def _draw_robot(
     path: Path, scenario: Scenario, state: dict[str, Any], trial: dict[str, Any]
 ) -> None:
@@ -241,22 +243,19 @@ def _draw_procedure(
     draw_procedure(path, read_head_mesh(scenario.head_mesh), procedure, lines)
 
 
-def _write_points(output: Path, scenario: Scenario, record: TrialRecord) -> None:
-    """Write touches (World) and fiducials (RAS), mm, as `rastrainer register` reads them."""
-    task = scenario.task(record.task)
-    fiducials = zip(task.labels, task.fiducials.tolist(), strict=True)
-    touches = ((point.label, point.position_mm) for point in record.points)
-    for name, points in ((TOUCHES, touches), (FIDUCIALS, fiducials)):
-        rows = (",".join(map(str, (label, *place))) for label, place in points)
-        write_text(output / name, "\n".join(["label,x,y,z", *rows, ""]))
-
-
 def trial_summary(trial: Mapping[str, Any], title: str) -> str:
     """Return a summary of one trial for people; `trial` is a line of results.jsonl."""
     record, target, rigid = trial["record"], trial["targetName"], trial["fits"]["rigid"]
     true_mm, (low, high) = trial["truth"]["trueTreMm"], rigid["treIntervalMm"]
     where = "below" if true_mm < low else "above" if true_mm > high else "in"
     undone, refused = record["undoneTouches"], record["rejectedTouches"]
+    score, ctps = trial["score"], trial["ctps"]
+    time_score, accuracy_score = score["timeDesirability"], score["accuracyDesirability"]
+    parts = f"time {time_score:.2f}, accuracy {accuracy_score:.2f}"
+    residuals_mm = rigid["residualsMm"]
+    bars = ["▇" * max(1, round(20 * each / max(residuals_mm))) for each in residuals_mm]
+    labels = [point["label"] for point in record["points"]]
+    rows = zip(labels, residuals_mm, bars, strict=True)
     lines = [
         f"{title}, {record['trainee']}, {record['mode']}",
         _line("Completion time (CT)", record["completionTimeS"], "s"),
@@ -269,11 +268,14 @@ def trial_summary(trial: Mapping[str, Any], title: str) -> str:
         ),
         f"    {INTERVAL_NOTE}",
         _line(f"True TRE, {target}", true_mm, f"mm, {where} that interval"),
-        *_scores(trial["score"], trial["ctps"]),
+        _line("Score", score["score"], f"of 100: {parts}"),
+        _line("CTPS as in the paper's tables", ctps["published"], "against the paper's cohort"),
+        _line("CTPS by the paper's equation 3", ctps["equation3"], "half of it"),
+        f"    {CTPS_WARNING}",
         "  Residual of each fiducial, rigid (mm)",
-        *_residuals([point["label"] for point in record["points"]], rigid["residualsMm"]),
+        *(f"    {label:>3}  {residual:5.2f}  {bar}" for label, residual, bar in rows),
+        *(f"  Warning: {warning['message']}" for warning in rigid["warnings"]),
     ]
-    lines += [f"  Warning: {warning['message']}" for warning in rigid["warnings"]]
     return "\n".join(lines)
 
 
@@ -303,23 +305,6 @@ def procedure_summary(record: TrialRecord, scenario: Scenario, head_to_world: np
 
 def _line(name: str, value: float, unit_and_remark: str) -> str:
     return f"  {name:<34} {value:8.2f} {unit_and_remark}"
-
-
-def _scores(score: Mapping[str, Any], ctps: Mapping[str, Any]) -> list[str]:
-    time, accuracy = score["timeDesirability"], score["accuracyDesirability"]
-    return [
-        _line("Score", score["score"], f"of 100: time {time:.2f}, accuracy {accuracy:.2f}"),
-        _line("CTPS as in the paper's tables", ctps["published"], "against the paper's cohort"),
-        _line("CTPS by the paper's equation 3", ctps["equation3"], "half of it"),
-        f"    {CTPS_WARNING}",
-    ]
-
-
-def _residuals(labels: Sequence[str], residuals_mm: Sequence[float]) -> list[str]:
-    longest = max(residuals_mm)
-    bars = ["▇" * max(1, round(20 * residual / longest)) for residual in residuals_mm]
-    rows = zip(labels, residuals_mm, bars, strict=True)
-    return [f"    {label:>3}  {residual:5.2f}  {bar}" for label, residual, bar in rows]
 
 
 COMMANDS = (

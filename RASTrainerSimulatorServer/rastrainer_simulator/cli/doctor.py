@@ -223,8 +223,8 @@ COMMANDS = (
         "check this computer, and suggest remedies for problems",
         run,
         (
-            arg.number("--port", DEFAULT_PORT, "of OpenIGTLink"),
-            arg.number("--view-port", DEFAULT_VIEW_PORT, "of the views"),
+            arg.port("--port", DEFAULT_PORT, "of OpenIGTLink"),
+            arg.port("--view-port", DEFAULT_VIEW_PORT, "of the views"),
             arg.RECORDS,
             arg.path("--config", "DIR", "of your settings"),
             arg.flag("--json", "print the findings as JSON"),

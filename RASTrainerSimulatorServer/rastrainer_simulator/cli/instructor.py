@@ -13,7 +13,7 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer.study.database.database import StudyPlace
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Subcommand, announce, check_ports
+from rastrainer_simulator.cli.options import Subcommand, announce
 from rastrainer_simulator.ops.instructor_pin import PIN_WORDS, InstructorPin
 from rastrainer_simulator.ops.system_paths import config_folder
 
@@ -21,7 +21,6 @@ DEFAULT_BOARD_PORT = 18955
 
 
 def serve_board(arguments: argparse.Namespace) -> int:
-    check_ports(arguments)
     config = arguments.config or config_folder()
     asyncio.run(_serve(config, arguments.port, arguments.study))
     return 0
@@ -84,7 +83,7 @@ COMMANDS = (
                 "--study",
                 f"also show the class of this study, which is only read: {arg.STUDY_HELP}",
             ),
-            arg.number(
+            arg.port(
                 "--port", DEFAULT_BOARD_PORT, "for browsers on this computer, 0 for any free one"
             ),
             arg.CONFIG,

@@ -6,10 +6,10 @@ import argparse
 import sys
 from collections.abc import Sequence
 from importlib import import_module
-from typing import Any
+from typing import Any, NoReturn
 
 import rastrainer
-from rastrainer.errors import RASTrainerError
+from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.files.reading import failure_reason, printable_name
 from rastrainer.work_progress import allow_any_text
 
@@ -59,13 +59,16 @@ class _CommandParser(argparse.ArgumentParser):
     def __init__(self, **settings: Any) -> None:
         super().__init__(formatter_class=_HelpWithDefaults, **settings)
 
+    def error(self, message: str) -> NoReturn:
+        raise InputError(f"{message.rstrip('.')}; see {self.prog} --help.")
+
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one subcommand and return its exit status: 2 where the input cannot be used."""
     allow_any_text()
     words = sys.argv[1:] if argv is None else list(argv)
-    arguments = _parser(words).parse_args(words)
     try:
+        arguments = _parser(words).parse_args(words)
         return arguments.run(arguments)
     except RASTrainerError as error:
         print(f"rastrainer: {error}", file=sys.stderr)

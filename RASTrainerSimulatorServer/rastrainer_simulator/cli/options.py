@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
-from rastrainer.errors import InputError
 from rastrainer_simulator.cli.arg import Argument, add_all
 
 if TYPE_CHECKING:
@@ -39,14 +38,6 @@ class Subcommand:
             of_actions = parser.add_subparsers(title="what to do", required=True, metavar="ACTION")
             for action in self.actions:
                 action.add_to(of_actions)
-
-
-def check_ports(arguments: argparse.Namespace) -> None:
-    """Raise `InputError` if a given `--port` or `--view-port` is invalid; 0 is any free one."""
-    for name in ("port", "view_port"):
-        port = getattr(arguments, name, None)
-        if port is not None and not 0 <= port < 65536:
-            raise InputError(f"--{name.replace('_', '-')} must be a number from 0 to 65535.")
 
 
 def read_known_study(arguments: argparse.Namespace) -> StudyData:

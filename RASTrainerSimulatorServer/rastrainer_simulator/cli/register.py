@@ -132,7 +132,18 @@ def registration_text(
     if error is not None:
         lines += [f"TRE  {_expected(error)}", INTERVAL_NOTE]
     lines += [FRE_NOTE, "", "Moving to fixed (mm)", *_matrix_lines(registration.matrix)]
-    lines += ["", _residual_table(registration, stated)]
+    header, last = ["Point", "Residual (mm)", "x", "y", "z"], None
+    if stated is not None:
+        header, last = [*header, "FLE (mm)"], stated.fle_mm
+    elif registration.weights is not None:
+        header, last = [*header, "Weight"], registration.weights
+    lengths, vectors = registration.residuals_mm, registration.residual_vectors_mm
+    rows = [
+        [label, f"{lengths[row]:.3f}", *(f"{value:+.3f}" for value in vectors[row])]
+        + ([] if last is None else [f"{last[row]:g}"])
+        for row, label in enumerate(registration.labels)
+    ]
+    lines += ["", text_table(header, rows)]
     warnings = [warning.message for warning in registration.warnings]
     if stated is not None and stated.misfit_probability < MISFIT_LEVEL:
         warnings.append(
@@ -155,21 +166,6 @@ def _expected(error: TargetError) -> str:
 
 def _matrix_lines(matrix: np.ndarray) -> list[str]:
     return ["  ".join(f"{value:12.6f}" for value in row) for row in matrix]
-
-
-def _residual_table(registration: Registration, stated: StatedErrors | None) -> str:
-    header, last = ["Point", "Residual (mm)", "x", "y", "z"], None
-    if stated is not None:
-        header, last = [*header, "FLE (mm)"], stated.fle_mm
-    elif registration.weights is not None:
-        header, last = [*header, "Weight"], registration.weights
-    lengths, vectors = registration.residuals_mm, registration.residual_vectors_mm
-    rows = [
-        [label, f"{lengths[row]:.3f}", *(f"{value:+.3f}" for value in vectors[row])]
-        + ([] if last is None else [f"{last[row]:g}"])
-        for row, label in enumerate(registration.labels)
-    ]
-    return text_table(header, rows)
 
 
 def _weighting(

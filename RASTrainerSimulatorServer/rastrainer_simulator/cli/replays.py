@@ -9,12 +9,11 @@ import sys
 from dataclasses import asdict
 from functools import partial
 
-from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.study.database.study import Study
 from rastrainer.study.ratings import FORMS, RatingStore, find_form
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Subcommand, announce, check_ports
+from rastrainer_simulator.cli.options import Subcommand, announce
 
 REPLAYS = 20
 
@@ -23,7 +22,11 @@ def replay(arguments: argparse.Namespace) -> int:
     if arguments.film is not None:
         return _film(arguments)
     if not arguments.verify:
-        return _show(arguments)
+        from rastrainer_simulator.server.replay_server import show
+
+        playback = arguments.scenario, arguments.view_port, arguments.window
+        show(arguments.journal, *playback, partial(announce, "replay"))
+        return 0
     # Only here: the robot and the scenario take time to import.
     from rastrainer_simulator.record.trial_context import setup_of
     from rastrainer_simulator.replay import resimulation
@@ -62,15 +65,6 @@ def _film(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _show(arguments: argparse.Namespace) -> int:
-    check_ports(arguments)
-    from rastrainer_simulator.server.replay_server import show
-
-    playback = arguments.scenario, arguments.view_port, arguments.window
-    show(arguments.journal, *playback, partial(announce, "replay"))
-    return 0
-
-
 def _summary(sentence: str, report) -> str:
     kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(report.compared.items()))
     lines = [
@@ -87,9 +81,6 @@ def _summary(sentence: str, report) -> str:
 
 
 def rate(arguments: argparse.Namespace) -> int:
-    check_ports(arguments)
-    if arguments.replays < 1:
-        raise InputError("--replays must be at least 1.")
     # Only here: the robot and the scenario take time to import.
     from rastrainer_simulator.rating.rating_pages import RatingWork
     from rastrainer_simulator.server.replay_server import serve_rating, trials_to_show
@@ -109,7 +100,7 @@ def rate(arguments: argparse.Namespace) -> int:
 
 
 PLAYBACK = (
-    arg.option("--view-port", type=int, metavar="PORT", help="where views are served"),
+    arg.port("--view-port", None, "where views are served"),
     arg.switch("--window", "open the window"),
 )
 COMMANDS = (
@@ -146,7 +137,7 @@ COMMANDS = (
             ),
             arg.RECORDS,
             arg.number(
-                "--replays", REPLAYS, "how many trials are drawn for all raters", metavar="N"
+                "--replays", REPLAYS, "how many trials are drawn for all raters", 1, metavar="N"
             ),
             arg.option(
                 "--form",

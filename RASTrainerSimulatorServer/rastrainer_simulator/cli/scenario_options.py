@@ -70,7 +70,7 @@ OPTIONS = (
     arg.option("--source", help="where the images come from (default: the volume's name)"),
     arg.option("--license", default=UNKNOWN_LICENSE, help="under which it may be used"),
     arg.path("--setup", "JSON", "head, table and robot base"),
-    arg.number("--seed", 1, "of the proposed tasks"),
+    arg.number("--seed", 1, "of the proposed tasks", 0, 2**31 - 1),
     arg.option(
         "--tasks",
         nargs="+",
@@ -95,8 +95,6 @@ def options_of(arguments: argparse.Namespace, source: str) -> ScenarioOptions:
     # Only here: it needs the robot, which takes time to import.
     from rastrainer_simulator.authoring.make import ScenarioOptions
 
-    if not 0 <= arguments.seed < 2**31:
-        raise InputError("--seed must be from 0 to 2147483647.")
     return ScenarioOptions(
         title=title_of(arguments),
         source=_text("--source", arguments.source or source, LONGEST_TEXT),

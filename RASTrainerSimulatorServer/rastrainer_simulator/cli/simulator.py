@@ -10,12 +10,12 @@ from functools import partial
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DEFAULT_VIEW_PORT
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Subcommand, announce, check_ports
+from rastrainer_simulator.cli.options import Subcommand, announce
 from rastrainer_simulator.ops.log_files import keep_logs
 from rastrainer_simulator.ops.processes import has_display
 from rastrainer_simulator.ops.system_paths import log_folder
 
-FASTEST = 1000.0
+SLOWEST, FASTEST = 0.001, 1000.0
 LARGEST_SEED = 2**63 - 1
 NO_DISPLAY = (
     "--desktop needs a display, and there is none (DISPLAY and WAYLAND_DISPLAY are not set): leave "
@@ -24,8 +24,12 @@ NO_DISPLAY = (
 
 
 def run_simulator(arguments: argparse.Namespace) -> int:
-    _check(arguments)
-    connect_to = None if arguments.connect is None else _address(arguments.connect)
+    has_port = arguments.view_port is not None
+    others = {"view-port": has_port, "lan": arguments.lan, "desktop": arguments.desktop}
+    for name in (name for name, is_given in others.items() if is_given and arguments.no_views):
+        raise InputError(f"--{name} and --no-views exclude each other.")
+    if arguments.desktop and not has_display():
+        raise InputError(NO_DISPLAY)
     # Only here: the robot and the scenario take time to import.
     from rastrainer_simulator.server.server import ServerOptions, SimulatorServer
 
@@ -43,7 +47,7 @@ def run_simulator(arguments: argparse.Namespace) -> int:
         config=arguments.config,
         resumes=arguments.resume,
         scores_alone=arguments.own_score,
-        connect_to=connect_to,
+        connect_to=arguments.connect,
         speed=arguments.speed,
         scenario=arguments.scenario,
         robot_meshes=arguments.robot_meshes,
@@ -56,24 +60,10 @@ def run_simulator(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _check(arguments: argparse.Namespace) -> None:
-    check_ports(arguments)
-    has_port = arguments.view_port is not None
-    others = {"view-port": has_port, "lan": arguments.lan, "desktop": arguments.desktop}
-    for name in (name for name, is_given in others.items() if is_given and arguments.no_views):
-        raise InputError(f"--{name} and --no-views exclude each other.")
-    if arguments.desktop and not has_display():
-        raise InputError(NO_DISPLAY)
-    if not 0.0 < arguments.speed <= FASTEST:
-        raise InputError(f"--speed must be above 0 and at most {FASTEST:g}.")
-    if arguments.seed is not None and not 0 <= arguments.seed <= LARGEST_SEED:
-        raise InputError(f"--seed must be from 0 to {LARGEST_SEED}.")
-
-
 def _address(text: str) -> tuple[str, int]:
     host, _colon, port = text.rpartition(":")
     if not host or not port.isdecimal() or not 0 < int(port) < 65536:
-        raise InputError("--connect must be HOST:PORT, such as 127.0.0.1:18944.")
+        raise argparse.ArgumentTypeError("must be HOST:PORT, such as 127.0.0.1:18944")
     return host, int(port)
 
 
@@ -84,14 +74,17 @@ COMMANDS = (
         run_simulator,
         (
             arg.option("--host", default=DEFAULT_HOST, help="address to listen on"),
-            arg.number("--port", DEFAULT_PORT, "port to listen on, 0 for any free one"),
+            arg.port("--port", DEFAULT_PORT, "port to listen on, 0 for any free one"),
             arg.option(
-                "--connect", metavar="HOST:PORT", help="connect to a listening Slicer instead"
+                "--connect",
+                type=_address,
+                metavar="HOST:PORT",
+                help="connect to a listening Slicer instead",
             ),
-            arg.option(
+            arg.port(
                 "--view-port",
-                type=int,
-                help="port for the browser, 0 for any free one (default: "
+                None,
+                "port for the browser, 0 for any free one (default: "
                 f"{DEFAULT_VIEW_PORT}, or any free one where that is taken)",
             ),
             arg.flag(
@@ -100,12 +93,14 @@ COMMANDS = (
                 "certificate made on this computer",
             ),
             arg.flag("--no-views", "serve OpenIGTLink only, no page for browsers"),
-            arg.number("--speed", 1.0, "simulated seconds a second"),
-            arg.option(
+            arg.number("--speed", 1.0, "simulated seconds a second", SLOWEST, FASTEST),
+            arg.number(
                 "--seed",
-                type=int,
-                help="of the heads' poses, for tests: no study counts such trials (default: none; "
+                None,
+                "of the heads' poses, for tests: no study counts such trials (default: none; "
                 "the poses cannot be predicted)",
+                0,
+                LARGEST_SEED,
             ),
             arg.RECORDS,
             arg.path("--scenario", "DIR", "a scenario of your own (default: Colin27)"),

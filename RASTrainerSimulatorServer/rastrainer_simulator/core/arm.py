@@ -116,7 +116,13 @@ class JointMotion:
         tip's position comes first: where the joint limits forbid the direction, or the joints are
         too slow for it, the tool turns as far as it can while the tip stays on its straight path.
         """
-        near = self._relaxed(start, length(displacement))
+        # A little nearer to rest: FABRIK then brings the tip to its target. Without it the elbow
+        # would drift as the tip moves until it hangs on a limit or the table. The farther the tip
+        # moves, the more: a resting tip moves no joint.
+        relaxed = length(displacement) / RELAXING_DISTANCE
+        near = tuple(
+            angle + relaxed * (rest - angle) for angle, rest in zip(start, self._rest, strict=True)
+        )
         target = add(tip, displacement)
         if across is None or direction is None:
             solution = self._fabrik.solve(target, direction, q_start=near)
@@ -130,17 +136,6 @@ class JointMotion:
         on_path = add(tip, scale(displacement, share))
         found = self._fabrik.solve(on_path, q_start=step.q)
         return limit_step(start, found.q, self._fastest, dt).q, found.converged
-
-    def _relaxed(self, q: Joints, distance: float) -> Joints:
-        """Return the angles a little nearer to rest: FABRIK then brings the tip to its target.
-
-        Without it the elbow would drift as the tip moves until it hangs on a limit or the
-        table. The farther the tip moves, the more: a resting tip moves no joint.
-        """
-        share = distance / RELAXING_DISTANCE
-        return tuple(
-            angle + share * (rest - angle) for angle, rest in zip(q, self._rest, strict=True)
-        )
 
 
 def _share(start: Joints, part: Joints, whole: Joints) -> float:

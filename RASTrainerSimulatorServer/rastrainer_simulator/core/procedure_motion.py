@@ -101,6 +101,7 @@ class ProcedureMotion:
     Attributes:
         feed: what is in the guide.
         planned_bone: where the planned lines go through bone; empty without procedures.
+        drive: moves the instrument, at a stick's velocity or a commanded one.
     """
 
     def __init__(self, setup: SimulationSetup, head: HeadMesh, reach: PlanReach) -> None:
@@ -109,7 +110,7 @@ class ProcedureMotion:
         self.feed = NO_FEED
         self._may_align = settings.procedure.self_alignment
         self._reach = reach
-        self._drive = FeedDrive(settings.procedure, settings.teleoperation.response)
+        self.drive = FeedDrive(settings.procedure, settings.teleoperation.response)
         self._true_head: TrueHead | None = None
         self._outline: HeadOutline | None = None
         self.planned_bone: PlannedBone = {}
@@ -121,22 +122,18 @@ class ProcedureMotion:
     def reset(self, feed: Feed = NO_FEED) -> None:
         """Adopt a feed, and end a commanded one."""
         self.feed = feed
-        self._drive.stop()
+        self.drive.stop()
 
     def looking_ahead(self, guide: GuideAxis, head_to_world: np.ndarray) -> Feed:
         assert self._true_head is not None, "the phase has a procedure"
         return Feed(ahead=self._true_head.ahead(guide, head_to_world))
-
-    def start(self, velocity_mm_s: float, duration_s: float) -> None:
-        """Feed at a velocity, inward above 0, for a time; the stick overrides it."""
-        self._drive.start(velocity_mm_s, duration_s)
 
     def step(self, dt: float, phase: Phase, operator_input: OperatorInput, sim_time: float) -> Fed:
         """Feed for `dt` s in a phase, with an event where what is felt changes."""
         if phase not in FEED_PHASES:
             return NOT_FED
         before = self.feed
-        way = self._drive.way(dt, phase, operator_input)
+        way = self.drive.way(dt, phase, operator_input)
         if way.distance == 0.0:
             return NOT_FED
         self.feed = before.moved(phase, way.distance)
@@ -148,10 +145,6 @@ class ProcedureMotion:
         data = {"phase": phase.value, "layer": layer.value, "feedMm": depth_mm}
         event = Event(EventKind.FEED, sim_time, data)
         return Fed(has_moved, way.is_by_stick, (event,))
-
-    def stop(self) -> None:
-        """End a commanded feed, as a pause does."""
-        self._drive.stop()
 
     def way(
         self,

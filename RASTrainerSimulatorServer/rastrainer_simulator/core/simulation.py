@@ -140,7 +140,8 @@ class Simulation:
         motion_request = self._motion_request(dt, operator_input)
         sim_time = before.sim_time + dt
         if motion_request.ended is not None:
-            events.append(_ended(motion_request.ended, sim_time))
+            data = {"outcome": motion_request.ended.value}
+            events.append(Event(EventKind.MOTION, sim_time, data))
         if motion_request.motion is not Motion.NONE:
             events.extend(self._move(dt, motion_request, sim_time))
             if motion_request.motion is Motion.STICK:
@@ -172,7 +173,7 @@ class Simulation:
         if command.name == CommandName.PLAN_TARGET:
             return self._plan(arguments, sim_time)
         if command.name == CommandName.FEED:
-            self._procedure_motion.start(arguments["velocityMmS"], arguments["durationS"])
+            self._procedure_motion.drive.start(arguments["velocityMmS"], arguments["durationS"])
             self._operator = command.sender
             return TrainingReply(True)
         motion: CommandedMotion | str
@@ -205,7 +206,7 @@ class Simulation:
         """Return the requested motion; none while the trial is paused or the guide locked."""
         phase = self._training.state.phase
         if phase is Phase.PAUSED:
-            self._procedure_motion.stop()
+            self._procedure_motion.drive.stop()
         if phase is Phase.PAUSED or phase in FEED_PHASES:
             stopped = self._teleoperation.stop()
             return MotionRequest(Motion.NONE, ended=MotionOutcome.STOPPED if stopped else None)
@@ -244,21 +245,18 @@ class Simulation:
         self._posture = self._postures.of(moved)
         settings = self.setup.settings.proximity
         self._proximity = next_proximity(self._proximity, moved.clearance, settings)
-        self._press(motion_request, tip)
+        if self._proximity is Proximity.CONTACT:
+            after, goal = self._posture.tip.position, motion_request.goal
+            to_goal = None if goal is None else subtract(goal, after)
+            pushed, clearance = motion_request.displacement, self._posture.clearance
+            self._pressing.move(pushed, subtract(after, tip), clearance, to_goal)
+        else:
+            self._pressing.end()
         self._obstacle = moved.stopped_by if moved.stopped_by in BEHIND_THE_TOOL else ""
         if before == (self._is_within_reach, self._obstacle):
             return []
         data = {"isWithinReach": self._is_within_reach, "obstacle": self._obstacle}
         return [Event(EventKind.REACH, sim_time, data)]
-
-    def _press(self, motion_request: MotionRequest, before: Vector) -> None:
-        """Measure how far the tool is pressed in after a motion of the tip from `before`."""
-        if self._proximity is not Proximity.CONTACT:
-            self._pressing.end()
-            return
-        tip, clearance = self._posture.tip.position, self._posture.clearance
-        to_goal = None if motion_request.goal is None else subtract(motion_request.goal, tip)
-        self._pressing.move(motion_request.displacement, subtract(tip, before), clearance, to_goal)
 
     def _moved(self, dt: float, motion_request: MotionRequest) -> Moved:
         q, tip = self._posture.q, self._posture.tip.position
@@ -307,7 +305,6 @@ class Simulation:
         return GuideAxis(self._posture.tip.position, self._posture.tip.direction)
 
     def _moment_of(self, command: OperatorCommand, sim_time: float) -> TouchMoment:
-        """Return when and where a command of the trial is carried out."""
         feed = self._procedure_motion.feed
         if command.name == CommandName.LOCK_GUIDE and self._training.state.phase is Phase.ALIGNING:
             feed = self._procedure_motion.looking_ahead(self._guide_axis, self._head_to_world)
@@ -338,10 +335,6 @@ def listed(scenario: Scenario) -> dict[str, Any]:
             for procedure in scenario.procedures
         ],
     }
-
-
-def _ended(outcome: MotionOutcome, sim_time: float) -> Event:
-    return Event(EventKind.MOTION, sim_time, {"outcome": outcome.value})
 
 
 def _proximity(

@@ -296,7 +296,7 @@ class Flow:
         if training.phase is not Phase.PAUSED:
             self._unseen = ""
         if training.trial_id and training.trial_id != previous_id:
-            truth = self._control_loop.truth
+            truth = self._control_loop.simulation.truth
             self._trial_screen.begin(truth)
             guidance = self._trial_screen.guidance
             self._control_loop.note_display(GuidanceReport(guidance.value))

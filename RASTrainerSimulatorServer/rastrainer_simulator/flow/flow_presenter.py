@@ -142,7 +142,7 @@ class FlowPresenter(Presenter):
         return TraceGuidance() if is_replayed else self._session.places.guidance(now)
 
     def seat(self) -> Seat:
-        count = len(self._control_loop.truth.fiducials_ras)
+        count = len(self._control_loop.simulation.truth.fiducials_ras)
         return seat_of(self._session, self.screen, self.control.holder, count)
 
     def instruct(self, order: InstructorOrder, text: str) -> str:

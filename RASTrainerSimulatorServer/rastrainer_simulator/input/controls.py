@@ -86,8 +86,7 @@ class Controls:
         """What the arm should do; nothing while a menu is open."""
         if self.holder is None or self.situation is ControlContext.MENU:
             return NEUTRAL_STICKS
-        sticks = self.held
-        return dataclasses.replace(sticks, operator=self.holder.kind.value)
+        return dataclasses.replace(self.held, operator=self.holder.kind.value)
 
     @property
     def held(self) -> OperatorInput:
@@ -101,7 +100,8 @@ class Controls:
         state = self._held_state
         if state is None or self.situation is ControlContext.MENU:
             return 0.0, 0.0, 0.0
-        return state.view(self.bindings)
+        around, higher, nearer = state.pushed(self.bindings.table(state.device), VIEW)
+        return around, higher, nearer
 
     def is_operator(self, source: Source) -> bool:
         return self.holder is None or self.holder.station == source.station
@@ -119,9 +119,12 @@ class Controls:
             for source in self._states
         )
 
-    def add(self, source: Source) -> None:
-        """Accept a source that is plugged in, before anything is pressed on it."""
-        self._state(source)
+    def add(self, source: Source) -> InputState:
+        """Return what a source is doing, which is accepted before anything is pressed on it."""
+        if source not in self._states:
+            keys = source.kind is SourceKind.KEYBOARD
+            self._states[source] = InputState(InputDevice.KEYBOARD if keys else InputDevice.GAMEPAD)
+        return self._states[source]
 
     def enter(self, situation: ControlContext) -> None:
         """Change the situation; what is held does nothing until it is released."""
@@ -133,20 +136,19 @@ class Controls:
 
     def set_inputs(self, source: Source, values: Mapping[str, float]) -> None:
         """Process all inputs (0…1) of a gamepad."""
-        state = self._state(source)
+        state = self.add(source)
         pressed = state.set_inputs(values)
         self._noticed(source, state)
         self._press_all(source, state, pressed)
 
     def set_key(self, source: Source, code: str, is_down: bool) -> None:
         """Process a key of a keyboard; its repeats while it is held do not matter."""
-        state = self._state(source)
-        pressed = state.set_key(code, is_down)
-        self._press_all(source, state, pressed)
+        state = self.add(source)
+        self._press_all(source, state, state.set_key(code, is_down))
 
     def set_sticks(self, source: Source, sticks: OperatorInput) -> None:
         """Process the sticks of a headset's controllers."""
-        state = self._state(source)
+        state = self.add(source)
         state.set_sticks(sticks)
         self._noticed(source, state)
 
@@ -181,13 +183,16 @@ class Controls:
             state.advance(dt)
         held = self._held_state
         self._idle = self._idle + dt if held is None or held.is_at_rest else 0.0
-        self._repeat(dt)
-
-    def _state(self, source: Source) -> InputState:
-        if source not in self._states:
-            keys = source.kind is SourceKind.KEYBOARD
-            self._states[source] = InputState(InputDevice.KEYBOARD if keys else InputDevice.GAMEPAD)
-        return self._states[source]
+        if self._repeating is None:
+            return
+        source, name, control = self._repeating
+        if not self._states[source].is_down(name):
+            self._repeating = None
+            return
+        self._repeat_in -= dt
+        if self._repeat_in <= 0.0 and self._states[source].is_still_held(name):
+            self._repeat_in = REPEAT_EVERY_S
+            self._listener.pressed(control)
 
     def _noticed(self, source: Source, state: InputState) -> None:
         """Let pushed sticks pass on control within a station, or to a first operator."""
@@ -209,18 +214,6 @@ class Controls:
             if control in _REPEATED:
                 self._repeating = source, name, control
                 self._repeat_in = REPEAT_AFTER_S
-            self._listener.pressed(control)
-
-    def _repeat(self, dt: float) -> None:
-        if self._repeating is None:
-            return
-        source, name, control = self._repeating
-        if not self._states[source].is_down(name):
-            self._repeating = None
-            return
-        self._repeat_in -= dt
-        if self._repeat_in <= 0.0 and self._states[source].is_still_held(name):
-            self._repeat_in = REPEAT_EVERY_S
             self._listener.pressed(control)
 
     def _hold(self, source: Source) -> None:
@@ -274,11 +267,8 @@ class InputState:
     @property
     def is_at_rest(self) -> bool:
         """Whether nothing is pressed or pushed."""
-        return not self._down and self._sticks == _UNUSED and not any(map(_is_pushed, self._values))
-
-    @property
-    def _values(self) -> tuple[float, ...]:
-        return tuple(self._inputs.values())
+        is_pushed = any(map(_is_pushed, self._inputs.values()))
+        return not self._down and self._sticks == _UNUSED and not is_pushed
 
     def is_down(self, name: str) -> bool:
         return name in self._down
@@ -298,7 +288,20 @@ class InputState:
     def set_inputs(self, values: Mapping[str, float]) -> list[str]:
         """Take all inputs of a gamepad, 0…1; return those that have just been pressed."""
         self._inputs.update(values)
-        return self._pressed()
+        pressed = []
+        for name, value in self._inputs.items():
+            held = self._blocked.get(name, 1.0)
+            if not _is_pushed(value) or (held < DRIFT_BELOW and value > held + FURTHER):
+                self._blocked.pop(name, None)
+            if value >= DOWN_FROM and name not in self._down:
+                self._down.add(name)
+                pressed.append(name)
+                if self._is_key_or_button(name):
+                    self._pressed_s[name] = 0.0
+            elif value < UP_BELOW:
+                self._down.discard(name)
+        self._end_presses()
+        return pressed
 
     def set_key(self, code: str, is_down: bool) -> list[str]:
         """Take a key; return it if it has just been pressed."""
@@ -334,19 +337,15 @@ class InputState:
         direct = _UNUSED if self._sticks_blocked else self._sticks
         is_fine = direct.fine or any(self.is_down(name) for name in table[ControlName.FINE])
         step = FINE_STEP_PUSH if is_fine else STEP_PUSH
-        right, forward, up = map(add, self._pushed(table, TRANSLATION, step), direct.translation)
-        around, over = map(add, self._pushed(table, ROTATION, step), direct.rotation)
+        right, forward, up = map(add, self.pushed(table, TRANSLATION, step), direct.translation)
+        around, over = map(add, self.pushed(table, ROTATION, step), direct.rotation)
         return OperatorInput(
             translation=(deflection(right), deflection(forward), deflection(up)),
             rotation=(deflection(around), deflection(over)),
             fine=is_fine,
         )
 
-    def view(self, bindings: Bindings) -> tuple[float, float, float]:
-        around, higher, nearer = self._pushed(bindings.table(self.device), VIEW)
-        return around, higher, nearer
-
-    def _pushed(
+    def pushed(
         self, table: Table, axes: Sequence[tuple[ControlName, ControlName]], step: float = 1.0
     ) -> tuple[float, ...]:
         """Return how far axes are pushed, −1…1; nothing if all are about at rest.
@@ -364,17 +363,20 @@ class InputState:
 
     def _value(self, names: tuple[str, ...], step: float) -> float:
         """Return how far the farthest of some inputs is pushed that are not blocked."""
-        free = (name for name in names if name not in self._blocked)
-        return max((self._push(name, step) for name in free), default=0.0)
-
-    def _push(self, name: str, step: float) -> float:
-        if not self._is_key_or_button(name):
-            return self._inputs.get(name, 0.0)
-        if name not in self._pressed_s:
-            return 0.0
-        share = (self._pressed_s[name] - HOLD_AFTER_S) / (RAMP_S - HOLD_AFTER_S)
-        # In steps that are not felt: every change is recorded.
-        return round(step + (1.0 - step) * min(1.0, max(0.0, share)), 2)
+        farthest = 0.0
+        for name in names:
+            if name in self._blocked:
+                continue
+            if not self._is_key_or_button(name):
+                pushed = self._inputs.get(name, 0.0)
+            elif name in self._pressed_s:
+                share = (self._pressed_s[name] - HOLD_AFTER_S) / (RAMP_S - HOLD_AFTER_S)
+                # In steps that are not felt: every change is recorded.
+                pushed = round(step + (1.0 - step) * min(1.0, max(0.0, share)), 2)
+            else:
+                continue
+            farthest = max(farthest, pushed)
+        return farthest
 
     def _end_presses(self) -> None:
         """End the presses of what is released, but the steps of taps."""
@@ -384,22 +386,6 @@ class InputState:
 
     def _is_key_or_button(self, name: str) -> bool:
         return self.device is InputDevice.KEYBOARD or name in BUTTONS
-
-    def _pressed(self) -> list[str]:
-        pressed = []
-        for name, value in self._inputs.items():
-            held = self._blocked.get(name, 1.0)
-            if not _is_pushed(value) or (held < DRIFT_BELOW and value > held + FURTHER):
-                self._blocked.pop(name, None)
-            if value >= DOWN_FROM and name not in self._down:
-                self._down.add(name)
-                pressed.append(name)
-                if self._is_key_or_button(name):
-                    self._pressed_s[name] = 0.0
-            elif value < UP_BELOW:
-                self._down.discard(name)
-        self._end_presses()
-        return pressed
 
 
 def _is_pushed(value: float) -> bool:

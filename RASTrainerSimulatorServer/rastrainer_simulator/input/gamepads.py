@@ -152,19 +152,16 @@ class Gamepads:
                 self._listener.gamepad_removed(number, pad.name)
         for index in range(self._pygame.joystick.get_count()):
             if not self._controller.is_controller(index):
-                self._report_unknown(index)
+                name = self._pygame.joystick.Joystick(index).get_name()
+                if name not in self._unknown:
+                    self._unknown.add(name)
+                    self._listener.gamepad_unknown(name)
                 continue
             pad = self._controller.Controller(index)
             number = pad.as_joystick().get_instance_id()
             if number not in self._open:
                 self._open[number] = pad
                 self._listener.gamepad_added(number, pad.name)
-
-    def _report_unknown(self, index: int) -> None:
-        name = self._pygame.joystick.Joystick(index).get_name()
-        if name not in self._unknown:
-            self._unknown.add(name)
-            self._listener.gamepad_unknown(name)
 
 
 class NoGamepadsError(RASTrainerError):

@@ -47,6 +47,9 @@ class Source:
 class ControlName(str, Enum):
     """What the trainee can do. A stick is two controls, one for each direction."""
 
+    # So that it is written as a name of a JSON object.
+    __str__ = str.__str__
+
     TOUCH = "touch"
     UNDO = "undo"
     CAMERA = "camera"

@@ -17,15 +17,11 @@ from rastrainer.commands import COMMANDS, CommandName
 from rastrainer.errors import RASTrainerError
 from rastrainer.journal.journal_file import JournalReading, stamp
 from rastrainer.protocol import FINISHED_PHASES, OPEN_PHASES
-from rastrainer.trial.aborted_trial import AbortedTrial
-from rastrainer.trial.record import TrialRecord
-from rastrainer_simulator.core.procedure_motion import PlannedBone
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.results import DurableResults, PendingAnswers, Subscribers
 from rastrainer_simulator.loop.timing import (
     LoopStatistics,
-    Punctuality,
     RateLimit,
     TrialLimits,
     precise_timing,
@@ -45,7 +41,6 @@ from rastrainer_simulator.state import (
     StepResult,
 )
 from rastrainer_simulator.texts.texts import say
-from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.training.rules import ENDING_A_TRIAL, RECORDING_FAILED, REFUSALS
 
 CATCH_UP_S = 0.1
@@ -94,10 +89,12 @@ class ControlLoop:
             trial_limits: how often a trial may be started; None for the default.
             is_seeded: whether the seed of the simulation was chosen, not drawn.
         """
-        self._simulation = simulation
+        self.simulation = simulation
+        """The present one; it belongs to the loop's thread."""
         self._dt = 1.0 / rate_hz
         self._period = 0.0 if speed is None else self._dt / speed
-        self._archive = TrialArchive(records)
+        self.archive = TrialArchive(records)
+        """The trials that are over, and those that wait to be acknowledged."""
         self.is_first_in_line = self._period >= self._dt
         """Whether it runs before all other threads; if it never slept, they would never run."""
         self._writer = ThreadPoolExecutor(
@@ -106,7 +103,7 @@ class ControlLoop:
             initializer=raise_thread_priority if self.is_first_in_line else None,
         )
         session = PlayingSession(speed, is_seeded)
-        self._recorder = TrialRecorder(records, self._archive, self._writer, self._dt, session)
+        self._recorder = TrialRecorder(records, self.archive, self._writer, self._dt, session)
         if interrupted is not None:
             self._recorder.resume_trial(simulation, interrupted)
         self._state = simulation.state
@@ -118,11 +115,12 @@ class ControlLoop:
         limits = trial_limits or TrialLimits()
         self._starts = RateLimit(limits.starts_per_s, limits.starts_at_once)
         self._refused: str | None = None
-        self._is_being_replaced = False
+        self.is_being_replaced = False
+        """Whether another simulation is being made: no trial begins on the present one."""
         self._successor: tuple[Simulation, int] | None = None
         self._subscribers: Subscribers[StepResult] = Subscribers()
-        self._punctuality = Punctuality()
-        self._thread = threading.Thread(target=self._run, name="control loop", daemon=True)
+        self._statistics = LoopStatistics()
+        self.thread = threading.Thread(target=self._run, name="control loop", daemon=True)
         self._is_stopping = threading.Event()
         self._is_over = False
         self.latest: SimulationState = self._state
@@ -136,51 +134,23 @@ class ControlLoop:
         self.stop()
 
     def start(self) -> None:
-        self._thread.start()
+        self.thread.start()
 
     def stop(self) -> None:
         """Stop ticking, and return when everything recorded is on the disk."""
         self._is_stopping.set()
-        if self._thread.is_alive():
-            self._thread.join()
-
-    @property
-    def is_running(self) -> bool:
-        return self._thread.is_alive()
-
-    @property
-    def statistics(self) -> LoopStatistics:
-        """How punctual the loop has been."""
-        return self._punctuality.statistics()
+        if self.thread.is_alive():
+            self.thread.join()
 
     @property
     def setup(self) -> SimulationSetup:
         """What the present simulation was made from."""
-        return self._simulation.setup
+        return self.simulation.setup
 
     @property
-    def truth(self) -> Truth:
-        """Where the head is: for what the trainee is shown; clients learn it with the score."""
-        return self._simulation.truth
-
-    @property
-    def planned_bone(self) -> PlannedBone:
-        """Where the planned lines of the present scenario's procedures go through bone."""
-        return self._simulation.planned_bone
-
-    @property
-    def problems(self) -> tuple[str, ...]:
-        """Sentences about journals in the records folder that cannot be used."""
-        return tuple(self._archive.problems)
-
-    def unacknowledged(self) -> tuple[AbortedTrial | TrialRecord, ...]:
-        """Return the aborted and the registered trials that no client has acknowledged."""
-        return self._archive.unacknowledged()
-
-    @property
-    def arrivals(self) -> int:
-        """How many trials have come to be delivered since the start."""
-        return self._archive.arrivals
+    def statistics(self) -> LoopStatistics:
+        """How punctual the loop has been."""
+        return replace(self._statistics)
 
     def subscribe(self, callback: Callable[[StepResult], None]) -> Callable[[], None]:
         """Call `callback` in the loop's thread after each tick; it must return immediately.
@@ -215,11 +185,6 @@ class ControlLoop:
             self._answers.refuse_all(SHUTTING_DOWN)
         return future
 
-    @property
-    def is_being_replaced(self) -> bool:
-        """Whether another simulation is being made: no trial begins on the present one."""
-        return self._is_being_replaced
-
     def begin_replacement(self) -> Future[Answer]:
         """Have no trial begin from now on, since another simulation is being made.
 
@@ -227,15 +192,11 @@ class ControlLoop:
         asked for before has begun, and none does after it. If it is not refused, one may call
         `replace_simulation` and has to call `end_replacement`.
         """
-        ticket, future = self._answers.expect()
-        self._arrived.append(OperatorCommand(_BEGIN_REPLACEMENT, ticket=ticket))
-        if self._is_over:
-            self._answers.refuse_all(SHUTTING_DOWN)
-        return future
+        return self.submit(_BEGIN_REPLACEMENT)
 
     def replace_simulation(self, simulation: Simulation) -> Future[Answer]:
         """Continue with another simulation, such as one of another scenario."""
-        assert self._is_being_replaced, "a trial could be open"
+        assert self.is_being_replaced, "a trial could be open"
         ticket, future = self._answers.expect()
         self._successor = (simulation, ticket)
         if self._is_over:
@@ -244,7 +205,7 @@ class ControlLoop:
 
     def end_replacement(self) -> None:
         """Let trials begin again, on the simulation that is there now."""
-        self._is_being_replaced = False
+        self.is_being_replaced = False
 
     def _run(self) -> None:
         try:
@@ -258,34 +219,40 @@ class ControlLoop:
     def _tick_on_time(self) -> None:
         due = time.monotonic()
         while not self._is_stopping.is_set():
-            self._punctuality.count(time.monotonic() - due if self._period else 0.0)
+            self._statistics.count(time.monotonic() - due if self._period else 0.0)
             self._tick()
             due += self._period
             behind = time.monotonic() - due
             if self._period and behind > CATCH_UP_S:
                 skipped = int(behind / self._period)
-                self._punctuality.skip(skipped)
+                self._statistics.skipped += skipped
                 due += skipped * self._period
             sleep_until(due)
 
     def _tick(self) -> None:
         if self._successor is not None and not self._held.is_waiting:
-            self._switch_simulation(*self._successor)
+            self.simulation, ticket = self._successor
+            self._successor = None
+            self.simulation.restart_from(StartingPoint.after(self._state))
+            self._answers.give(Answer(ticket, True))
         commands = self._commands()
         operator_input = replace(self._sticks, commands=commands) if commands else self._sticks
         while self._displayed:
             self._recorder.note_display(self._displayed.popleft(), self._state)
-        result = self._simulation.step(self._dt, operator_input)
-        written = self._recorder.record(self._simulation, self._state, operator_input, result)
+        result = self.simulation.step(self._dt, operator_input)
+        written = self._recorder.record(self.simulation, self._state, operator_input, result)
         self._state = result.state
         published, self._refused = self._held.publishable(result, written)
-        self._publish(published)
+        self.latest = published.state
+        for answer in published.answers:
+            self._answers.give(answer)
+        self._subscribers.publish(published)
 
     def _commands(self) -> tuple[OperatorCommand, ...]:
         """Return the next commands; a change of the trial waits until the last is on the disk."""
         commands: list[OperatorCommand] = []
         if self._refused is not None:
-            arguments = {"revision": self._held.revision, "reason": self._refused}
+            arguments = {"revision": self._held.safe.revision, "reason": self._refused}
             commands.append(OperatorCommand(RECORDING_FAILED, arguments))
         while self._arrived and len(commands) < COMMANDS_PER_TICK:
             command = self._arrived[0]
@@ -294,7 +261,9 @@ class ControlLoop:
                 break
             self._arrived.popleft()
             if command.name == _BEGIN_REPLACEMENT:
-                self._take_replacement(command.ticket)
+                self.is_being_replaced = not self._is_trial_open
+                reason = TRIAL_IS_OPEN if self._is_trial_open else ""
+                self._answers.give(Answer(command.ticket, not reason, reason))
                 continue
             if self._is_for_the_archive(command):
                 self._query_archive(command)
@@ -307,16 +276,11 @@ class ControlLoop:
                 break
         return tuple(commands)
 
-    def _take_replacement(self, ticket: int) -> None:
-        self._is_being_replaced = not self._is_trial_open
-        reason = TRIAL_IS_OPEN if self._is_trial_open else ""
-        self._answers.give(Answer(ticket, not reason, reason))
-
     def _why_none_starts(self) -> str:
         """Return why the loop lets no trial start; the simulation itself reports an open one."""
         if self._is_trial_open:
             return ""
-        if self._is_being_replaced:
+        if self.is_being_replaced:
             return BEING_SET_UP
         return "" if self._starts.allows(self._state.sim_time) else TOO_MANY_STARTS
 
@@ -341,7 +305,7 @@ class ControlLoop:
 
         def query() -> None:
             try:
-                data = self._archive.answer(command.name, command.arguments, times)
+                data = self.archive.answer(command.name, command.arguments, times)
             except RASTrainerError as error:
                 # Not str(error), which would have no code.
                 self._answers.give(Answer(command.ticket, False, error.args[0]))
@@ -352,18 +316,6 @@ class ControlLoop:
                 self._answers.give(Answer(command.ticket, True, data=data))
 
         self._writer.submit(query)
-
-    def _switch_simulation(self, simulation: Simulation, ticket: int) -> None:
-        self._successor = None
-        simulation.restart_from(StartingPoint.after(self._state))
-        self._simulation = simulation
-        self._answers.give(Answer(ticket, True))
-
-    def _publish(self, result: StepResult) -> None:
-        self.latest = result.state
-        for answer in result.answers:
-            self._answers.give(answer)
-        self._subscribers.publish(result)
 
     def _finish(self) -> None:
         """Write everything, answer the commands that it completes, and refuse all others."""

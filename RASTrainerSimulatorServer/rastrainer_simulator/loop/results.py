@@ -33,10 +33,13 @@ class DurableResults:
     """Holds back changes of the trial until they have been written.
 
     Poses are published immediately, with the trial as it last was on the disk.
+
+    Attributes:
+        safe: the trial as it last was on the disk.
     """
 
     def __init__(self, training: TrainingState) -> None:
-        self._safe = training
+        self.safe = training
         self._awaited: deque[tuple[Written, StepResult]] = deque()
         self._unwatched: deque[tuple[Written, StepResult]] = deque()
 
@@ -45,17 +48,12 @@ class DurableResults:
         """Whether a change of the trial is still being written."""
         return bool(self._awaited)
 
-    @property
-    def revision(self) -> int:
-        """The trial's last revision that is on the disk."""
-        return self._safe.revision
-
     def publishable(
         self, result: StepResult, written: Written | None
     ) -> tuple[StepResult, str | None]:
         """Return what may be published now, and why writing has failed (None if it has not)."""
         if written is None and not self._awaited and not self._unwatched:
-            self._safe = result.state.training
+            self.safe = result.state.training
             return result, None
         events: list[Event] = []
         answers: list[Answer] = []
@@ -66,8 +64,8 @@ class DurableResults:
             events.extend(result.events)
             answers.extend(result.answers)
         if not self._awaited and reason is None:
-            self._safe = result.state.training
-        state = replace(result.state, training=self._safe)
+            self.safe = result.state.training
+        state = replace(result.state, training=self.safe)
         return StepResult(state, tuple(events), tuple(answers)), reason
 
     def _collect(self, events: list[Event], answers: list[Answer]) -> str | None:
@@ -82,7 +80,7 @@ class DurableResults:
             if error is not None:
                 return self._refuse(error, answers)
             self._awaited.popleft()
-            self._safe = result.state.training
+            self.safe = result.state.training
             events.extend(result.events)
             answers.extend(result.answers)
         return None
@@ -172,26 +170,26 @@ class StateFeed:
             self._deliver(self._newest)
 
 
-class TrialLog:
-    """Subscribes to a control loop; files are written in the event loop's thread only."""
+def trial_log(loop: asyncio.AbstractEventLoop) -> Callable[[StepResult], None]:
+    """Return what logs the phases of trials, as a control loop's subscriber.
 
-    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
-        self._loop = loop
+    Files are written in the event loop's thread only.
+    """
 
-    def __call__(self, result: StepResult) -> None:
-        """Process a tick; called in the control loop's thread."""
+    def note(training: TrainingState) -> None:
+        data = {
+            "trialId": training.trial_id,
+            "task": training.task,
+            "mode": training.mode,
+            "points": len(training.touches),
+        }
+        _log.info("The trial is %s.", training.phase.value, extra={"data": data})
+
+    def take(result: StepResult) -> None:
         if any(event.kind is EventKind.PHASE for event in result.events):
-            self._loop.call_soon_threadsafe(_note, result.state.training)
+            loop.call_soon_threadsafe(note, result.state.training)
 
-
-def _note(training: TrainingState) -> None:
-    data = {
-        "trialId": training.trial_id,
-        "task": training.task,
-        "mode": training.mode,
-        "points": len(training.touches),
-    }
-    _log.info("The trial is %s.", training.phase.value, extra={"data": data})
+    return take
 
 
 class PendingAnswers:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
 import math
 import os
@@ -130,9 +129,9 @@ LATE_S = 0.001
 """A tick that starts this much after its time counts as late."""
 
 
-@dataclass(frozen=True)
+@dataclass
 class LoopStatistics:
-    """Since the loop was started.
+    """Counts of ticks since the loop was started.
 
     Attributes:
         ticks: carried out.
@@ -147,31 +146,13 @@ class LoopStatistics:
     skipped: int = 0
     worst_delay_s: float = 0.0
 
-
-class Punctuality:
-    """Counts for `LoopStatistics`, in the control loop's thread."""
-
-    def __init__(self) -> None:
-        self._ticks = 0
-        self._late = 0
-        self._skipped = 0
-        self._worst = 0.0
-
     def count(self, delay: float) -> None:
         """Count a tick that starts `delay` seconds after its time."""
-        self._ticks += 1
+        self.ticks += 1
         if delay > LATE_S:
-            self._late += 1
-        if delay > self._worst:
-            self._worst = delay
-
-    def skip(self, ticks: int) -> None:
-        """Count ticks that are given up."""
-        self._skipped += ticks
-
-    def statistics(self) -> LoopStatistics:
-        """Return the counts."""
-        return LoopStatistics(self._ticks, self._late, self._skipped, self._worst)
+            self.late += 1
+        if delay > self.worst_delay_s:
+            self.worst_delay_s = delay
 
 
 class RateLimit:
@@ -222,24 +203,6 @@ class TrialLimits:
 
 _TOLERANCE_S = 1e-9
 _SAVED_AT_MOST_S = 0.02
-
-
-class AsyncRateLimiter:
-    """Lets `per_s` pass in a second on average, and as many at once after a quiet second.
-
-    It belongs to one event loop. A waiting task does not block the others.
-    """
-
-    def __init__(self, per_s: float) -> None:
-        self._period_s = 1.0 / per_s
-        self._next = -1.0
-
-    async def passed(self) -> None:
-        """Return when it is the caller's turn."""
-        now = asyncio.get_running_loop().time()
-        self._next = max(self._next, now - 1.0) + self._period_s
-        if self._next > now:
-            await asyncio.sleep(self._next - now)
 
 
 class Pacer:

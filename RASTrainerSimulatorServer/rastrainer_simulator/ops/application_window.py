@@ -82,20 +82,11 @@ def application_command(browser: Path, page: str, profile: Path) -> list[str]:
     command = [str(browser), *OPTIONS, f"--app={page}", f"--user-data-dir={profile}"]
     if sys.platform != "win32" and os.geteuid() == 0:
         command += AS_ROOT
-    if _has_graphics():
+    # Of Linux, the driver says whether there is a graphics processor.
+    if not sys.platform.startswith("linux") or any(Path("/dev/dri").glob("renderD*")):
         return command
     niceness = [] if shutil.which("nice") is None else ["nice", "-n", NICENESS]
     return [*niceness, *command, *WITHOUT_GRAPHICS]
-
-
-def _has_graphics() -> bool:
-    """Return whether there may be a graphics processor: of Linux, the driver says so."""
-    return not sys.platform.startswith("linux") or any(Path("/dev/dri").glob("renderD*"))
-
-
-def _ends_with_us() -> list[str]:
-    """Return what has a command end when this process does, even by a crash; only Linux has it."""
-    return [] if shutil.which("setpriv") is None else ["setpriv", "--pdeathsig", "TERM"]
 
 
 class ApplicationWindow:
@@ -121,7 +112,8 @@ class ApplicationWindow:
                 announce(NO_BROWSER.format(url=self._url, code=self._code))
             return
         self._process = await asyncio.create_subprocess_exec(
-            *_ends_with_us(),
+            # It ends when this process does, even by a crash; only Linux has that.
+            *([] if shutil.which("setpriv") is None else ["setpriv", "--pdeathsig", "TERM"]),
             *application_command(browser, page.as_uri(), page.parent / "profile"),
             env=environment_without_secrets(),
             stdout=subprocess.DEVNULL,

@@ -60,43 +60,6 @@ class GuessLimit:
         return True
 
 
-class InstructorPin:
-    """The PIN of one seat, in a file of its settings folder."""
-
-    def __init__(self, config: Path) -> None:
-        """Use the file in a folder; it need not exist."""
-        self._path = config / PIN_FILE
-
-    @property
-    def is_set(self) -> bool:
-        return self._path.exists()
-
-    def accepts(self, pin: str) -> bool:
-        """Return whether a PIN is the right one; takes about 50 ms."""
-        values = read_json(self._path, _MAX_BYTES)
-        try:
-            salt, known = (base64.b64decode(values[name]) for name in ("salt", "hash"))
-        except (TypeError, KeyError, ValueError):
-            raise InputError(
-                f"{self._path} does not hold an instructor's PIN; set a new one with "
-                "rastrainer instructor-pin."
-            ) from None
-        return hmac.compare_digest(_hash(pin, salt), known)
-
-    def set(self, pin: str) -> None:
-        """Set a new PIN, or none with ""."""
-        if not pin:
-            self._path.unlink(missing_ok=True)
-            return
-        if _PIN.fullmatch(pin) is None:
-            raise InputError(f"A PIN has {PIN_WORDS}.")
-        salt = secrets.token_bytes(_SALT_BYTES)
-        hashed = _hash(pin, salt)
-        encoded = {"salt": salt, "hash": hashed}
-        values = {name: base64.b64encode(value).decode() for name, value in encoded.items()}
-        write_private_json(self._path, values)
-
-
 @dataclass(frozen=True)
 class PinAnswer:
     """The outcome of a guess at a PIN.
@@ -109,19 +72,22 @@ class PinAnswer:
     wait_s: float
 
 
-class PinGuesses:
-    """The guesses at a seat's PIN, from boards and at the seat: one after the other, and few."""
+class InstructorPin:
+    """The PIN of one seat, in a file of its settings folder.
 
-    def __init__(self, pin: InstructorPin, clock: Callable[[], float] = time.monotonic) -> None:
-        """Guard a PIN; `clock` returns s."""
-        self._pin = pin
+    Guesses, from boards and at the seat, are checked one after the other, and few of them.
+    """
+
+    def __init__(self, config: Path, clock: Callable[[], float] = time.monotonic) -> None:
+        """Use the file in a folder, which need not exist; `clock` returns s."""
+        self._path = config / PIN_FILE
         self._limit = GuessLimit(clock)
         # Guesses at the same time would be counted too late.
         self._one = threading.Lock()
 
     @property
     def is_set(self) -> bool:
-        return self._pin.is_set
+        return self._path.exists()
 
     def guess(self, pin: str) -> PinAnswer:
         """Check a guess, unless guessing is paused; takes about 50 ms, in any thread."""
@@ -129,9 +95,29 @@ class PinGuesses:
             wait_s = self._limit.seconds_to_wait()
             if wait_s > 0.0:
                 return PinAnswer(False, wait_s)
-            is_right = self._pin.accepts(pin)
+            values = read_json(self._path, _MAX_BYTES)
+            try:
+                salt, known = (base64.b64decode(values[name]) for name in ("salt", "hash"))
+            except (TypeError, KeyError, ValueError):
+                raise InputError(
+                    f"{self._path} does not hold an instructor's PIN; set a new one with "
+                    "rastrainer instructor-pin."
+                ) from None
+            is_right = hmac.compare_digest(_hash(pin, salt), known)
             self._limit.guessed(is_right)
             return PinAnswer(is_right, self._limit.seconds_to_wait())
+
+    def set(self, pin: str) -> None:
+        """Set a new PIN, or none with ""."""
+        if not pin:
+            self._path.unlink(missing_ok=True)
+            return
+        if _PIN.fullmatch(pin) is None:
+            raise InputError(f"A PIN has {PIN_WORDS}.")
+        salt = secrets.token_bytes(_SALT_BYTES)
+        encoded = {"salt": salt, "hash": _hash(pin, salt)}
+        values = {name: base64.b64encode(value).decode() for name, value in encoded.items()}
+        write_private_json(self._path, values)
 
 
 def _hash(pin: str, salt: bytes) -> bytes:

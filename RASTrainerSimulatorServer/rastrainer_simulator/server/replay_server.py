@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import Callable, Coroutine
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ from rastrainer_simulator.flow.session.preferences import (
     read_preferences,
 )
 from rastrainer_simulator.loop.results import StateSource
-from rastrainer_simulator.net.views.view_server import start_view_server
+from rastrainer_simulator.net.views.view_server import ViewServer
 from rastrainer_simulator.ops.application_window import ApplicationWindow
 from rastrainer_simulator.ops.processes import stop_on_signals
 from rastrainer_simulator.ops.system_paths import config_folder
@@ -42,15 +42,13 @@ def show(
     track = read_track(journal)
     setup = setup_of(track.header, scenario)
     playback = Playback(RecordedTrial(track, setup), setup)
-    asyncio.run(_serve(playback, port, has_window, announce))
 
+    async def serve() -> None:
+        stop = asyncio.Event()
+        presenter = ReplayPresenter(playback, _preferred_language(), stop.set)
+        await _show_until(stop, playback, presenter, playback.run, port, has_window, announce)
 
-async def _serve(
-    playback: Playback, port: int | None, has_window: bool, announce: Callable
-) -> None:
-    stop = asyncio.Event()
-    presenter = ReplayPresenter(playback, _preferred_language(), stop.set)
-    await _show_until(stop, playback, presenter, playback.run, port, has_window, announce)
+    asyncio.run(serve())
 
 
 async def _show_until(
@@ -76,8 +74,9 @@ async def _show_until(
     window: ApplicationWindow | None = None
     tasks: list[asyncio.Task[None]] = []
     with stop_on_signals(stop):
-        views = await start_view_server(source, presenter, announce, port, None)
+        views = ViewServer(source, presenter, announce)
         try:
+            await views.start(port)
             tasks.append(asyncio.create_task(run()))
             if has_window:
                 window = ApplicationWindow(f"http://{DEFAULT_HOST}:{views.port}", views.code.code)
@@ -136,7 +135,10 @@ class ReplayLoader:
         """Return the playback of a trial; takes seconds. Never in two threads at once."""
         try:
             track = find_track(self._records, trial_id)
-            setup = self._setup_of(track.header)
+            key = json.dumps([track.header.get(name) for name in _OF_SETUP], sort_keys=True)
+            if key not in self._setups:
+                self._setups[key] = setup_of(track.header, self._scenario)
+            setup = self._setups[key]
             return Playback(RecordedTrial(track, setup), setup)
         except InputError as error:
             # Its own sentences may name the journal, and with it the trial.
@@ -144,12 +146,6 @@ class ReplayLoader:
                 "This replay cannot be shown: its journal is damaged, or was recorded with another "
                 "scenario, whose folder is given with --scenario."
             ) from error
-
-    def _setup_of(self, header: Mapping[str, Any]) -> SimulationSetup:
-        key = json.dumps([header.get(name) for name in _OF_SETUP], sort_keys=True)
-        if key not in self._setups:
-            self._setups[key] = setup_of(header, self._scenario)
-        return self._setups[key]
 
 
 def serve_rating(
@@ -167,23 +163,15 @@ def serve_rating(
         def load(trial_id: str) -> Future[Playback]:
             return worker.submit(loader.load, trial_id)
 
+        async def serve() -> None:
+            stop = asyncio.Event()
+            presenter = RatingPresenter(work, first, load, _preferred_language(), stop.set)
+            shown = presenter.shown
+
+            async def run() -> None:
+                await shown.run(presenter.advance)
+
+            await _show_until(stop, shown, presenter, run, port, has_window, announce)
+
         first = load(work.trial_id).result()
-        asyncio.run(_serve_rating(work, first, load, port, has_window, announce))
-
-
-async def _serve_rating(
-    work: RatingWork,
-    first: Playback,
-    load: Callable[[str], Future[Playback]],
-    port: int | None,
-    has_window: bool,
-    announce: Callable[[str], None],
-) -> None:
-    stop = asyncio.Event()
-    presenter = RatingPresenter(work, first, load, _preferred_language(), stop.set)
-    shown = presenter.shown
-
-    async def run() -> None:
-        await shown.run(presenter.advance)
-
-    await _show_until(stop, shown, presenter, run, port, has_window, announce)
+        asyncio.run(serve())

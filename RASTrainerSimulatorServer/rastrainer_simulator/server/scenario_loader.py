@@ -14,7 +14,7 @@ from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import BEING_SET_UP, ControlLoop
-from rastrainer_simulator.state import Answer
+from rastrainer_simulator.state import Answer, answered
 from rastrainer_simulator.texts.texts import say
 
 FAILED = say("scenario failed")
@@ -89,9 +89,7 @@ class ScenarioLoader:
 
     def _begin(self, find: Callable[[], Path], is_checked: bool = False) -> Future[Answer]:
         if self._loading is not None and not self._loading.done():
-            refusal: Future[Answer] = Future()
-            refusal.set_result(Answer(0, False, BEING_SET_UP))
-            return refusal
+            return answered(Answer(0, False, BEING_SET_UP))
         # Here, not in the worker: no trial that is asked for from now on may come before.
         begun = self._control_loop.begin_replacement()
         self._loading = self._worker.submit(self._replace, begun, find, is_checked)

@@ -7,7 +7,7 @@ import contextlib
 import gc
 import itertools
 import logging
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,24 +26,23 @@ from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow.session.assigned_training import AssignedTraining
 from rastrainer_simulator.flow.session.preferences import (
     PREFERENCES_FILE,
-    Preferences,
     read_preferences,
 )
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.loop.results import StateFeed, TrialLog
+from rastrainer_simulator.loop.results import StateFeed, trial_log
 from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.net.igtl.simulator_link import SimulatorLink
 from rastrainer_simulator.net.limits import read_limits
 from rastrainer_simulator.net.listener import is_loopback
 from rastrainer_simulator.ops.application_window import ApplicationWindow
-from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses
+from rastrainer_simulator.ops.instructor_pin import InstructorPin
 from rastrainer_simulator.ops.processes import stop_on_signals
 from rastrainer_simulator.ops.system_paths import config_folder
 from rastrainer_simulator.record.journal_writer import RecordsFolder
 from rastrainer_simulator.record.trial_context import setup_of, versions
 from rastrainer_simulator.robot.kinematics import kinematics_name
 from rastrainer_simulator.server.scenario_loader import ScenarioLoader
-from rastrainer_simulator.state import Answer
+from rastrainer_simulator.state import Answer, answered
 
 if TYPE_CHECKING:
     from rastrainer_simulator.flow.running_presenter import RunningPresenter
@@ -103,8 +102,14 @@ class SimulatorServer:
     def __init__(self, options: ServerOptions):
         """Load the scenario and the robot, which takes about a second."""
         self._options = options
+        self._config = options.config or config_folder()
         self._limits = read_limits(self._config)
-        self._settings = self._preferred_settings()
+        self._settings = SimulationSettings()
+        if options.has_views:
+            # The presenter reads the file again, and reports that it is missing or invalid.
+            with contextlib.suppress(InputError):
+                preferences = read_preferences(self._config / PREFERENCES_FILE)
+                self._settings = preferences.applied_to(self._settings)
         self._seeds = itertools.count(options.seed)
         self._assigned = AssignedTraining()
         self._pin = PinGuesses(InstructorPin(self._config))
@@ -125,8 +130,9 @@ class SimulatorServer:
             )
             unless_ready.pop_all()
         self._presenter: RunningPresenter | None = None
+        peers_host = options.host if options.connect_to is None else options.connect_to[0]
         self._scenarios = ScenarioLoader(
-            self._control_loop, self._make_simulation, is_loopback(_peers_host(options))
+            self._control_loop, self._make_simulation, is_loopback(peers_host)
         )
 
     async def run(self, on_ready: Callable[[str], None]) -> None:
@@ -136,7 +142,7 @@ class SimulatorServer:
             InputError: the address cannot be listened on.
             RASTrainerError: the control loop has broken down.
         """
-        for problem in self._control_loop.problems:
+        for problem in self._control_loop.archive.problems:
             _log.warning("%s", problem)
         if self._control_loop.is_first_in_line:
             raise_thread_priority()
@@ -144,8 +150,8 @@ class SimulatorServer:
         link = SimulatorLink(
             latest=lambda: self._control_loop.latest,
             submit=self._submit,
-            unacknowledged=self._control_loop.unacknowledged,
-            arrivals=lambda: self._control_loop.arrivals,
+            unacknowledged=self._control_loop.archive.unacknowledged,
+            arrivals=lambda: self._control_loop.archive.arrivals,
             find_scenario=self._scenarios.find,
             health=self._health,
             limits=self._limits.clients,
@@ -154,12 +160,13 @@ class SimulatorServer:
         )
         feed = StateFeed(link.publisher.is_due, link.publish, loop)
         unsubscribe = self._control_loop.subscribe(feed)
-        self._control_loop.subscribe(TrialLog(loop))
+        self._control_loop.subscribe(trial_log(loop))
         tasks = [loop.create_task(link.beat())]
         stop = asyncio.Event()
         presenter = self._make_presenter(link, stop) if self._options.has_views else None
         self._presenter = presenter
-        serve_views, views, window = self._views_to_serve(presenter), None, None
+        views = None if presenter is None else self._make_view_server(presenter, on_ready)
+        window = None
         # Keep garbage collection between two ticks short: what is loaded now is never freed.
         gc.collect()
         gc.freeze()
@@ -169,8 +176,12 @@ class SimulatorServer:
             try:
                 port = await self._open(link, tasks, on_ready)
                 self._records.announce(self._options.host, port, "")
-                if serve_views is not None and presenter is not None:
-                    views = await serve_views(on_ready)
+                if views is not None and presenter is not None:
+                    certificates = self._config / "certificates"
+                    has_network = self._options.has_network
+                    await views.start(
+                        self._options.view_port, certificates if has_network else None
+                    )
                     page = f"http://{DEFAULT_HOST}:{views.port}"
                     self._records.announce(self._options.host, port, page)
                     tasks.append(loop.create_task(presenter.run()))
@@ -192,21 +203,11 @@ class SimulatorServer:
                 if presenter is not None:
                     presenter.close()
                 # Pending commands are still answered, and then the connections are closed.
-                await loop.run_in_executor(None, self._stop)
+                await asyncio.to_thread(self._scenarios.close)
+                await asyncio.to_thread(self._control_loop.stop)
                 await link.server.close()
                 self._records.close()
                 _log.info("The simulator has ended.", extra={"data": self._health()})
-
-    def _preferred_settings(self) -> SimulationSettings:
-        """Return how the trainee wants the simulation to behave; without views, the default."""
-        if not self._options.has_views:
-            return SimulationSettings()
-        try:
-            preferences = read_preferences(self._config / PREFERENCES_FILE)
-        except InputError:
-            # The presenter reads the file again, and reports that it is missing or invalid.
-            preferences = Preferences()
-        return preferences.applied_to(SimulationSettings())
 
     def _take_up(self) -> tuple[Simulation, JournalReading] | None:
         """Return a simulation with the trial that was interrupted, and its journal."""
@@ -232,10 +233,6 @@ class SimulatorServer:
             "resume or abort it"
         )
 
-    @property
-    def _config(self) -> Path:
-        return self._options.config or config_folder()
-
     def _make_presenter(self, link: SimulatorLink, stop: asyncio.Event) -> RunningPresenter:
         """Return the trainee's presenter."""
         from rastrainer_simulator.flow.running_presenter import RunningPresenter
@@ -257,34 +254,23 @@ class SimulatorServer:
         link.publisher.is_guided = lambda: running.presenter.is_tracing_guided
         return running
 
-    def _start_tutorial(self, trainee: str, mode: str) -> Answer:
-        """Open the tutorial if it comes before a trainee's trial run, and a trainee can operate."""
-        if self._presenter is None:
-            return Answer(0, True, data={"isNeeded": False})
-        return self._presenter.presenter.start_tutorial(trainee, mode)
-
     def _use_settings(self, settings: SimulationSettings) -> Future[Answer]:
         self._settings = settings
         return self._scenarios.reload()
 
-    def _views_to_serve(
-        self, presenter: RunningPresenter | None
-    ) -> Callable[[Callable[[str], None]], Awaitable[ViewServer]] | None:
-        """Return what opens the view server; None where no views are wanted."""
-        if presenter is None:
-            return None
-        # Here, before the control loop ticks: the import of aiohttp would make ticks late.
-        from rastrainer_simulator.net.views.view_server import start_view_server
+    def _make_view_server(
+        self, running: RunningPresenter, announce: Callable[[str], None]
+    ) -> ViewServer:
+        # Before the control loop ticks: the import of aiohttp would make ticks late.
+        from rastrainer_simulator.net.views.view_server import ViewServer
 
-        return lambda announce: start_view_server(
-            presenter.presenter.shown,
-            presenter.presenter,
+        return ViewServer(
+            running.presenter.shown,
+            running.presenter,
             announce,
-            self._options.view_port,
             self._options.robot_meshes,
-            self._config / "certificates" if self._options.has_network else None,
-            self._scenarios.picture,
             self._limits.views,
+            self._scenarios.picture,
             self._config,
             self._pin,
         )
@@ -309,24 +295,22 @@ class SimulatorServer:
         while not stop.is_set():
             with contextlib.suppress(asyncio.TimeoutError):
                 await asyncio.wait_for(stop.wait(), _LOOP_CHECK_PERIOD_S)
-            if not self._control_loop.is_running:
+            if not self._control_loop.thread.is_alive():
                 raise RASTrainerError("The control loop has failed: the log says why.")
-
-    def _stop(self) -> None:
-        self._scenarios.close()
-        self._control_loop.stop()
 
     def _submit(self, name: str, arguments: Mapping[str, Any], sender: str) -> Future[Answer]:
         if name == CommandName.LOAD_SCENARIO:
             return self._scenarios.load(arguments["folder"])
         if name == CommandName.STUDY_STEP:
             self._assigned.take_step(StudyStep.from_arguments(arguments))
-            return _answered(Answer(0, True))
+            return answered(Answer(0, True))
         if name == CommandName.CURRICULUM:
             self._assigned.take_curriculum(CurriculumMessage.from_arguments(arguments))
-            return _answered(Answer(0, True))
+            return answered(Answer(0, True))
         if name == CommandName.START_TUTORIAL:
-            return _answered(self._start_tutorial(**arguments))
+            if self._presenter is None:
+                return answered(Answer(0, True, data={"isNeeded": False}))
+            return answered(self._presenter.presenter.start_tutorial(**arguments))
         return self._control_loop.submit(name, arguments, sender)
 
     def _health(self) -> dict[str, Any]:
@@ -338,14 +322,3 @@ class SimulatorServer:
             "skippedTicks": statistics.skipped,
             "worstDelayMs": round(1000.0 * statistics.worst_delay_s, 3),
         }
-
-
-def _answered(answer: Answer) -> Future[Answer]:
-    done: Future[Answer] = Future()
-    done.set_result(answer)
-    return done
-
-
-def _peers_host(options: ServerOptions) -> str:
-    """Return the address at which peers reach us."""
-    return options.host if options.connect_to is None else options.connect_to[0]

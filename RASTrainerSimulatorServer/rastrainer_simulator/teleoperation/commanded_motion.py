@@ -136,40 +136,25 @@ class PathCommand:
     waypoints: tuple[MoveCommand, ...]
 
 
-class FollowingPath:
+class FollowingPath(Moving):
     """A path that is being followed: only the alignment of the guide has one."""
 
     motion = Motion.ALIGN
 
     def __init__(self, command: PathCommand) -> None:
-        first, *following = command.waypoints
-        self._moving = Moving(first)
-        self._following = following
-
-    @property
-    def direction(self) -> Vector | None:
-        """Direction of the tool at the next waypoint."""
-        return self._moving.direction
-
-    @property
-    def goal(self) -> Vector:
-        """The next waypoint."""
-        return self._moving.goal
-
-    def displacement(self, dt: float, tip: Vector, velocity: Vector, acceleration: float) -> Vector:
-        """Return this tick's displacement (m) from the velocity of the last tick (m/s)."""
-        return self._moving.displacement(dt, tip, velocity, acceleration)
+        first, *self._following = command.waypoints
+        super().__init__(first)
 
     def outcome(self, dt: float, tip: Vector, direction: Vector) -> MotionOutcome | None:
         """Return how the path has ended, None while it lasts."""
         if self._following and distance(tip, self.goal) <= VIA:
-            self._moving = Moving(self._following.pop(0))
+            super().__init__(self._following.pop(0))
             return None
-        return self._moving.outcome(dt, tip, direction)
+        return super().outcome(dt, tip, direction)
 
 
 CommandedMotion = JogCommand | MoveCommand | PathCommand
-Running = Jogging | Moving | FollowingPath
+Running = Jogging | Moving
 
 
 def commanded_motion(command: OperatorCommand, camera: Axes, tool: Axes) -> CommandedMotion:
@@ -184,16 +169,12 @@ def commanded_motion(command: OperatorCommand, camera: Axes, tool: Axes) -> Comm
         axes = {"camera": camera, "tool": tool}.get(arguments["frame"])
         velocity = axes.to_world(velocity) if axes else velocity
         return JogCommand(velocity, arguments["durationS"])
+    pointed = arguments["direction"]
     return MoveCommand(
         position=scale(arguments["positionMm"], 1.0 / MM_PER_M),
         speed=arguments["speedMmS"] / MM_PER_M,
-        direction=_direction(arguments["direction"]),
+        direction=unit(pointed) if pointed and length(pointed) >= 1e-9 else None,
     )
-
-
-def _direction(given: Vector | None) -> Vector | None:
-    """Return a unit vector; None for one without length."""
-    return None if given is None or length(given) < 1e-9 else unit(given)
 
 
 def started(command: CommandedMotion) -> Running:

@@ -228,14 +228,13 @@ class ToolSteering:
             return turned_toward(direction, scale(surface.shaft_normal, -1.0), most)
         x, y, z = surface.normal
         inward = unit((-x, -y, -max(z, settings.from_above)))
-        excess = angle(direction, inward) - self._lean_limit(surface.clearance)
-        return turned_toward(direction, inward, min(excess, most)) if excess > 0.0 else None
-
-    def _lean_limit(self, clearance: float) -> float:
-        settings = self._settings
         lean = settings.largest_lean if settings.choice is ToolDirection.CLEAR else 0.0
-        share = (clearance - settings.near) / (settings.far - settings.near)
-        return lean + (0.5 * math.pi - lean) * min(max(share, 0.0), 1.0) if share < 1.0 else math.pi
+        share = (surface.clearance - settings.near) / (settings.far - settings.near)
+        limit = math.pi
+        if share < 1.0:
+            limit = lean + (0.5 * math.pi - lean) * min(max(share, 0.0), 1.0)
+        excess = angle(direction, inward) - limit
+        return turned_toward(direction, inward, min(excess, most)) if excess > 0.0 else None
 
 
 def _turned(direction: Vector, turn: tuple[float, float], most: float, axes: Axes) -> Vector:

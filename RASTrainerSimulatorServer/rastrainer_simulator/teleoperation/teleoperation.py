@@ -177,7 +177,16 @@ class Teleoperation:
         if push != ZERO or turn != STRAIGHT:
             ended = MotionOutcome.OVERRIDDEN if self._running else None
             self._running = None
-            return self._by_stick(dt, push, turn, operator_input.fine, tip, axes, surface, ended)
+            settings = self._settings
+            fastest = settings.fine_speed if operator_input.fine else settings.coarse_speed
+            wanted = axes.to_world(scale(push, fastest))
+            if operator_input.fine and surface is not None:
+                wanted = self._slowed(wanted, surface)
+            faster = accelerated(self._velocity, wanted, settings.acceleration * dt)
+            self._velocity = ZERO if push == ZERO else faster
+            is_fine = operator_input.fine
+            direction = self._steering.steer(dt, turn, is_fine, axes, tip.direction, surface)
+            return self._toward(Motion.STICK, scale(self._velocity, dt), direction, tip, ended)
         if self._running is None:
             self._velocity = ZERO
             return MotionRequest(Motion.NONE)
@@ -187,30 +196,6 @@ class Teleoperation:
             self._velocity = ZERO
             return MotionRequest(Motion.NONE, ended=outcome)
         return self._by_command(self._running, dt, tip, axes, surface)
-
-    def _by_stick(
-        self,
-        dt: float,
-        push: Vector,
-        turn: tuple[float, float],
-        fine: bool,
-        tip: Tip,
-        axes: Axes,
-        surface: NearestSurface | None,
-        ended: MotionOutcome | None,
-    ) -> MotionRequest:
-        settings = self._settings
-        fastest = settings.fine_speed if fine else settings.coarse_speed
-        wanted = axes.to_world(scale(push, fastest))
-        if fine and surface is not None:
-            wanted = self._slowed(wanted, surface)
-        self._velocity = (
-            ZERO
-            if push == ZERO
-            else accelerated(self._velocity, wanted, settings.acceleration * dt)
-        )
-        direction = self._steering.steer(dt, turn, fine, axes, tip.direction, surface)
-        return self._toward(Motion.STICK, scale(self._velocity, dt), direction, tip, ended)
 
     def _slowed(self, wanted: Vector, surface: NearestSurface) -> Vector:
         """Return the velocity of slow motion (m/s) near the skin; its direction is kept."""

@@ -93,8 +93,7 @@ def test_another_computer_is_reached_over_tls_with_a_verified_certificate():
 
 
 def test_a_command_never_shows_the_password_in_its_address(capsys):
-    with pytest.raises(SystemExit):
-        main(["report", f"postgresql://seat:{SECRET}@host/study", "-o", "out"])
+    assert main(["report", f"postgresql://seat:{SECRET}@host/study", "-o", "out"]) == 2
     text = "".join(capsys.readouterr())
     assert "must not hold a password" in text
     assert SECRET not in text

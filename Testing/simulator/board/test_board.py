@@ -153,7 +153,7 @@ def test_a_problem_with_a_new_seat_is_reported_and_nothing_is_added(
         "code": simulator.served.code,
     }
     status, answer = board.ask("/seats", "POST", **{**values, **changes})
-    assert status == 409
+    assert status in (400, 409)
     assert sentence in answer
     assert board.tiles_until(lambda _tiles: True) == []
 

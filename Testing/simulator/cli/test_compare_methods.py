@@ -117,10 +117,10 @@ def test_a_study_is_registered_by_every_method_that_its_trials_allow(
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["--trials", "0"], "--trials must be 1 to"),
+        (["--trials", "0"], "--trials: must be a whole number from 1 to"),
         (["--skin-shift", "30"], "skin shift must be 0 to 20 mm"),
         (["--indentation", "-1"], "indentation must be 0 to 20 mm"),
-        (["--seed", "-2"], "must not be negative"),
+        (["--seed", "-2"], "--seed: must be a whole number from 0"),
         (["--task", "task-9"], "has no such task"),
     ],
 )

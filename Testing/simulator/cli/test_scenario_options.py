@@ -60,7 +60,7 @@ def test_every_given_option_is_used(tmp_path):
         (["--target", "T", "1", "2", "2001"], "--target must be within ±2000 mm"),
         (["--trajectory", "B", "0", "0", "90", "1", "2", "x"], "--trajectory needs numbers"),
         (["--trajectory", "B", "0", "0", "1e9", "1", "2", "3"], "--trajectory must be within"),
-        (["--seed", "-1"], "--seed must be from 0"),
+        (["--seed", "-1"], "--seed: must be a whole number from 0"),
         (["--setup", "{}/none.json"], "none.json"),
         (["--setup", "{}/bad.json"], 'there is no "haed"; use head'),
         (["--setup", "{}/wrong.json"], "yawDeg"),

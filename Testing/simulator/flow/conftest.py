@@ -15,7 +15,7 @@ from rastrainer_simulator.flow.session.session import FlowServices
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.ops import instructor_pin
-from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses
+from rastrainer_simulator.ops.instructor_pin import InstructorPin
 from rastrainer_simulator.state import Answer, OperatorCommand, OperatorInput, StartingPoint
 from rastrainer_simulator.viewpoint.best_view import TouchViews
 from Testing.sdl_virtual_gamepad import VirtualGamepad
@@ -62,7 +62,7 @@ class Outside:
         self.scenarios = []
         self.loads = []
         self.now = 0.0
-        self.pin = InstructorPin(folder / "config")
+        self.pin = InstructorPin(folder / "config", lambda: self.now)
         self.services = FlowServices(
             config=folder / "config",
             records=folder / "records",
@@ -71,7 +71,7 @@ class Outside:
             use_scenario=self._load,
             is_slicer_connected=lambda: self.has_slicer,
             quit=lambda: setattr(self, "has_quit", True),
-            pin=PinGuesses(self.pin, lambda: self.now),
+            pin=self.pin,
         )
 
     def _list(self):

@@ -52,7 +52,7 @@ def test_touch_undo_proximity_contact_and_finish_give_sound_and_vibration_exactl
     # SDL only prolongs what vibrates already: here simulated time is faster than the motors.
     pilot.presenter.subscribe(lambda _news: pilot.presenter.rumble(0.0, 0.0))
     pilot.start("task-1")
-    truth = pilot.loop.truth
+    truth = pilot.loop.simulation.truth
     center = truth.in_world(truth.target_ras) / MM_PER_M
     top = truth.in_world(truth.fiducials_ras["1"]) / MM_PER_M
     outward = (top - center) / np.linalg.norm(top - center)

@@ -69,7 +69,7 @@ def test_the_arm_is_driven_and_touches_are_made_and_undone_by_clicks_and_dragged
     clicking.until_menu(None)
     assert not clicking.presenter.screen.has_sticks
     clicking.hands.click("press sticks")
-    truth = clicking.loop.truth
+    truth = clicking.loop.simulation.truth
     center = truth.in_world(truth.target_ras) / MM_PER_M
     clicking.touch(truth.in_world(truth.fiducials_ras["1"]) / MM_PER_M, center)
     assert clicking.touched == 1

@@ -172,7 +172,7 @@ def begin(operation: Operation) -> None:
     trainee.choose("work")
     off = np.eye(4)
     off[:3, 3] = OFF_MM
-    matrix = off @ transforms.inverse(trainee.loop.truth.head_to_world)
+    matrix = off @ transforms.inverse(trainee.loop.simulation.truth.head_to_world)
     operation.registration = {
         "trialId": trainee.state.training.trial_id,
         "matrix": matrix.ravel().tolist(),
@@ -395,7 +395,7 @@ def test_the_result_splits_the_errors_into_registration_and_hand(operation):
 def test_the_lines_on_the_head_show_plan_registration_and_instrument(operation):
     screen = screen_of(operation, "lines")
     assert screen.is_head_clear
-    truth = operation.trainee.loop.truth
+    truth = operation.trainee.loop.simulation.truth
     tones = [arrow.tone for arrow in screen.errors]
     assert tones == [Tone.GOOD, Tone.WARNING, Tone.PLAIN] * 2
     for number, errors in enumerate(operation.outcome.analysis.trajectories):
@@ -430,7 +430,7 @@ def test_the_picture_of_a_procedure_shows_the_same_lines_as_the_head_in_the_view
     scenario = operation.trainee.loop.setup.scenario
     procedure = scenario.procedure("dbs")
     lines = procedure_lines(operation.record, procedure, operation.head_to_world)
-    truth = operation.trainee.loop.truth
+    truth = operation.trainee.loop.simulation.truth
     drawn = [truth.in_world(np.array(line[1])) / MM_PER_M for three in lines for line in three]
     ends = [arrow.end for arrow in screen_of(operation, "lines").errors]
     np.testing.assert_allclose(drawn, ends, atol=MICROMETER)

@@ -167,7 +167,7 @@ def test_the_worst_point_is_practiced_again_and_nothing_is_recorded(registered, 
     screen = registered.presenter.screen
     assert screen.status[0] == "Task 1: practice of point 7"
     registered.until(lambda: registered.presenter._flow._tutorial_screen._homing is None, "the arm")
-    truth = registered.loop.truth
+    truth = registered.loop.simulation.truth
     place, center = (
         truth.in_world(p) / MM_PER_M for p in (truth.fiducials_ras["7"], truth.target_ras)
     )

@@ -259,6 +259,6 @@ def test_a_study_trial_has_the_skin_of_its_protocol(menu, guide):
     assert menu.menu == known
     start_task(session, "task-2")
     menu.until_menu(None)
-    truth = session.control_loop.truth
+    truth = session.control_loop.simulation.truth
     assert truth.skin.amounts == skin
     assert truth.skin.seed > 0

@@ -136,7 +136,7 @@ def test_own_trials_are_listed_and_a_failed_task_is_not_done(alone, outside):
 def test_a_poor_touch_of_the_trial_run_is_named_with_the_key_that_takes_it_back(trainee, loop):
     trainee.start(TRIAL_RUN)
     session = trainee.presenter._session
-    truth = loop.truth
+    truth = loop.simulation.truth
     place = truth.in_world(truth.fiducials_ras["1"]) / MM_PER_M
     screen = trainee.presenter._flow._trial_screen
     screen._points = {**screen._points, "1": tuple(np.add(place, (0.0, 0.005, 0.0)).tolist())}

@@ -168,7 +168,7 @@ def test_a_stray_key_after_a_trial_does_not_create_another_trainee(trainee):
 
 def test_a_trial_run_with_one_point_does_not_count_as_done(trainee):
     trainee.start("trial-run")
-    truth = trainee.loop.truth
+    truth = trainee.loop.simulation.truth
     point, center = (
         truth.in_world(p) / MM_PER_M for p in (truth.fiducials_ras["1"], truth.target_ras)
     )
@@ -204,7 +204,7 @@ def test_after_a_refused_touch_the_skin_is_announced_again_once_the_tip_has_move
     trainee.start("trial-run")
     trainee.tap("touch")
     trainee.until(lambda: trainee.presenter.screen.instruction.tone == "warning")
-    truth = trainee.loop.truth
+    truth = trainee.loop.simulation.truth
     center = truth.in_world(truth.target_ras) / MM_PER_M
     trainee.lower_onto(truth.in_world(truth.fiducials_ras["1"]) / MM_PER_M, center)
     trainee.until(lambda: trainee.state.touch == "on skin", "the skin")
@@ -259,7 +259,9 @@ def test_guidance_cannot_change_during_a_trial(trainee):
 
 def test_the_direction_to_the_target_is_shown_in_words_in_the_trial_run(trainee):
     trainee.start("trial-run")
-    target = trainee.loop.truth.in_world(trainee.loop.truth.fiducials_ras["1"])
+    target = trainee.loop.simulation.truth.in_world(
+        trainee.loop.simulation.truth.fiducials_ras["1"]
+    )
     away = sum((a - MM_PER_M * b) ** 2 for a, b in zip(target, trainee.tip, strict=True)) ** 0.5
     words = trainee.presenter.screen.status[3].split()
     assert words[:2] == ["Point", "1:"]
@@ -349,7 +351,7 @@ def test_replacing_the_simulation_after_a_trial_leaves_the_settings_open(trainee
 
 def test_straying_from_the_path_to_the_next_point_is_reported_and_staying_on_it_is_not(pilot):
     pilot.start("task-1")
-    truth = pilot.loop.truth
+    truth = pilot.loop.simulation.truth
     center, first, second = (
         truth.in_world(point) / MM_PER_M
         for point in (truth.target_ras, truth.fiducials_ras["1"], truth.fiducials_ras["2"])
@@ -373,7 +375,7 @@ def test_straying_from_the_path_to_the_next_point_is_reported_and_staying_on_it_
 
 def test_straying_from_the_path_is_not_reported_where_guidance_has_faded(pilot):
     pilot.start("task-4")
-    truth = pilot.loop.truth
+    truth = pilot.loop.simulation.truth
     center = truth.in_world(truth.target_ras) / MM_PER_M
     pilot.touch(truth.in_world(truth.fiducials_ras["1"]) / MM_PER_M, center)
     pilot.steer_to(center + np.array([0.0, 0.0, 0.25]), 0.02)
@@ -385,7 +387,7 @@ def test_straying_from_the_path_is_not_reported_where_guidance_has_faded(pilot):
 
 def test_a_correct_touch_raises_no_alarm_and_names_the_button(pilot):
     pilot.start("task-1")
-    truth = pilot.loop.truth
+    truth = pilot.loop.simulation.truth
     point, center = (
         truth.in_world(p) / MM_PER_M for p in (truth.fiducials_ras["1"], truth.target_ras)
     )
@@ -400,7 +402,7 @@ def test_a_correct_touch_raises_no_alarm_and_names_the_button(pilot):
 
 def test_a_contact_that_happens_while_the_presenter_advances_raises_one_alarm(pilot, monkeypatch):
     pilot.start("task-1")
-    truth = pilot.loop.truth
+    truth = pilot.loop.simulation.truth
     above = truth.in_world(truth.target_ras) / MM_PER_M + (0.0, 0.0, 0.13)
     pilot.steer_to(above, 0.01)
     controls = pilot.presenter.controls
@@ -419,7 +421,7 @@ def test_a_contact_that_happens_while_the_presenter_advances_raises_one_alarm(pi
 
 def test_a_pressed_tool_is_reported_with_its_depth_in_both_languages(pilot):
     pilot.start("task-1")
-    truth = pilot.loop.truth
+    truth = pilot.loop.simulation.truth
     above = truth.in_world(truth.target_ras) / MM_PER_M + (0.0, 0.0, 0.13)
     pilot.steer_to(above, 0.01)
     pilot.steer_to(above - (0.0, 0.0, 0.13), 0.0, fine=True, ends_in_contact=True)

@@ -9,8 +9,8 @@ from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.protocol import Phase
 from rastrainer.trial.wording import say
 from rastrainer_simulator.flow import trial_screen
+from rastrainer_simulator.input.bindings import LAYOUTS, LEFT_ALONE, RIGHT_ALONE
 from rastrainer_simulator.input.inputs import ControlName, InputDevice
-from rastrainer_simulator.input.presets import LEFT_ALONE, RIGHT_ALONE, presets_of
 from rastrainer_simulator.presentation.screen import Tone
 from rastrainer_simulator.replay.resimulation import replay
 from Testing.simulator.flow.test_controls_screens import open_the_bindings
@@ -126,7 +126,7 @@ class OneHand(Pad):
         super().__init__(trainee, plugged)
         self._side = AXIS_OF[preset]
         self._reach = REACH[InputDevice.GAMEPAD, preset]
-        self._table = presets_of(InputDevice.GAMEPAD)[preset]
+        self._table = LAYOUTS[InputDevice.GAMEPAD][preset]
         self._pressed = None
 
     def tap(self, control):

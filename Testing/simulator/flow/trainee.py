@@ -308,7 +308,7 @@ class Trainee:
 
     def play(self, task: str) -> None:
         """Touch all points of the running trial, as the head stands in it."""
-        truth = self.loop.truth
+        truth = self.loop.simulation.truth
         center = truth.in_world(truth.target_ras) / MM_PER_M
         for label in [str(number) for number in range(1, 16)]:
             self.touch(truth.in_world(truth.fiducials_ras[label]) / MM_PER_M, center)

@@ -113,10 +113,10 @@ def test_a_whole_trial_is_recorded_delivered_scored_and_replayed_bit_for_bit(
             assert running.do(CommandName.UNDO).ok
             assert running.do(CommandName.CAPTURE).ok
     assert running.do(CommandName.REGISTER).ok
-    assert [record.trial_id for record in running.loop.unacknowledged()] == [trial_id]
+    assert [record.trial_id for record in running.loop.archive.unacknowledged()] == [trial_id]
     assert "headToWorld" not in running.do(CommandName.GET_TRIAL, trialId=trial_id).data
     assert running.do(CommandName.ACKNOWLEDGE_TRIAL, trialId=trial_id).ok
-    assert running.loop.unacknowledged() == ()
+    assert running.loop.archive.unacknowledged() == ()
     answer = running.register(trial_id)
     assert running.score(trial_id).ok
     assert running.loop.latest.training.phase is Phase.SCORED
@@ -282,13 +282,13 @@ def test_a_finished_trial_waits_for_its_acknowledgment_even_across_a_restart(
     running.loop.stop()
     with ControlLoop(Simulation(anywhere, 9), tmp_path / "records", speed=None) as loop:
         client = Client(loop)
-        assert [record.trial_id for record in loop.unacknowledged()] == [trial_id]
+        assert [record.trial_id for record in loop.archive.unacknowledged()] == [trial_id]
         client.start()
         assert client.register(trial_id).data["trueTreMm"] > 0.0
         assert client.score(trial_id).ok
         assert loop.latest.training.phase is Phase.RUNNING
         assert client.do(CommandName.ACKNOWLEDGE_TRIAL, trialId=trial_id).ok
-        assert loop.unacknowledged() == ()
+        assert loop.archive.unacknowledged() == ()
 
 
 def test_a_request_about_an_older_trial_is_answered_even_if_it_fails_unexpectedly(running, caplog):
@@ -491,7 +491,7 @@ def test_a_faulty_subscriber_stops_the_loop_and_every_request_is_still_answered(
 ):
     with ControlLoop(Simulation(anywhere, 1), tmp_path, speed=None) as loop:
         loop.subscribe(lambda _result: 1 / 0)
-        wait_for(lambda: not loop.is_running)
+        wait_for(lambda: not loop.thread.is_alive())
         assert not Client(loop).do(CommandName.LIST_TASKS).ok
     assert "ZeroDivisionError" in caplog.text
 

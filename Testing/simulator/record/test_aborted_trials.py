@@ -46,7 +46,7 @@ def touch(server, count):
 def wait_for_offer(server):
     """Return what is offered; the journal's thread has written all that came before."""
     server.loop._writer.submit(lambda: None).result()
-    return server.loop.unacknowledged()
+    return server.loop.archive.unacknowledged()
 
 
 def test_an_aborted_trial_is_offered_with_its_touches_until_acknowledged_even_after_a_restart(
@@ -71,10 +71,10 @@ def test_an_aborted_trial_is_offered_with_its_touches_until_acknowledged_even_af
         entry["positionMm"] for entry in touched[:2]
     ]
     with Server(simulation, tmp_path) as server:
-        assert server.loop.unacknowledged() == (record,)
+        assert server.loop.archive.unacknowledged() == (record,)
         assert server.do(CommandName.ACKNOWLEDGE_TRIAL, trialId=trial_id).ok
         assert server.do(CommandName.ACKNOWLEDGE_TRIAL, trialId=trial_id).ok
-        assert server.loop.unacknowledged() == ()
+        assert server.loop.archive.unacknowledged() == ()
     assert len(read_journal(server.path).of_kind("acknowledged")) == 1
     assert TrialArchive(tmp_path).unacknowledged() == ()
     assert replay(read_journal(server.path), anywhere).difference is None
@@ -194,7 +194,7 @@ def test_an_aborted_trial_that_a_full_disk_could_not_take_is_offered_and_written
             (record,) = wait_for_offer(server)
             refused = server.do(CommandName.ACKNOWLEDGE_TRIAL, trialId=trial_id)
             assert "No space left" in refused.message
-        assert server.loop.unacknowledged() == (record,)
+        assert server.loop.archive.unacknowledged() == (record,)
         path = server.path
         server.start()
         assert server.do(CommandName.ACKNOWLEDGE_TRIAL, trialId=trial_id).ok
@@ -258,7 +258,7 @@ def test_ending_the_simulator_and_starting_another_trial_aborts_the_first(simula
         elapsed = server.loop.latest.elapsed
         left = server.path
     with Restarted(simulation, tmp_path) as server:
-        assert server.loop.unacknowledged() == ()
+        assert server.loop.archive.unacknowledged() == ()
         server.start()
         (record,) = wait_for_offer(server)
         assert (record.trial_id, record.reason) == (trial_id, "abandoned")
@@ -278,7 +278,7 @@ def test_an_interrupted_trial_is_not_aborted_as_long_as_it_can_be_resumed(simula
         server.start()
         touch(server, 4)
     with Restarted(simulation, tmp_path) as server:
-        assert server.loop.unacknowledged() == ()
+        assert server.loop.archive.unacknowledged() == ()
     with Server(simulation, tmp_path) as server:
         assert server.training.phase is Phase.PAUSED
         touches = len(server.training.touches)

@@ -52,7 +52,7 @@ def test_a_clock_that_jumps_in_a_trial_changes_no_duration(
             do(CommandName.CAPTURE)
             jumping.by += timedelta(days=days)
         do(CommandName.REGISTER)
-        (record,) = loop.unacknowledged()
+        (record,) = loop.archive.unacknowledged()
     (path,) = records.glob(f"*{SUFFIX}")
     reading = read_journal(path)
     assert reading.integrity is Integrity.INTACT

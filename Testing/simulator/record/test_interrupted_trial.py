@@ -130,7 +130,7 @@ def test_the_trial_continues_at_the_next_fiducial_and_its_single_journal_replays
         server.move()
         assert server.do(CommandName.CAPTURE).data["label"] == "4"
         server.finish()
-        (record,) = server.loop.unacknowledged()
+        (record,) = server.loop.archive.unacknowledged()
     reading = read_journal(server.path)
     assert reading.integrity is Integrity.INTACT
     report = replay(reading, anywhere)
@@ -199,7 +199,7 @@ def test_ten_interruptions_of_one_trial_leave_one_intact_journal(simulation, any
         assert server.training.phase is Phase.COMPLETE
         assert "all 15 points are kept" in server.training.instruction
         assert server.do(CommandName.REGISTER).ok
-        (record,) = server.loop.unacknowledged()
+        (record,) = server.loop.archive.unacknowledged()
     assert record.trial_id == trial_id
     assert record.labels == tuple(str(i) for i in range(1, 16))
     reading = read_journal(server.path)
@@ -219,7 +219,7 @@ def test_the_trials_clock_is_stopped_until_it_is_resumed(simulation, tmp_path):
         assert server.loop.latest.elapsed == elapsed
         assert server.do(CommandName.RESUME).ok
         server.finish()
-        (record,) = server.loop.unacknowledged()
+        (record,) = server.loop.archive.unacknowledged()
         at_end = server.loop.latest.sim_time
     started = read_journal(server.path).header["before"]["simTimeS"]
     assert elapsed == pytest.approx(last - started, abs=1e-6)
@@ -244,7 +244,7 @@ def test_a_trial_interrupted_while_pressing_continues_unpressed_and_replays(
         assert server.do(CommandName.RESUME).ok
         server.move((0.0, 0.0, 0.6), 60)
         server.finish()
-        (record,) = server.loop.unacknowledged()
+        (record,) = server.loop.archive.unacknowledged()
     reading = read_journal(server.path)
     assert replay(reading, anywhere).difference is None
     contacts = Recording.of(reading.entries).trajectory().contacts

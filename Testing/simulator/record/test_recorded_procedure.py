@@ -54,7 +54,7 @@ class Theater(Server):
         self.must(CommandName.REGISTER)
 
     def use_exact_registration(self):
-        matrix = transforms.inverse(self.loop.truth.head_to_world)
+        matrix = transforms.inverse(self.loop.simulation.truth.head_to_world)
         numbers = {"freMm": 1.0, "expectedTreMm": 1.0, "matrix": matrix.ravel().tolist()}
         self.must(CommandName.USE_REGISTRATION, trialId=self.training.trial_id, **numbers)
 
@@ -154,7 +154,7 @@ def finished(simulation, tmp_path_factory):
         server.must(CommandName.PAUSE)
         server.must(CommandName.RESUME)
         server.finish(55.0, 60.0)
-        (record,) = server.loop.unacknowledged()
+        (record,) = server.loop.archive.unacknowledged()
     return server.path, record
 
 
@@ -288,7 +288,7 @@ def test_a_server_that_ends_in_a_phase_is_resumed_there_and_everything_replays(
         server.must(CommandName.RESUME)
         assert server.training.phase is phase
         server.finish()
-        (record,) = server.loop.unacknowledged()
+        (record,) = server.loop.archive.unacknowledged()
     reading = read_journal(server.path)
     assert reading.integrity is Integrity.INTACT
     assert replay(reading, planned).difference is None
@@ -302,7 +302,7 @@ def test_an_abort_in_a_phase_is_recorded_with_the_phase(simulation, tmp_path, ph
         elapsed = server.loop.latest.elapsed
         server.must(CommandName.ABORT, reason="trainee")
         server.loop._writer.submit(lambda: None).result()
-        (record,) = server.loop.unacknowledged()
+        (record,) = server.loop.archive.unacknowledged()
     assert isinstance(record, AbortedTrial)
     assert (record.phase, record.reason) == (phase.value, "trainee")
     assert len(record.points) == 15
@@ -319,7 +319,7 @@ def test_a_paused_procedure_is_aborted_in_the_phase_in_which_it_was_paused(simul
         left = interrupted_attempt(read_journal(server.path))
         server.must(CommandName.ABORT, reason="trainee")
         server.loop._writer.submit(lambda: None).result()
-        (record,) = server.loop.unacknowledged()
+        (record,) = server.loop.archive.unacknowledged()
     assert (record.phase, left.phase) == ("drilling", "drilling")
 
 
@@ -338,7 +338,7 @@ def test_a_trial_with_touches_only_has_no_procedure_in_its_journal(simulation, t
         server.start()
         server.move()
         server.finish()
-        (record,) = server.loop.unacknowledged()
+        (record,) = server.loop.archive.unacknowledged()
     text = server.path.read_text().replace('"procedure":{"selfAlignment"', "")
     assert '"procedure"' not in text
     assert '"feedMm"' not in text

@@ -83,7 +83,7 @@ def test_a_stroke_cut_off_by_a_kill_keeps_its_written_points_and_the_trial_repla
             stroke(server, 60, (0.2, 0.9, 0.1))
         assert server.training.phase is Phase.COMPLETE
         assert server.do(CommandName.REGISTER).ok
-        (record,) = server.loop.unacknowledged()
+        (record,) = server.loop.archive.unacknowledged()
     reading = read_journal(server.path)
     assert reading.integrity is Integrity.INTACT
     report = replay(reading, airy)
@@ -206,7 +206,7 @@ def test_aborted_and_interrupted_trials_report_their_method_and_how_much_was_tra
         assert server.do(CommandName.ABORT, reason="trainee").ok
         # The journal's thread has written all that came before.
         server.loop._writer.submit(lambda: None).result()
-        (record,) = server.loop.unacknowledged()
+        (record,) = server.loop.archive.unacknowledged()
     assert (record.method, record.traced) == (RegistrationMethod.SURFACE, traced)
     data, seed = server.path.read_bytes(), read_journal(server.path).header["seed"]
     server.path.with_suffix(SEED_SUFFIX).write_text(str(seed))

@@ -78,7 +78,7 @@ def test_points_on_shifted_skin_stay_hidden_and_survive_a_kill_and_a_replay(simu
         while server.training.phase is not Phase.COMPLETE:
             stroke(server, 60, (0.2, 0.9, 0.1))
         assert server.do(CommandName.REGISTER).ok
-        (record,) = server.loop.unacknowledged()
+        (record,) = server.loop.archive.unacknowledged()
         revealed = server.do(
             CommandName.SUBMIT_REGISTRATION, trialId=record.trial_id, **REGISTRATION
         )

@@ -152,7 +152,7 @@ def play(
                 LookingTrainee(trainee, hands, pictures, is_mouse).play(limit_s)
         else:
             ReadingTrainee(trainee, hands).play(limit_s)
-        state, truth = trainee.state, trainee.loop.truth
+        state, truth = trainee.state, trainee.loop.simulation.truth
         touches = state.training.touches
         errors_mm = [
             float(np.linalg.norm(MM_PER_M * np.array(touch.position) - place))

@@ -173,17 +173,17 @@ def test_properties_of_simulated_trainees_can_be_set_by_options(capsys):
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (["--trainees", "1"], "2 to 100000 trainees"),
+        (["--trainees", "1"], "--trainees: must be a whole number from 2 to 100000"),
         ([], "with -o"),
-        (["-o", "x", "--aim", "50"], "the aim's SD from 0 to 3"),
-        (["-o", "x", "--step", "5"], "from 0.002 to 0.1 s"),
-        (["-o", "x", "--workers", "0"], "1 to 1024 workers"),
+        (["-o", "x", "--aim", "50"], "--aim: must be a number from 0.0 to 3.0"),
+        (["-o", "x", "--step", "5"], "--step: must be a number from 0.002 to 0.1"),
+        (["-o", "x", "--workers", "0"], "--workers: must be a whole number from 1 to 1024"),
         (["-o", "x", "--hmd-aim", "0"], "factors from 0.1 to 10"),
         (["-o", "x", "--lapses", "2"], "lapses must be from 0 to 1"),
         (["-o", "x", "--hmd-bias", "0", "0", "9"], "at most 5 mm"),
         (["--power", "20", "--trade-off", "9"], "from 0 to 2"),
         (["--power", "20", "--hmd-aim", "0"], "factors from 0.1 to 10"),
-        (["--power", "3"], "10 to 100000 studies"),
+        (["--power", "3"], "--power: must be a whole number from 10 to 100000"),
         (["-o", "x", "--protocol", "missing.json"], "missing.json"),
     ],
 )

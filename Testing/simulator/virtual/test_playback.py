@@ -285,4 +285,4 @@ def test_an_unplayable_recording_is_reported_in_one_sentence(tmp_path, journal, 
     assert main(["replay", str(tmp_path / "no.journal")]) == 2
     assert "is not a trial's journal" in capsys.readouterr().err
     assert main(["replay", str(journal), "--view-port", "70000"]) == 2
-    assert "--view-port must be" in capsys.readouterr().err
+    assert "--view-port: must be" in capsys.readouterr().err

@@ -394,8 +394,8 @@ def test_the_program_accepts_marks_and_resumes_where_it_was_even_if_killed(
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (["--view-port", "70000"], "--view-port must be"),
-        (["--replays", "0"], "--replays must be at least 1"),
+        (["--view-port", "70000"], "--view-port: must be"),
+        (["--replays", "0"], "--replays: must be a whole number from 1"),
         (["--records", "nowhere"], "There is nothing to rate"),
     ],
 )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 
 from rastrainer.errors import InputError
@@ -10,7 +9,7 @@ from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind, stepped
 from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS, preset_name
 from rastrainer_simulator.input.inputs import (
     IN_MENUS,
     OF_VIEW,
@@ -20,7 +19,6 @@ from rastrainer_simulator.input.inputs import (
     ControlName,
     InputDevice,
 )
-from rastrainer_simulator.input.presets import preset_name, presets_of
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 from rastrainer_simulator.presentation.screen import Fact, ItemKind
 

@@ -54,7 +54,7 @@ class ErrorsPage(SessionPage):
         """Return the arrows; they show the true errors, which the score has already revealed."""
         session = self.session
         touches = session.training.touches if session.training.result is not None else ()
-        fiducials = session.control_loop.truth.fiducials_ras
+        fiducials = session.control_loop.simulation.truth.fiducials_ras
         errors = (
             error_arrow(session.truly_in_world(fiducials[t.label]), t.position) for t in touches
         )

@@ -17,7 +17,7 @@ from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import GhostRule, Guidance, TouchRule, TutorialRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.settings import SimulationSettings
-from rastrainer_simulator.ops.instructor_pin import PinAnswer, PinGuesses
+from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinAnswer
 from rastrainer_simulator.teleoperation.steering import AxesChoice, ToolDirection
 from rastrainer_simulator.texts.texts import LANGUAGES
 
@@ -140,7 +140,7 @@ class InstructorLock:
     stood beside.
     """
 
-    def __init__(self, pin: PinGuesses | None) -> None:
+    def __init__(self, pin: InstructorPin | None) -> None:
         """Lock by a PIN, which may be set and removed at any time; None locks nothing."""
         self._pin = pin
         self._is_open = False

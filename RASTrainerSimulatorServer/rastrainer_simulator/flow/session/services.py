@@ -11,7 +11,7 @@ from rastrainer.scenario.library import ListedScenario
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.flow.session.assigned_training import AssignedTraining
 from rastrainer_simulator.loop.control_loop import BEING_SET_UP, TRIAL_IS_OPEN, ControlLoop
-from rastrainer_simulator.ops.instructor_pin import PinGuesses
+from rastrainer_simulator.ops.instructor_pin import InstructorPin
 from rastrainer_simulator.state import Answer
 
 SET_UP_AFTER_S = 1.0
@@ -43,7 +43,7 @@ class FlowServices:
     quit: Callable[[], None]
     assigned: AssignedTraining = field(default_factory=AssignedTraining)
     scores_alone: bool = False
-    pin: PinGuesses | None = None
+    pin: InstructorPin | None = None
 
 
 class SimulationReload:

@@ -242,10 +242,10 @@ class TrainingSession:
 
     def truly_in_world(self, point: np.ndarray) -> Vector:
         """Return where a point of the MRI (RAS mm) truly is, World, m: only after the score."""
-        return in_meters(self.control_loop.truth.in_world(point))
+        return in_meters(self.control_loop.simulation.truth.in_world(point))
 
     def planned_bone(self, procedure: str) -> tuple[BoneAhead | None, ...]:
-        return self.control_loop.planned_bone.get(procedure, ())
+        return self.control_loop.simulation.planned_bone.get(procedure, ())
 
     def load_trial(self, trial_id: str) -> TrialLoading:
         found = journals_of(self.services.records, trial_id)

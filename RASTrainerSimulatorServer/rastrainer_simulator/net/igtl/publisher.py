@@ -17,23 +17,28 @@ from rastrainer.igtl.message import Message
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName, Rate
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.loop.timing import Pacer
-from rastrainer_simulator.net.igtl.connection import ClientConnection, Outgoing
+from rastrainer_simulator.net.igtl.outgoing import Outgoing
+from rastrainer_simulator.net.igtl.server import ClientConnection
 from rastrainer_simulator.net.igtl.told import told
 from rastrainer_simulator.state import SimulationState, TrainingState
 from rastrainer_simulator.training.tracing import stroke_data
 from rastrainer_simulator.trial_state import ProcedureState, Tool
 
 
-def tool_tip(state: SimulationState, seq: int) -> Message:
-    """Return the tool tip's pose, with what Slicer cannot read from a header in its metadata."""
+def tips(state: SimulationState, seq: int) -> tuple[Message, ...]:
+    """Return the poses of the tool's tip and, where one is in the guide, of the instrument's.
+
+    What Slicer cannot read from a header is in the metadata.
+    """
     metadata = {"seq": str(seq), "simTimeS": f"{state.sim_time:.6f}", "TransformStatus": "OK"}
-    return Message(DeviceName.TOOL_TIP_TO_WORLD, _transform(state.tool_tip_to_world), metadata)
-
-
-def instrument_tip(state: SimulationState, seq: int) -> Message:
-    pose = state.tool_tip_to_world.copy()
-    pose[:3, 3] += state.feed * pose[:3, 2]
-    return Message(DeviceName.INSTRUMENT_TIP_TO_WORLD, _transform(pose), {"seq": str(seq)})
+    pose = state.tool_tip_to_world
+    tip = Message(DeviceName.TOOL_TIP_TO_WORLD, _transform(pose), metadata)
+    if state.tool not in (Tool.DRILL, Tool.ELECTRODE):
+        return (tip,)
+    fed = pose.copy()
+    fed[:3, 3] += state.feed * pose[:3, 2]
+    instrument = _transform(fed)
+    return tip, Message(DeviceName.INSTRUMENT_TIP_TO_WORLD, instrument, {"seq": str(seq)})
 
 
 def links(state: SimulationState, seq: int) -> tuple[Message, ...]:
@@ -114,13 +119,6 @@ def heartbeat(details: Mapping[str, Any]) -> Message:
     return Message(DeviceName.SIM_SERVER, status)
 
 
-def _tips(state: SimulationState, seq: int) -> tuple[Message, ...]:
-    """Return the poses of the tool's tip and, where one is in the guide, of the instrument's."""
-    if state.tool in (Tool.DRILL, Tool.ELECTRODE):
-        return tool_tip(state, seq), instrument_tip(state, seq)
-    return (tool_tip(state, seq),)
-
-
 def _transform(pose: np.ndarray) -> Transform:
     """Return a (4, 4) float pose (m) as a transform (mm)."""
     *axes, x, y, z = pose[:3].T.ravel().tolist()
@@ -150,11 +148,6 @@ class PoseSubscription:
         self.links = Pacer(links_hz)
         self._is_steady = is_steady
         self._sent: dict[str, bytes] = {}
-
-    @property
-    def next(self) -> float:
-        """When the next pose is due, in simulated time."""
-        return min(self.tool_tip.next, self.links.next)
 
     def is_news(self, device: str, content: bytes) -> bool:
         """Return whether a pose is to be sent, which then counts as sent.
@@ -197,7 +190,8 @@ class Publisher:
         state = self._latest()
         self._send([connection], captured_points(state.training))
         changing = what_changes(state, self.is_guided())
-        self._send([connection], sim_state(changing, state, self._next_number()))
+        self._number += 1
+        self._send([connection], sim_state(changing, state, self._number))
         self._next = -math.inf
 
     def unsubscribe(self, connection: ClientConnection) -> None:
@@ -212,34 +206,27 @@ class Publisher:
     def publish(self, state: SimulationState) -> None:
         """Send each client what is due and new."""
         now = state.sim_time
-        everyone = tuple(self._poses)
-        if state.training is not self._sent_training:
-            self._publish_training(everyone, state.training)
+        sent, training = self._sent_training, state.training
+        if training is not sent:
+            # Touched points: whenever one was touched or undone, and with a new trial.
+            self._sent_training = training
+            shown = (training.touches, training.trial_id)
+            if sent is None or (sent.touches, sent.trial_id) != shown:
+                self._send(self._poses, captured_points(training))
         if self._state.is_due(now):
-            self._publish_state(everyone, state)
+            changing = what_changes(state, self.is_guided())
+            if changing != self._sent_state:
+                self._sent_state = changing
+                self._number += 1
+                self._send(self._poses, sim_state(changing, state, self._number))
         tip_due = [client for client, poses in self._poses.items() if poses.tool_tip.is_due(now)]
         if tip_due:
-            self._publish_poses(tip_due, _tips(state, self._number + 1))
+            self._publish_poses(tip_due, tips(state, self._number + 1))
         links_due = [client for client, poses in self._poses.items() if poses.links.is_due(now)]
         if links_due:
             self._publish_poses(links_due, links(state, self._number + 1))
-        self._next = min([self._state.next, *(poses.next for poses in self._poses.values())])
-
-    def _publish_training(
-        self, everyone: Iterable[ClientConnection], training: TrainingState
-    ) -> None:
-        """Send the touched points whenever one was touched or undone, and with a new trial."""
-        sent = self._sent_training
-        self._sent_training = training
-        if sent is None or (sent.touches, sent.trial_id) != (training.touches, training.trial_id):
-            self._send(everyone, captured_points(training))
-
-    def _publish_state(self, everyone: Iterable[ClientConnection], state: SimulationState) -> None:
-        changing = what_changes(state, self.is_guided())
-        if changing != self._sent_state:
-            self._sent_state = changing
-            message = sim_state(changing, state, self._next_number())
-            self._send(everyone, message)
+        due = (min(each.tool_tip.next, each.links.next) for each in self._poses.values())
+        self._next = min([self._state.next, *due])
 
     def _publish_poses(self, due: Iterable[ClientConnection], messages: Iterable[Message]) -> None:
         """Send each client what is new to it; the messages carry the next number."""
@@ -252,14 +239,9 @@ class Publisher:
             self._send(receivers, message)
             is_sent = is_sent or bool(receivers)
         if is_sent:
-            self._next_number()
+            self._number += 1
 
-    def _next_number(self) -> int:
-        self._number += 1
-        return self._number
-
-    def _send(self, receivers: Iterable[ClientConnection], *messages: Message) -> None:
-        for message in messages:
-            outgoing = Outgoing(message)
-            for connection in receivers:
-                connection.send_latest(outgoing)
+    def _send(self, receivers: Iterable[ClientConnection], message: Message) -> None:
+        outgoing = Outgoing(message)
+        for connection in receivers:
+            connection.send_latest(outgoing)

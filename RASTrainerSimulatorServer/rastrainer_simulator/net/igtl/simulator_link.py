@@ -35,17 +35,17 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.steps import StepAnswers
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
-from rastrainer_simulator.net.igtl.connection import ClientConnection, Outgoing
+from rastrainer_simulator.net.igtl.outgoing import Outgoing
 from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher, heartbeat
 from rastrainer_simulator.net.igtl.registration_check import (
     CHECKED,
     RegistrationCheck,
     SubmitCommand,
 )
-from rastrainer_simulator.net.igtl.server import IgtlServer
+from rastrainer_simulator.net.igtl.server import ClientConnection, IgtlServer
 from rastrainer_simulator.net.igtl.told import told
 from rastrainer_simulator.net.limits import LinkLimits
-from rastrainer_simulator.state import Answer, SimulationState
+from rastrainer_simulator.state import Answer, SimulationState, answered
 from rastrainer_simulator.texts.texts import LocalizedText
 
 Submit = Callable[[ClientConnection, str, Mapping[str, Any]], "Future[Answer]"]
@@ -56,6 +56,10 @@ _OWN_DEVICES = frozenset(
         *DeviceName.LINK_TO_WORLD,
     }
 )
+COMMANDS_AT_ONCE = 16
+"""Commands of one client that are submitted to the control loop at a time."""
+WAITING_COMMANDS, WAITING_COMMAND_BYTES = 4096, 2**20
+"""Further ones that may wait for their turn; one more is refused."""
 OFFERS_AT_ONCE = 8
 """Trials in one round of offers."""
 _NUMBERS = 2**32
@@ -81,10 +85,9 @@ class CommandHandler:
     that no client can crowd the others out of a tick.
     """
 
-    def __init__(self, submit: Submit, limits: LinkLimits):
+    def __init__(self, submit: Submit):
         """`submit` takes checked arguments and returns the answer's future immediately."""
         self._submit = submit
-        self._limits = limits
         self._loop = asyncio.get_running_loop()
         self._queues: dict[ClientConnection, _CommandQueue] = {}
 
@@ -93,12 +96,13 @@ class CommandHandler:
         try:
             arguments = check_arguments(command.name, decode_json_object(command.body))
         except InputError as error:
-            self._refuse(connection, command, str(error))
+            self._reply(connection, command, Answer(0, False, str(error)))
             return
         queue = self._queues.setdefault(connection, _CommandQueue())
-        is_full = len(queue.waiting) >= self._limits.waiting_commands
-        if is_full or queue.waiting_bytes > self._limits.waiting_command_bytes:
-            self._refuse(connection, command, "Too many commands wait: wait for their answers.")
+        is_full = len(queue.waiting) >= WAITING_COMMANDS
+        if is_full or queue.waiting_bytes > WAITING_COMMAND_BYTES:
+            sentence = "Too many commands wait: wait for their answers."
+            self._reply(connection, command, Answer(0, False, sentence))
             return
         queue.waiting.append((command, arguments))
         queue.waiting_bytes += len(command.body)
@@ -109,7 +113,7 @@ class CommandHandler:
         self._queues.pop(connection, None)
 
     def _submit_waiting(self, connection: ClientConnection, queue: _CommandQueue) -> None:
-        while queue.waiting and queue.running < self._limits.commands_at_once:
+        while queue.waiting and queue.running < COMMANDS_AT_ONCE:
             is_checked = queue.waiting[0][0].name in CHECKED
             if queue.is_checking or (is_checked and queue.running):
                 return
@@ -129,37 +133,25 @@ class CommandHandler:
             return
         queue.running -= 1
         queue.is_checking = False
-        if done.cancelled() or done.exception() is not None:
-            self._refuse(connection, command, "The simulator could not carry the command out.")
-        else:
+        answer = Answer(0, False, "The simulator could not carry the command out.")
+        if not done.cancelled() and done.exception() is None:
             answer = done.result()
-            self._reply(connection, command, answer.ok, answer.message, answer.data)
+        self._reply(connection, command, answer)
         self._submit_waiting(connection, queue)
 
-    def _refuse(self, connection: ClientConnection, command: Command, sentence: str) -> None:
-        self._reply(connection, command, False, sentence, {})
-
-    def _reply(
-        self,
-        connection: ClientConnection,
-        command: Command,
-        is_success: bool,
-        sentence: str,
-        data: Mapping[str, Any],
-    ) -> None:
+    def _reply(self, connection: ClientConnection, command: Command, answer: Answer) -> None:
         """Send an answer; its body repeats the sentence for clients that read no metadata.
 
         What the rules of a trial refuse has a code and values beside the sentence.
         """
-        metadata = {STATUS_KEY: SUCCESS if is_success else FAIL}
-        if not is_success:
-            sentence = told(sentence)
-            metadata[ERROR_KEY] = sentence
-            data = {**data, "error": sentence}
+        metadata, data = {STATUS_KEY: SUCCESS if answer.ok else FAIL}, dict(answer.data)
+        if not answer.ok:
+            sentence = told(answer.message)
+            metadata[ERROR_KEY] = data["error"] = sentence
             if isinstance(sentence, LocalizedText):
                 data.update(code=sentence.key, values=dict(sentence.values))
         name = command.name if command.name.isascii() and command.name.isprintable() else ""
-        body = json.dumps(dict(data), allow_nan=False)
+        body = json.dumps(data, allow_nan=False)
         reply = CommandReply(command.command_id, name, body)
         connection.send(Outgoing(Message(DeviceName.COMMAND, reply, metadata)))
 
@@ -213,7 +205,7 @@ class SimulatorLink:
         self._health = health
         self._answers = answers
         self._slicer_left = slicer_left
-        self._commands = CommandHandler(self._submit, self.server.limits)
+        self._commands = CommandHandler(self._submit)
 
     def connected(self, connection: ClientConnection) -> None:
         connection.send_latest(self._heartbeat())
@@ -252,16 +244,15 @@ class SimulatorLink:
             beat = self._heartbeat()
             for connection in self.server.clients:
                 connection.send_latest(beat)
-            self._send_answers()
+            for number, answers in enumerate(self._answers(), start=1):
+                command = Command(
+                    number, CommandName.STEP_ANSWERED, json.dumps(record_to_json(answers))
+                )
+                for connection in self.server.clients:
+                    connection.send(Outgoing(Message(DeviceName.COMMAND, command)))
             seconds += 1
             if seconds % Rate.OFFER_PERIOD_S == 0:
                 self.offers.repeat()
-
-    def _send_answers(self) -> None:
-        for number, answers in enumerate(self._answers(), start=1):
-            command = Command(number, CommandName.STEP_ANSWERED, json.dumps(answers.to_json()))
-            for connection in self.server.clients:
-                connection.send(Outgoing(Message(DeviceName.COMMAND, command)))
 
     @property
     def is_slicer_connected(self) -> bool:
@@ -276,9 +267,19 @@ class SimulatorLink:
         self, connection: ClientConnection, name: str, arguments: Mapping[str, Any]
     ) -> Future[Answer]:
         if name == CommandName.HELLO:
-            return _answered(self._greet(connection, arguments))
-        if sentence := _not_for(connection, name, arguments):
-            return _answered(Answer(0, False, sentence))
+            return answered(self._greet(connection, arguments))
+        is_for_scorers = COMMANDS[name].is_for_scorers
+        if is_for_scorers and not connection.scores:
+            sentence = (
+                f"{name} is for clients that register and score: send Hello, with scores, first."
+            )
+            return answered(Answer(0, False, sentence))
+        is_offered = (
+            name != CommandName.ACKNOWLEDGE_TRIAL or arguments["trialId"] in connection.offered
+        )
+        if not is_offered:
+            sentence = "This trial was not offered over this connection."
+            return answered(Answer(0, False, sentence))
         submit = self._check.submit if name in CHECKED else self._submit_command
         return submit(name, arguments, connection.name)
 
@@ -299,23 +300,6 @@ class SimulatorLink:
         requested = {name: arguments[name] for name in ("toolTipHz", "linksHz", "steady")}
         self.publisher.subscribe(connection, PoseSubscription(*requested.values()))
         return Answer(0, True, data={**spoken, **requested})
-
-
-def _not_for(connection: ClientConnection, name: str, arguments: Mapping[str, Any]) -> str:
-    """Return why a command is not for this client; "" if it is."""
-    if not COMMANDS[name].is_for_scorers:
-        return ""
-    if not connection.scores:
-        return f"{name} is for clients that register and score: send Hello, with scores, first."
-    if name == CommandName.ACKNOWLEDGE_TRIAL and arguments["trialId"] not in connection.offered:
-        return "This trial was not offered over this connection."
-    return ""
-
-
-def _answered(answer: Answer) -> Future[Answer]:
-    done: Future[Answer] = Future()
-    done.set_result(answer)
-    return done
 
 
 class TrialOffers:

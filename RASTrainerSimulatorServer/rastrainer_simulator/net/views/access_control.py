@@ -14,9 +14,9 @@ import math
 import secrets
 import socket
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from aiohttp import hdrs, web
 
@@ -32,30 +32,43 @@ T = TypeVar("T")
 KEY_BYTES = 32
 SHORTEST_KEY = 32
 LONGEST_KEY = 200
+MAX_SESSIONS = 64
+"""Keys of each role that are remembered; then the oldest is forgotten."""
 BOARDS_FILE = "boards.json"
 _MAX_BYTES = 100_000
 _HASH_DIGITS = 64
+DIGITS = 6
+WRONG = "This is not the pairing code that the simulator shows."
+TOO_MANY = "There were too many wrong codes: wait, then use the new code that the simulator shows."
+_log = logging.getLogger(__name__)
 
 
 class Sessions:
     """The keys that were given out, by their hashes."""
 
-    def __init__(self, most: Mapping[ViewRole, int], boards: Path | None = None) -> None:
-        """Remember at most so many keys of each role; then the oldest of that role is forgotten.
-
-        The keys of boards are also in the file `boards`; deleting it unpairs all boards.
-        """
-        self._hashes = {role: deque[bytes](maxlen=most[role]) for role in ViewRole}
+    def __init__(self, boards: Path | None = None) -> None:
+        """Keep the keys of boards also in the file `boards`; deleting it unpairs all boards."""
+        self._hashes = {role: deque[bytes](maxlen=MAX_SESSIONS) for role in ViewRole}
         self._boards = boards
-        if boards is not None and boards.exists():
-            self._hashes[ViewRole.BOARD].extend(_read(boards))
+        if boards is None or not boards.exists():
+            return
+        found = read_json(boards, _MAX_BYTES)
+        try:
+            if any(len(each) != _HASH_DIGITS for each in found):
+                raise ValueError
+            self._hashes[ViewRole.BOARD].extend(bytes.fromhex(each) for each in found)
+        except (TypeError, ValueError):
+            raise InputError(
+                f"{boards} does not hold the hashes of boards' keys; delete it, and pair boards "
+                "again."
+            ) from None
 
     def open(self, role: ViewRole = ViewRole.VIEW) -> str:
         """Return a new key."""
         key = secrets.token_urlsafe(KEY_BYTES)
         self._hashes[role].append(_hash(key))
         if role is ViewRole.BOARD and self._boards is not None:
-            _write(self._boards, self._hashes[role])
+            write_private_json(self._boards, [each.hex() for each in self._hashes[role]])
         return key
 
     def admit(self, key: str) -> None:
@@ -79,47 +92,20 @@ def _hash(key: str) -> bytes:
     return hashlib.sha256(key.encode(errors="replace")).digest()
 
 
-def _read(path: Path) -> list[bytes]:
-    found = read_json(path, _MAX_BYTES)
-    try:
-        if any(len(each) != _HASH_DIGITS for each in found):
-            raise ValueError
-        return [bytes.fromhex(each) for each in found]
-    except (TypeError, ValueError):
-        raise InputError(
-            f"{path} does not hold the hashes of boards' keys; delete it, and pair boards again."
-        ) from None
-
-
-def _write(path: Path, hashes: deque[bytes]) -> None:
-    write_private_json(path, [each.hex() for each in hashes])
-
-
-_log = logging.getLogger(__name__)
-
-DIGITS = 6
-WRONG = "This is not the pairing code that the simulator shows."
-TOO_MANY = "There were too many wrong codes: wait, then use the new code that the simulator shows."
-
-
-class PairingCode:
+class PairingCode(GuessLimit):
     """The present code. After five wrong ones there is a new one, and a pause that grows."""
 
     def __init__(self, clock: Callable[[], float], on_new: Callable[[str], None]) -> None:
         """Make a code; `on_new` is given each one after it, to be shown."""
+        super().__init__(clock)
         self._on_new = on_new
-        self._limit = GuessLimit(clock)
         self.code = _new_code()
         """What a person types; never logged."""
-
-    def seconds_to_wait(self) -> float:
-        """Return how long no code is checked; 0 if one may be tried."""
-        return self._limit.seconds_to_wait()
 
     def accepts(self, code: str) -> bool:
         """Compare a code, in the same time for every one, and count the wrong ones."""
         is_right = hmac.compare_digest(code.encode(), self.code.encode())
-        if self._limit.guessed(is_right):
+        if self.guessed(is_right):
             _log.warning("%d wrong pairing codes were tried; there is a new one.", WRONG_GUESSES)
             self.code = _new_code()
             self._on_new(self.code)
@@ -180,18 +166,12 @@ def session_key(request: web.Request) -> str:
 
 
 async def read_body(request: web.Request, kind: type[T]) -> T:
-    """Return the record that a request's body holds."""
-    try:
-        return record_from_json(kind, await read_object(request), "The body")
-    except InputError as error:
-        raise web.HTTPBadRequest(text=str(error)) from None
-
-
-async def read_object(request: web.Request) -> dict[str, Any]:
-    """Return the JSON object of a request's body, which must arrive within `BODY_S`."""
+    """Return the record of a request's body, which must arrive within `BODY_S`."""
     try:
         body = (await asyncio.wait_for(request.read(), BODY_S)).decode()
-        return decode_message_object(body, "The body")
+        return record_from_json(kind, decode_message_object(body, "The body"), "The body")
+    except InputError as error:
+        raise web.HTTPBadRequest(text=str(error)) from None
     except (ValueError, asyncio.TimeoutError, ConnectionError):
         raise web.HTTPBadRequest(text="Send one JSON object.") from None
 
@@ -204,26 +184,17 @@ def check_origin(request: web.Request) -> None:
     Raises:
         web.HTTPForbidden: it may not pass.
     """
-    if not _is_own_name(_without_port(request.host)):
-        raise web.HTTPForbidden(text=WRONG_HOST)
-    origin = request.headers.get("Origin")
-    if origin is not None and origin != f"{request.scheme}://{request.host}":
-        raise web.HTTPForbidden(text=FOREIGN)
-
-
-def _without_port(host: str) -> str:
-    name, colon, port = host.rpartition(":")
-    return name if colon and port.isdecimal() else host
-
-
-def _is_own_name(name: str) -> bool:
-    bare = name.removeprefix("[").removesuffix("]")
+    name, colon, port = request.host.rpartition(":")
+    bare = (name if colon and port.isdecimal() else request.host).strip("[]")
+    own = socket.gethostname().lower().removesuffix(".local")
     try:
         ipaddress.ip_address(bare)
     except ValueError:
-        own = socket.gethostname().lower().removesuffix(".local")
-        return bare.lower() in ("localhost", own, f"{own}.local")
-    return True
+        if bare.lower() not in ("localhost", own, f"{own}.local"):
+            raise web.HTTPForbidden(text=WRONG_HOST) from None
+    origin = request.headers.get("Origin")
+    if origin is not None and origin != f"{request.scheme}://{request.host}":
+        raise web.HTTPForbidden(text=FOREIGN)
 
 
 async def add_security_headers(_request: web.Request, response: web.StreamResponse) -> None:

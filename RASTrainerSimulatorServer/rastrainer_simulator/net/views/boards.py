@@ -17,7 +17,7 @@ from rastrainer.protocol import OPEN_PHASES
 from rastrainer_simulator.loop.timing import Pacer
 from rastrainer_simulator.net.views.access_control import ROLE, read_body, refuse_for
 from rastrainer_simulator.net.views.view_socket import ViewSocket
-from rastrainer_simulator.ops.instructor_pin import PinGuesses
+from rastrainer_simulator.ops.instructor_pin import InstructorPin
 from rastrainer_simulator.presentation.messages import (
     PROTOCOL,
     OrderRequest,
@@ -41,41 +41,30 @@ class Boards:
     """The joined boards; all receive the same, and only when it has changed."""
 
     def __init__(self) -> None:
-        self._joined: dict[int, ViewSocket] = {}
+        self.joined: dict[int, ViewSocket] = {}
         self._seat = ""
-        self._pacer = Pacer(NEWS_HZ)
-
-    def __bool__(self) -> bool:
-        return bool(self._joined)
+        self.pacer = Pacer(NEWS_HZ)
 
     async def serve(self, board: ViewSocket, now: SimulationState, seat: Seat) -> None:
         """Send a board everything, and then each change until it leaves."""
         # First the others: then all know the same, and the new one receives nothing twice.
         self.tell(now, seat)
-        self._joined[board.number] = board
+        self.joined[board.number] = board
         try:
             welcome = WelcomeNews(PROTOCOL, board.number, ())
             board.outbox.put_latest(WelcomeNews.type, message_text(welcome))
             board.outbox.put_latest(SeatNews.type, self._seat)
             await board.serve()
         finally:
-            del self._joined[board.number]
-
-    def is_due(self, time_s: float) -> bool:
-        """Return whether there is anything to send to a board now."""
-        return bool(self._joined) and self._pacer.is_due(time_s)
+            del self.joined[board.number]
 
     def tell(self, now: SimulationState, seat: Seat) -> None:
         """Send all boards the state of the seat, if it has changed."""
         text = seat_text(now, seat)
         if text != self._seat:
             self._seat = text
-            for board in self._joined.values():
+            for board in self.joined.values():
                 board.outbox.put_latest(SeatNews.type, text)
-
-    async def close(self, message: str) -> None:
-        """Send them away because the simulator ends."""
-        await asyncio.gather(*(board.close(message) for board in self._joined.values()))
 
 
 def seat_text(now: SimulationState, seat: Seat) -> str:
@@ -96,7 +85,7 @@ def seat_text(now: SimulationState, seat: Seat) -> str:
 class InstructorOrders:
     """Accepts orders over HTTP, each with the PIN."""
 
-    def __init__(self, pin: PinGuesses | None, presenter: Presenter) -> None:
+    def __init__(self, pin: InstructorPin | None, presenter: Presenter) -> None:
         self._pin = pin
         self._presenter = presenter
         self._one_guess = asyncio.Lock()
@@ -106,22 +95,18 @@ class InstructorOrders:
         if request[ROLE] is not ViewRole.BOARD:
             raise web.HTTPForbidden(text=ONLY_BOARDS)
         asked = await read_body(request, OrderRequest)
+        if self._pin is None or not self._pin.is_set:
+            raise web.HTTPConflict(text=NO_PIN)
         # One after the other: many guesses at the same time would take all threads.
         async with self._one_guess:
-            await self._check(asked.pin)
+            try:
+                answer = await asyncio.to_thread(self._pin.guess, asked.pin)
+            except InputError as error:
+                raise web.HTTPConflict(text=str(error)) from None
+        refuse_for(answer.wait_s, TOO_MANY)
+        if not answer.is_right:
+            raise web.HTTPForbidden(text=WRONG_PIN)
         problem = self._presenter.instruct(asked.order, asked.sentence)
         if problem:
             raise web.HTTPConflict(text=problem)
         return web.json_response({}, headers={hdrs.CACHE_CONTROL: "no-store"})
-
-    async def _check(self, pin: str) -> None:
-        """Refuse a wrong PIN, and any while guessing is paused."""
-        if self._pin is None or not self._pin.is_set:
-            raise web.HTTPConflict(text=NO_PIN)
-        try:
-            answer = await asyncio.to_thread(self._pin.guess, pin)
-        except InputError as error:
-            raise web.HTTPConflict(text=str(error)) from None
-        refuse_for(answer.wait_s, TOO_MANY)
-        if not answer.is_right:
-            raise web.HTTPForbidden(text=WRONG_PIN)

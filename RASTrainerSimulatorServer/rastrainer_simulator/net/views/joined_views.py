@@ -9,6 +9,8 @@ import logging
 import time
 from collections.abc import Iterable, Sequence
 
+from aiohttp import WSCloseCode, web
+
 from rastrainer.errors import InputError
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.loop.results import StateSource
@@ -17,7 +19,6 @@ from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.views.boards import Boards
 from rastrainer_simulator.net.views.outgoing import (
     BODIES,
-    Mirror,
     TraceUpdate,
     scene_news,
     screen_text,
@@ -29,6 +30,8 @@ from rastrainer_simulator.presentation.messages import (
     ControlNews,
     CoveringBodies,
     Feedback,
+    HeadsetPose,
+    Hello,
     PairingNews,
     SceneNews,
     ScreenNews,
@@ -40,6 +43,7 @@ from rastrainer_simulator.presentation.presenter import Control, Presenter, View
 from rastrainer_simulator.presentation.screen import Screen, without_secrets
 from rastrainer_simulator.scene.scene_files import SceneFiles
 from rastrainer_simulator.state import SimulationState
+from rastrainer_simulator.vectors import vector
 from rastrainer_simulator.viewpoint.arm_cover import ArmCover, places_to_see
 from rastrainer_simulator.viewpoint.view_control import Pictures
 
@@ -52,11 +56,7 @@ ENDING = "The simulator has been stopped."
 
 
 class JoinedViews:
-    """The joined views; `is_due` may be called in any thread, all else in the event loop's.
-
-    Attributes:
-        mirror: what spectators are shown of who wears a headset.
-    """
+    """The joined views; `is_due` may be called in any thread, all else in the event loop's."""
 
     def __init__(
         self, source: StateSource, presenter: Presenter, scenes: SceneFiles, limits: ViewLimits
@@ -75,33 +75,27 @@ class JoinedViews:
         self._pairing = ""
         self._trace = TraceUpdate()
         self._cover: ArmCover | None = None
-        self.mirror = Mirror()
         self._loading: asyncio.Task[None] | None = None
         self._watching: asyncio.Task[None] | None = None
         self._unsubscribe = presenter.subscribe(self._send_update)
 
-    def next_number(self) -> int:
-        """Return a number that no other view has had."""
-        return next(self._numbers)
-
-    async def serve(self, view: ViewSocket) -> None:
+    async def serve(self, stream: web.WebSocketResponse, hello: Hello, is_local: bool) -> None:
         """Have a view take part, or a spectator or a board watch, until it leaves."""
-        if view.is_board:
+        view = ViewSocket(next(self._numbers), stream, hello, self._presenter, is_local)
+        if hello.kind == "board":
             await self._boards.serve(view, self._source.latest, self._presenter.seat())
             return
         self._views[view.number] = view
         try:
             if not view.is_spectator:
-                self._presenter.view_joined(view.number, view.hello)
-            if view.hello.kind == "headset":
-                self.mirror.joined(view.number)
+                self._presenter.view_joined(view.number, hello)
             self._send_all(view)
-            self._watch()
+            if self._watching is None:
+                self._watching = asyncio.create_task(self._release_silent())
             await view.serve()
         finally:
             view.held.release()
             del self._views[view.number]
-            self.mirror.left(view.number)
             if not view.is_spectator:
                 self._presenter.view_left(view.number)
 
@@ -117,16 +111,17 @@ class JoinedViews:
         tasks = [task for task in (self._loading, self._watching) if task is not None]
         for task in tasks:
             task.cancel()
-        closings = [view.close(ENDING) for view in self._views.values()]
-        closings.append(self._boards.close(ENDING))
+        everyone = (*self._views.values(), *self._boards.joined.values())
+        closings = [view.close(WSCloseCode.GOING_AWAY, ENDING) for view in everyone]
         await asyncio.gather(*tasks, *closings, return_exceptions=True)
 
     def is_due(self, _state: SimulationState) -> bool:
-        return bool(self._views or self._boards) and self._pacer.is_due(time.monotonic())
+        has_joined = bool(self._views or self._boards.joined)
+        return has_joined and self._pacer.is_due(time.monotonic())
 
     def tell(self, now: SimulationState) -> None:
         """Send what moves, and check whether it needs another scene."""
-        if self._boards.is_due(time.monotonic()):
+        if self._boards.joined and self._boards.pacer.is_due(time.monotonic()):
             self._boards.tell(now, self._presenter.seat())
         if not self._views:
             return
@@ -168,7 +163,7 @@ class JoinedViews:
         whole, text = "", message_text(news)
         for view in views:
             if view.is_spectator and not whole:
-                whole = message_text(dataclasses.replace(news, headset=self.mirror.pose))
+                whole = message_text(dataclasses.replace(news, headset=self._worn()))
             view.outbox.put_latest(StateNews.type, whole if view.is_spectator else text)
 
     def _put_pairing(self, view: ViewSocket) -> None:
@@ -176,14 +171,20 @@ class JoinedViews:
         if view.is_local and self._pairing and not view.is_spectator:
             view.outbox.put_latest(PairingNews.type, self._pairing)
 
+    def _worn(self) -> HeadsetPose | None:
+        """Return what the newest headset has sent; one that reconnects is another view."""
+        headsets = [view for view in self._views.values() if view.hello.kind == "headset"]
+        return headsets[-1].worn if headsets else None
+
     def _covering(self, now: SimulationState, pictures: Pictures) -> CoveringBodies:
         setup = self._source.setup
         if self._cover is None or self._cover.setup is not setup:
             self._cover = ArmCover(setup)
+        worn = self._worn()
         eyes = {
             "view": pictures.main.position,
             "inset": None if pictures.inset is None else pictures.inset.position,
-            "headset": self.mirror.eyes,
+            "headset": vector(worn.eyes[:3]) if worn and worn.eyes else None,
         }
         guided = self._presenter.trace_guidance(now).next_place
         places = places_to_see(now, setup.scenario, None if guided is None else guided.position_mm)
@@ -245,10 +246,6 @@ class JoinedViews:
             await self._scenes.build_all(setup)
         except InputError as error:
             _log.error("%s", error)
-
-    def _watch(self) -> None:
-        if self._watching is None:
-            self._watching = asyncio.create_task(self._release_silent())
 
     async def _release_silent(self) -> None:
         while True:

@@ -16,7 +16,6 @@ from rastrainer_simulator.loop.timing import Pacer
 from rastrainer_simulator.presentation.messages import (
     CoveringBodies,
     GuideAim,
-    HeadsetPose,
     Pose,
     ProcedureNews,
     SceneNews,
@@ -81,12 +80,20 @@ def state_news(
         ghost: poses of `GHOST_BODIES`, (4, 4) float, to World, m; None without a ghost.
     """
     training, planned = now.training, now.planned_target
+    # Where the registration in use puts the MRI; else World's origin.
+    procedure = now.training.procedure
+    used = None if procedure is None else procedure.registration
+    plan = None if used is None else RegisteredPlan.of(used.matrix)
+    plan_to_world = np.eye(4)
+    if plan is not None:
+        plan_to_world[:3, :3] = np.transpose(plan.rows)
+        plan_to_world[:3, 3] = plan.in_world((0.0, 0.0, 0.0))
     matrices = (
         *now.link_to_world,
         now.tool_tip_to_world,
         now.head_to_world,
         now.stand_to_world,
-        _plan_to_world(now),
+        plan_to_world,
     )
     return StateNews(
         tick=now.tick,
@@ -113,18 +120,6 @@ def state_news(
 def screen_text(screen: Screen) -> str:
     """Return the message of what the trainee reads."""
     return with_units(message_text(ScreenNews(screen)))
-
-
-def _plan_to_world(now: SimulationState) -> np.ndarray:
-    """Return where the registration in use puts the MRI, (4, 4) float, m; else World's origin."""
-    procedure = now.training.procedure
-    used = None if procedure is None else procedure.registration
-    plan = None if used is None else RegisteredPlan.of(used.matrix)
-    pose = np.eye(4)
-    if plan is not None:
-        pose[:3, :3] = np.transpose(plan.rows)
-        pose[:3, 3] = plan.in_world((0.0, 0.0, 0.0))
-    return pose
 
 
 def _procedure(now: SimulationState, pictures: Pictures) -> ProcedureNews | None:
@@ -232,36 +227,3 @@ def _in_head(places: Sequence[Sequence[float]], head_to_world: np.ndarray) -> tu
         return ()
     away = np.array(places) - head_to_world[:3, 3]
     return tuple(map(vector, np.round(MM_PER_M * away @ head_to_world[:3, :3], 2).tolist()))
-
-
-class Mirror:
-    """Keeps what the newest headset has sent; one that reconnects is another view.
-
-    Attributes:
-        pose: what it sent last; None while nobody wears one.
-    """
-
-    def __init__(self) -> None:
-        self._headsets: set[int] = set()
-        self.pose: HeadsetPose | None = None
-
-    @property
-    def eyes(self) -> Vector | None:
-        """Where the wearer's eyes are, World, m; None without one."""
-        return vector(self.pose.eyes[:3]) if self.pose and self.pose.eyes else None
-
-    def joined(self, view: int) -> None:
-        """Follow a headset from now on."""
-        self._headsets.add(view)
-        self.pose = None
-
-    def left(self, view: int) -> None:
-        """Forget a view; the previous one, if any, is followed again."""
-        if view in self._headsets and view == max(self._headsets):
-            self.pose = None
-        self._headsets.discard(view)
-
-    def take(self, view: int, pose: HeadsetPose) -> None:
-        """Process what a headset sends; only the newest is followed."""
-        if view == max(self._headsets, default=None):
-            self.pose = pose if pose.eyes is not None else None

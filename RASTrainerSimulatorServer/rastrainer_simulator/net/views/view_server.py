@@ -1,4 +1,4 @@
-"""The HTTP server of views: page, scene, sounds, pictures and streams; its start."""
+"""The HTTP server of views: page, scene, sounds, pictures and streams."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import os
 import socket
 import ssl
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from pathlib import Path
 
 from aiohttp import WSCloseCode, WSMsgType, web
@@ -29,10 +29,9 @@ from rastrainer_simulator.net.views.access_control import (
     Sessions,
 )
 from rastrainer_simulator.net.views.boards import InstructorOrders
+from rastrainer_simulator.net.views.guarded_server import GuardedServer, page_answer
 from rastrainer_simulator.net.views.joined_views import JoinedViews
-from rastrainer_simulator.net.views.limited_server import GuardedServer, page_answer
-from rastrainer_simulator.net.views.view_socket import ViewSocket
-from rastrainer_simulator.ops.instructor_pin import PinGuesses
+from rastrainer_simulator.ops.instructor_pin import InstructorPin
 from rastrainer_simulator.ops.processes import VIEW_KEY_VARIABLE
 from rastrainer_simulator.presentation.messages import (
     SUBPROTOCOL,
@@ -46,8 +45,10 @@ from rastrainer_simulator.scene.scene_files import SceneFiles, cache_folder, gzi
 
 FOREVER = "private, max-age=31536000, immutable"
 FULL_SIZE = "X-File-Size"
-MAX_SESSIONS = 64
-"""Keys of each role that are remembered; then the oldest is forgotten."""
+SPECTATORS = 16
+"""Streams at a time of those who were paired to watch only, as spectators or as boards."""
+FIRST_MESSAGE_S = 5.0
+"""Time that a view has for its hello."""
 MAX_MESSAGE_BYTES = 16 * 1024
 SEND_BUFFER_BYTES = 32 * 1024
 """Passed to the operating system ahead of a view that reads slowly."""
@@ -70,19 +71,19 @@ class ViewServer:
         self,
         source: StateSource,
         presenter: Presenter,
-        on_new_code: Callable[[str], None],
+        announce: Callable[[str], None],
         robot_meshes: Path | None = None,
         limits: ViewLimits | None = None,
         scenario_picture: Callable[[str], Path | None] = lambda _name: None,
         config: Path | None = None,
-        pin: PinGuesses | None = None,
+        pin: InstructorPin | None = None,
     ) -> None:
         """Make a server, in the event loop's thread; nothing listens yet.
 
         Args:
             source: whose states are sent.
             presenter: what the views' input goes to, and where their screens come from.
-            on_new_code: is given a pairing code that replaces `code`, to be shown.
+            announce: is given what people must know, such as pairing codes.
             robot_meshes: those that the setups are loaded with.
             limits: what views may cost.
             scenario_picture: returns the picture of a scenario by its name.
@@ -92,29 +93,71 @@ class ViewServer:
         self._scenario_picture = scenario_picture
         self._source = source
         self._presenter = presenter
+        self._announce = announce
         self._limits = limits or ViewLimits()
         self.code = PairingCode(asyncio.get_running_loop().time, self._renewed)
         self.addresses: list[str] = []
-        self._on_new_code = on_new_code
-        self.sessions = Sessions(
-            dict.fromkeys(ViewRole, MAX_SESSIONS),
-            None if config is None else config / BOARDS_FILE,
-        )
-        self._instructor = InstructorOrders(pin, presenter)
+        self.sessions = Sessions(None if config is None else config / BOARDS_FILE)
         self.port = 0
         self._scenes = SceneFiles(cache_folder(), robot_meshes)
         self._views = JoinedViews(source, presenter, self._scenes, self._limits)
         self._streams: Counter[ViewRole] = Counter()
         self._page = page_folder()
-        self._http = GuardedServer(
-            self.sessions, self.code, self._limits, self._routes(), self._page
-        )
+        routes = [
+            web.get("/", self._send_page),
+            web.get("/scene/{sha256:[0-9a-f]{64}}.glb", self._send_scene),
+            web.get("/sounds/{name:[a-z-]{1,32}}.wav", self._send_sound),
+            web.get("/scenarios/{name:[a-z0-9-]{1,40}}.png", self._send_picture),
+            web.get("/role", _send_role),
+            web.post("/instructor", InstructorOrders(pin, presenter).take),
+            web.get("/stream", self._stream),
+        ]
+        self._http = GuardedServer(self.sessions, self.code, routes, self._page)
         self._unsubscribe: Callable[[], None] = lambda: None
+
+    async def start(self, port: int | None, certificates: Path | None = None) -> None:
+        """Listen on this computer, and with a folder for certificates to the local network.
+
+        To the network by TLS: on the next port or, where that is taken, any free one. `port` 0 is
+        any free one, None the usual one or, where that is taken, any free one. A key in the
+        environment variable `RASTRAINER_VIEW_KEY` is accepted: who starts the simulator may give
+        the same one to a window.
+        """
+        agreed = os.environ.get(VIEW_KEY_VARIABLE)
+        if agreed is not None:
+            if not SHORTEST_KEY <= len(agreed) <= LONGEST_KEY:
+                raise InputError(
+                    f"{VIEW_KEY_VARIABLE} must have {SHORTEST_KEY} to {LONGEST_KEY} letters."
+                )
+            self.sessions.admit(agreed)
+        usual = DEFAULT_VIEW_PORT if port is None else port
+        local = await _or_any_port(lambda one: self.listen(DEFAULT_HOST, one), usual, port is None)
+        where = f"http://{DEFAULT_HOST}:{local}"
+        self._announce(f"serves views on {where}, pairing code {self.code.code}")
+        if certificates is None:
+            return
+        from rastrainer_simulator.net.views.certificate import own_addresses, own_certificate
+
+        certificate = await asyncio.to_thread(own_certificate, certificates)
+        found = await _or_any_port(
+            lambda one: self.listen_in_network(one, certificate.tls), local + 1, True
+        )
+        addresses = [address for address in own_addresses() if ":" not in address]
+        pages = [f"https://{name}:{found}" for name in addresses or [socket.gethostname()]]
+        self.add_addresses(*pages)
+        self._announce(
+            f"serves the local network on {' or '.join(pages)}; the browser warns of a certificate "
+            f"made here: compare its SHA-256 fingerprint, {certificate.fingerprint}"
+        )
+        self._announce(
+            f"serves a headset on a USB cable: adb reverse tcp:{local} tcp:{local}, then open "
+            f"http://localhost:{local} in its browser"
+        )
 
     async def listen(self, host: str, port: int) -> int:
         """Listen, and return on which port; 0 is any free one."""
         self.port = await self._http.listen(host, port)
-        self.announce(f"http://{host}:{self.port}")
+        self.add_addresses(f"http://{host}:{self.port}")
         feed = StateFeed(self._views.is_due, self._views.tell, asyncio.get_running_loop())
         self._unsubscribe = self._source.subscribe(feed)
         return self.port
@@ -123,7 +166,7 @@ class ViewServer:
         """Listen to other computers, too, by TLS only; return on which port."""
         return await self._http.listen("0.0.0.0", port, tls)
 
-    def announce(self, *addresses: str) -> None:
+    def add_addresses(self, *addresses: str) -> None:
         """Send this computer's views where else browsers find the page."""
         self.addresses += addresses
         self._views.announce_pairing(self.code.code, self.addresses)
@@ -136,19 +179,8 @@ class ViewServer:
         await self._http.close()
 
     def _renewed(self, code: str) -> None:
-        self._on_new_code(code)
+        self._announce(f"has a new pairing code for views: {code}")
         self._views.announce_pairing(code, self.addresses)
-
-    def _routes(self) -> list[web.RouteDef]:
-        return [
-            web.get("/", self._send_page),
-            web.get("/scene/{sha256:[0-9a-f]{64}}.glb", self._send_scene),
-            web.get("/sounds/{name:[a-z-]{1,32}}.wav", self._send_sound),
-            web.get("/scenarios/{name:[a-z0-9-]{1,40}}.png", self._send_picture),
-            web.get("/role", _send_role),
-            web.post("/instructor", self._instructor.take),
-            web.get("/stream", self._stream),
-        ]
 
     async def _send_page(self, _request: web.Request) -> web.StreamResponse:
         return page_answer(self._page, "index.html")
@@ -195,57 +227,52 @@ class ViewServer:
         if stream.can_prepare(request).protocol != SUBPROTOCOL:
             raise web.HTTPBadRequest(text=f"Ask for a WebSocket with {SUBPROTOCOL}.")
         role = request[ROLE]
-        if self._streams[role] >= (
-            self._limits.spectators if role.is_watch_only else self._limits.views
-        ):
+        if self._streams[role] >= (SPECTATORS if role.is_watch_only else self._limits.views):
             raise web.HTTPServiceUnavailable(text=FULL)
         self._streams[role] += 1
         try:
             await stream.prepare(request)
-            self._limit_buffering(request)
-            await self._serve(stream, role, is_loopback(request.remote or ""))
+            _limit_buffering(request)
+            try:
+                hello = await _first_message(stream, role)
+            except InputError as error:
+                reason = str(error).encode()[:120]
+                await stream.close(code=WSCloseCode.POLICY_VIOLATION, message=reason)
+            else:
+                is_local = is_loopback(request.remote or "")
+                await self._views.serve(stream, hello, is_local)
         finally:
             self._streams[role] -= 1
         return stream
 
-    async def _serve(self, stream: web.WebSocketResponse, role: ViewRole, is_local: bool) -> None:
-        try:
-            hello = await self._first_message(stream, role)
-        except InputError as error:
-            await stream.close(code=WSCloseCode.POLICY_VIOLATION, message=str(error).encode()[:120])
-            return
-        number, mirror = self._views.next_number(), self._views.mirror
-        view = ViewSocket(number, stream, hello, self._presenter, mirror, self._limits, is_local)
-        await self._views.serve(view)
 
-    async def _first_message(self, stream: web.WebSocketResponse, role: ViewRole) -> Hello:
-        try:
-            first = await stream.receive(self._limits.first_message_s)
-        except asyncio.TimeoutError:
-            raise InputError(HELLO_FIRST) from None
-        if first.type is not WSMsgType.TEXT:
-            raise InputError(HELLO_FIRST)
-        hello = read_view_input(first.data)
-        if not isinstance(hello, Hello):
-            raise InputError(HELLO_FIRST)
-        if role.is_watch_only and hello.kind not in WATCHING_KINDS:
-            raise InputError(ONLY_WATCHES)
-        return hello
+async def _first_message(stream: web.WebSocketResponse, role: ViewRole) -> Hello:
+    try:
+        first = await stream.receive(FIRST_MESSAGE_S)
+    except asyncio.TimeoutError:
+        raise InputError(HELLO_FIRST) from None
+    hello = read_view_input(first.data) if first.type is WSMsgType.TEXT else None
+    if not isinstance(hello, Hello):
+        raise InputError(HELLO_FIRST)
+    if role.is_watch_only and hello.kind not in WATCHING_KINDS:
+        raise InputError(ONLY_WATCHES)
+    return hello
 
-    def _limit_buffering(self, request: web.Request) -> None:
-        transport = request.transport
-        if transport is None:
-            return
-        under_tls = getattr(getattr(transport, "_ssl_protocol", None), "_transport", None)
-        if under_tls is None:
-            transport.set_write_buffer_limits(high=0)
-        else:
-            # With 0, asyncio's TLS holds back every other message until the view sends something.
-            transport.set_write_buffer_limits(high=1)
-            under_tls.set_write_buffer_limits(high=0)
-        with contextlib.suppress(OSError):
-            peer = transport.get_extra_info("socket")
-            peer.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER_BYTES)
+
+def _limit_buffering(request: web.Request) -> None:
+    transport = request.transport
+    if transport is None:
+        return
+    under_tls = getattr(getattr(transport, "_ssl_protocol", None), "_transport", None)
+    if under_tls is None:
+        transport.set_write_buffer_limits(high=0)
+    else:
+        # With 0, asyncio's TLS holds back every other message until the view sends something.
+        transport.set_write_buffer_limits(high=1)
+        under_tls.set_write_buffer_limits(high=0)
+    with contextlib.suppress(OSError):
+        peer = transport.get_extra_info("socket")
+        peer.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER_BYTES)
 
 
 async def _send_role(request: web.Request) -> web.Response:
@@ -253,80 +280,11 @@ async def _send_role(request: web.Request) -> web.Response:
     return web.json_response({"role": request[ROLE].value}, headers={"Cache-Control": "no-store"})
 
 
-async def start_view_server(
-    source: StateSource,
-    presenter: Presenter,
-    announce: Callable[[str], None],
-    port: int | None,
-    robot_meshes: Path | None,
-    certificates: Path | None = None,
-    scenario_picture: Callable[[str], Path | None] = lambda _name: None,
-    limits: ViewLimits | None = None,
-    config: Path | None = None,
-    pin: PinGuesses | None = None,
-) -> ViewServer:
-    """Return a server that listens on this computer; `announce` is given what people must know.
-
-    With a folder for certificates it listens to the local network, too, by TLS: on the next port
-    or, where that is taken, any free one.
-
-    `port` 0 is any free one, None the usual one or, where that is taken, any free one. A key in
-    the environment variable `RASTRAINER_VIEW_KEY` is accepted: who starts the simulator may give
-    the same one to a window. The other arguments are those of a `ViewServer`.
-    """
-    server = ViewServer(
-        source,
-        presenter,
-        lambda code: announce(f"has a new pairing code for views: {code}"),
-        robot_meshes,
-        limits,
-        scenario_picture,
-        config,
-        pin,
-    )
-    agreed = os.environ.get(VIEW_KEY_VARIABLE)
-    if agreed is not None:
-        if not SHORTEST_KEY <= len(agreed) <= LONGEST_KEY:
-            raise InputError(
-                f"{VIEW_KEY_VARIABLE} must have {SHORTEST_KEY} to {LONGEST_KEY} letters."
-            )
-        server.sessions.admit(agreed)
-    found = await _listen(server, port)
-    where = f"http://{DEFAULT_HOST}:{found}"
-    announce(f"serves views on {where}, pairing code {server.code.code}")
-    if certificates is not None:
-        await _listen_in_network(server, found, certificates, announce)
-    return server
-
-
-async def _listen_in_network(
-    server: ViewServer, local: int, certificates: Path, announce: Callable[[str], None]
-) -> None:
-    from rastrainer_simulator.net.views.certificate import own_addresses, own_certificate
-
-    certificate = await asyncio.to_thread(own_certificate, certificates)
+async def _or_any_port(listen: Callable[[int], Awaitable[int]], port: int, or_any: bool) -> int:
+    """Listen on a port or, where that is taken and another will do, on any free one."""
     try:
-        found = await server.listen_in_network(local + 1, certificate.tls)
+        return await listen(port)
     except InputError:
-        found = await server.listen_in_network(0, certificate.tls)
-    addresses = [address for address in own_addresses() if ":" not in address]
-    pages = [f"https://{name}:{found}" for name in addresses or [socket.gethostname()]]
-    server.announce(*pages)
-    where = " or ".join(pages)
-    announce(
-        f"serves the local network on {where}; the browser warns of a certificate made here: "
-        f"compare its SHA-256 fingerprint, {certificate.fingerprint}"
-    )
-    announce(
-        f"serves a headset on a USB cable: adb reverse tcp:{local} tcp:{local}, then open "
-        f"http://localhost:{local} in its browser"
-    )
-
-
-async def _listen(server: ViewServer, port: int | None) -> int:
-    if port is not None:
-        return await server.listen(DEFAULT_HOST, port)
-    try:
-        return await server.listen(DEFAULT_HOST, DEFAULT_VIEW_PORT)
-    except InputError:
-        return await server.listen(DEFAULT_HOST, 0)
+        if not or_any:
+            raise
+        return await listen(0)

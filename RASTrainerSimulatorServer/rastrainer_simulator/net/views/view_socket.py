@@ -13,14 +13,13 @@ from aiohttp import WSCloseCode, WSMsgType, web
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.loop.timing import RateLimit
-from rastrainer_simulator.net.limits import ViewLimits
-from rastrainer_simulator.net.views.outgoing import Mirror
 from rastrainer_simulator.presentation.messages import (
     WATCHING_KINDS,
     Alive,
     ControlNews,
     Frames,
     HeadsetInput,
+    HeadsetPose,
     Hello,
     KeyInput,
     PadInput,
@@ -42,6 +41,8 @@ TOO_MANY_MESSAGES = "The view has sent more messages than a trainee's inputs can
 TOO_MANY_EVENTS = "The view has not read its events; it may come back."
 NOT_TEXT = "Messages must be text."
 ONLY_WATCHES = f"A spectator drives nothing: it may send {Alive.type} and nothing else."
+MESSAGES_PER_S = 500.0
+"""That a view may send on average, and at most that many at once."""
 MAX_KEYS = 32
 SHIFT_KEYS = frozenset(("ShiftLeft", "ShiftRight"))
 """Held with others: the slow motion, by default."""
@@ -63,6 +64,7 @@ class ViewSocket:
         is_local: whether it is on this computer, as far as the network can tell.
         outbox: what waits to be sent to it.
         held: what it holds down.
+        worn: what a headset has sent last; None while nobody wears it.
     """
 
     def __init__(
@@ -71,19 +73,17 @@ class ViewSocket:
         socket: web.WebSocketResponse,
         hello: Hello,
         presenter: Presenter,
-        mirror: Mirror,
-        limits: ViewLimits,
-        is_local: bool = False,
+        is_local: bool,
     ) -> None:
         self.number = number
         self.hello = hello
         self.is_local = is_local
         self.outbox = Outbox()
         self.held = HeldInput(number, presenter)
+        self.worn: HeadsetPose | None = None
         self._socket = socket
         self._presenter = presenter
-        self._mirror = mirror
-        self._rate = RateLimit(limits.messages_per_s, at_once=limits.messages_per_s)
+        self._rate = RateLimit(MESSAGES_PER_S, at_once=MESSAGES_PER_S)
         self._clock = asyncio.get_running_loop().time
         self._last_message = self._clock()
         self._has_reported_frames = False
@@ -93,11 +93,6 @@ class ViewSocket:
         """Whether it only watches: the flow, which counts who sees a trial, never hears of it."""
         return self.hello.kind in WATCHING_KINDS
 
-    @property
-    def is_board(self) -> bool:
-        """Whether it is sent news of the seat only, and of no pose."""
-        return self.hello.kind == "board"
-
     async def serve(self) -> None:
         """Send and receive until either side ends it."""
         sending = asyncio.create_task(self._send())
@@ -105,14 +100,14 @@ class ViewSocket:
             await self._receive()
         except InputError as error:
             _log.warning("View %d is closed: %s", self.number, error)
-            await self._close(WSCloseCode.POLICY_VIOLATION, str(error))
+            await self.close(WSCloseCode.POLICY_VIOLATION, str(error))
         finally:
             sending.cancel()
             with contextlib.suppress(asyncio.CancelledError):
                 await sending
 
     def release_if_silent(self, silent_s: float) -> None:
-        if self.held.is_anything_held and self._clock() - self._last_message > silent_s:
+        if self._clock() - self._last_message > silent_s:
             self.held.release(is_silent=True)
 
     def has_fallen_silent(self, lost_s: float) -> bool:
@@ -122,15 +117,11 @@ class ViewSocket:
             self._has_reported_frames = False
         return is_silent
 
-    async def close(self, message: str) -> None:
-        """End it because the simulator ends."""
-        await self._close(WSCloseCode.GOING_AWAY, message)
-
     async def _send(self) -> None:
         with contextlib.suppress(ConnectionError):
             while not self.outbox.is_overfull:
                 await self._socket.send_str(await self.outbox.take())
-            await self._close(WSCloseCode.TRY_AGAIN_LATER, TOO_MANY_EVENTS)
+            await self.close(WSCloseCode.TRY_AGAIN_LATER, TOO_MANY_EVENTS)
 
     async def _receive(self) -> None:
         async for message in self._socket:
@@ -155,7 +146,7 @@ class ViewSocket:
         if isinstance(message, (KeyInput, PadInput, SticksInput)):
             getattr(self.held, message.type)(*values)
         elif isinstance(message, HeadsetInput) and self.hello.kind == "headset":
-            self._mirror.take(self.number, message)
+            self.worn = message if message.eyes is not None else None
         elif isinstance(message, (HeadsetInput, Hello)):
             raise InputError(f"A {self.hello.kind} sends no {message.type} after its hello.")
         elif isinstance(message, Frames):
@@ -165,7 +156,8 @@ class ViewSocket:
             # Such as `on_press` and `on_item`.
             getattr(self._presenter, f"on_{message.type}")(self.number, *values)
 
-    async def _close(self, code: int, reason: str) -> None:
+    async def close(self, code: int, reason: str) -> None:
+        """End it, with a code of WebSockets and a reason."""
         # The protocol has room for 123 bytes.
         closing = self._socket.close(code=code, message=reason.encode()[:120])
         with contextlib.suppress(ConnectionError, asyncio.TimeoutError):
@@ -183,11 +175,6 @@ class HeldInput:
         self._held_in_silence: set[str] = set()
         self._pad: tuple[int, int] | None = None
         self._has_sticks = False
-
-    @property
-    def is_anything_held(self) -> bool:
-        """Whether `release` would have something to do."""
-        return bool(self._keys) or self._pad is not None or self._has_sticks
 
     def key(self, code: str, is_down: bool, text: str) -> None:
         """Process a key; no hand holds more than a few, so further ones are ignored.
@@ -223,7 +210,9 @@ class HeldInput:
         self._presenter.on_sticks(self._view, translation, rotation, is_fine, yaw_deg)
 
     def release(self, is_silent: bool = False) -> None:
-        """Release everything, since the view has left or is silent."""
+        """Release everything that is held, since the view has left or is silent."""
+        if not (self._keys or self._pad or self._has_sticks):
+            return
         shifts = set(SHIFT_KEYS.intersection(self._keys)) if is_silent else set()
         for code in tuple(self._keys):
             self.key(code, False, "")

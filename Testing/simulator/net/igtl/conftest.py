@@ -3,23 +3,31 @@
 import pytest
 
 from rastrainer.igtl.client import Client
+from rastrainer_simulator.net.igtl import outgoing, server, simulator_link
 from rastrainer_simulator.net.limits import LinkLimits
 from Testing.simulator.net.igtl.servers import LinkServer, PlainServer
 
+LIMITED = (outgoing, server, simulator_link)
+
 
 @pytest.fixture
-def start(loop_thread):
-    """Starts servers of a kind with given limits, and ends them."""
+def start(loop_thread, monkeypatch):
+    """Starts servers of a kind with given limits, of a site or of ours, and ends them."""
     started = []
 
     def start_one(kind, first_message_s=0.02, **limits):
-        server = kind(loop_thread, LinkLimits(first_message_s=first_message_s, **limits))
+        ours = {"first_message_s": first_message_s, **limits}
+        of_site = {name: ours.pop(name) for name in vars(LinkLimits()).keys() & ours.keys()}
+        for name, value in ours.items():
+            module = next(each for each in LIMITED if hasattr(each, name.upper()))
+            monkeypatch.setattr(module, name.upper(), value)
+        server = kind(loop_thread, LinkLimits(**of_site))
         started.append(server)
         return server
 
     yield start_one
-    for server in started:
-        loop_thread.run(server.server.close())
+    for one in started:
+        loop_thread.run(one.server.close())
 
 
 @pytest.fixture

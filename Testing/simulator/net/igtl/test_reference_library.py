@@ -12,6 +12,7 @@ import pytest
 
 from rastrainer.igtl.content import Command, Point, Points, Status, String, Transform
 from rastrainer.protocol import PROTOCOL_VERSION
+from rastrainer_simulator.net.igtl import server as link_server
 from rastrainer_simulator.net.limits import LinkLimits
 from rastrainer_simulator.state import TrainingState
 from rastrainer_simulator.trial_state import TouchState
@@ -43,8 +44,10 @@ def exchange(reference_client, loop_thread, request):
     A hostile client sends what cannot be used before all else: that costs it and others nothing.
     """
 
+    patch = pytest.MonkeyPatch()
     # However late its first message is: it would not understand one of version 2.
-    server = LinkServer(loop_thread, LinkLimits(first_message_s=600.0))
+    patch.setattr(link_server, "FIRST_MESSAGE_S", 600.0)
+    server = LinkServer(loop_thread, LinkLimits())
     server.simulated.latest = at_rest(
         tool_tip_to_world=TIP, training=TrainingState(trial_id="id-1", touches=(TOUCH,))
     )
@@ -74,6 +77,7 @@ def exchange(reference_client, loop_thread, request):
     output = process.stdout.read()
     beat.cancel()
     loop_thread.run(server.server.close())
+    patch.undo()
     assert process.returncode == 0, output
     lines = [line.split(" ", 2) for line in output.splitlines()]
     return {message.device: message for message in taken}, {line[1]: line for line in lines}

@@ -15,7 +15,7 @@ from rastrainer.errors import InputError
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Command, Point, Points, Status, String, Transform
 from rastrainer.igtl.message import MAX_BODY_BYTES, Message, crc64, pack
-from rastrainer_simulator.net.igtl.connection import Outgoing
+from rastrainer_simulator.net.igtl.outgoing import Outgoing
 from Testing.free_port import free_port
 from Testing.simulator.net.igtl.servers import HOST, LinkServer, LoopThread, PlainServer
 

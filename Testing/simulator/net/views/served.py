@@ -12,7 +12,7 @@ import aiohttp
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.views.view_server import ViewServer
-from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses
+from rastrainer_simulator.ops.instructor_pin import InstructorPin
 from rastrainer_simulator.presentation.messages import Seat, ViewRole
 from rastrainer_simulator.presentation.presenter import Control, TraceGuidance
 from rastrainer_simulator.presentation.screen import Screen
@@ -78,6 +78,7 @@ class ServedViews:
         url: of the server.
         new_codes: the pairing codes that were to be shown after the first.
         pictures: files of the scenarios' pictures by the scenarios' names.
+        pin: of the seat; None without a folder of settings.
     """
 
     def __init__(
@@ -92,19 +93,23 @@ class ServedViews:
         self.presenter = RecordingPresenter()
         self.new_codes = []
         self.pictures = {}
+        self.pin = None if config is None else InstructorPin(config)
         self._is_closed = False
         self.server = thread.call(
             ViewServer,
             control_loop,
             self.presenter,
-            self.new_codes.append,
+            self._note_code,
             limits=ViewLimits(**limits),
             scenario_picture=self.pictures.get,
             config=config,
-            pin=None if config is None else PinGuesses(InstructorPin(config)),
+            pin=self.pin,
         )
         self.port = thread.run(self.server.listen(HOST, port or free_port()))
         self.url = f"http://{HOST}:{self.port}"
+
+    def _note_code(self, said: str) -> None:
+        self.new_codes.append(said.removeprefix("has a new pairing code for views: "))
 
     @property
     def code(self) -> str:

@@ -7,6 +7,7 @@ import stat
 
 import pytest
 
+from rastrainer_simulator.net.views import access_control
 from rastrainer_simulator.net.views.access_control import BOARDS_FILE, Sessions
 from rastrainer_simulator.ops.instructor_pin import PIN_FILE, GuessLimit, InstructorPin
 from rastrainer_simulator.presentation.messages import Seat, ViewRole
@@ -49,9 +50,9 @@ def test_a_board_is_sent_only_the_seat_and_only_when_it_has_changed(served, conn
 
 def test_a_boards_key_outlives_the_simulator_and_others_do_not(tmp_path):
     path = tmp_path / BOARDS_FILE
-    first = Sessions(dict.fromkeys(ViewRole, 2), path)
+    first = Sessions(path)
     keys = {role: first.open(role) for role in ViewRole}
-    again = Sessions(dict.fromkeys(ViewRole, 2), path)
+    again = Sessions(path)
     assert {role: again.role(key) for role, key in keys.items()} == {
         ViewRole.VIEW: None,
         ViewRole.SPECTATOR: None,
@@ -61,10 +62,11 @@ def test_a_boards_key_outlives_the_simulator_and_others_do_not(tmp_path):
     assert keys[ViewRole.BOARD] not in path.read_text(encoding="utf-8")
 
 
-def test_the_oldest_board_is_forgotten_when_there_are_too_many(tmp_path):
-    sessions = Sessions(dict.fromkeys(ViewRole, 2), tmp_path / BOARDS_FILE)
+def test_the_oldest_board_is_forgotten_when_there_are_too_many(tmp_path, monkeypatch):
+    monkeypatch.setattr(access_control, "MAX_SESSIONS", 2)
+    sessions = Sessions(tmp_path / BOARDS_FILE)
     keys = [sessions.open(ViewRole.BOARD) for _ in range(3)]
-    again = Sessions(dict.fromkeys(ViewRole, 2), tmp_path / BOARDS_FILE)
+    again = Sessions(tmp_path / BOARDS_FILE)
     assert [again.role(key) for key in keys] == [None, ViewRole.BOARD, ViewRole.BOARD]
 
 
@@ -73,7 +75,7 @@ def test_a_damaged_boards_file_is_named(tmp_path, content):
     path = tmp_path / BOARDS_FILE
     path.write_text(content, encoding="utf-8")
     with pytest.raises(ValueError, match=BOARDS_FILE):
-        Sessions(dict.fromkeys(ViewRole, 2), path)
+        Sessions(path)
 
 
 @pytest.mark.parametrize("role", [ViewRole.VIEW, ViewRole.SPECTATOR])
@@ -91,7 +93,7 @@ def test_without_a_pin_nobody_can_give_orders(serve, tmp_path):
 
 
 def test_five_wrong_pins_start_a_pause_in_which_the_right_one_is_refused_too(guarded):
-    guarded.server._instructor._pin._limit._clock = lambda: 100.0
+    guarded.pin._limit._clock = lambda: 100.0
     key = guarded.new_key(ViewRole.BOARD)
     statuses = [order(guarded, key, pin=f"{n:06}")[0] for n in range(5)]
     assert statuses == [403] * 4 + [429]
@@ -137,7 +139,7 @@ def test_a_pin_is_stored_as_a_slow_hash_readable_only_by_its_owner(tmp_path):
     path = tmp_path / "config" / PIN_FILE
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
     assert PIN not in path.read_text(encoding="utf-8")
-    assert [pin.accepts(guess) for guess in (PIN, "271829", "")] == [True, False, False]
+    assert [pin.guess(guess).is_right for guess in (PIN, "271829", "")] == [True, False, False]
     pin.set("")
     assert not pin.is_set
 

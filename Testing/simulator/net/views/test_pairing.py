@@ -3,6 +3,7 @@ import logging
 
 import pytest
 
+from rastrainer_simulator.net.views import access_control
 from rastrainer_simulator.net.views import view_server as view_server_module
 from rastrainer_simulator.net.views.access_control import COOKIE, PairingCode, Sessions
 from rastrainer_simulator.presentation.messages import ViewRole
@@ -58,7 +59,7 @@ def test_sounds_are_wav_files(served):
 
 
 def test_five_wrong_codes_create_a_new_one_and_start_a_pause(served):
-    served.server.code._limit._clock = lambda: 100.0
+    served.server.code._clock = lambda: 100.0
     first = served.code
     for _ in range(4):
         assert pair(served, wrong(first))[0] == 403
@@ -226,16 +227,18 @@ def test_no_path_leads_out_of_the_pages_folder(served, path):
     assert b"secret" not in answer.partition(b"\r\n\r\n")[2]
 
 
-def test_the_oldest_key_is_forgotten_when_there_are_too_many():
-    sessions = Sessions(dict.fromkeys(ViewRole, 2))
+def test_the_oldest_key_is_forgotten_when_there_are_too_many(monkeypatch):
+    monkeypatch.setattr(access_control, "MAX_SESSIONS", 2)
+    sessions = Sessions()
     keys = [sessions.open() for _ in range(3)]
     assert [sessions.role(key) for key in keys] == [None, ViewRole.VIEW, ViewRole.VIEW]
     assert len(set(keys)) == 3
     assert sessions.role("") is None
 
 
-def test_spectators_never_displace_the_key_of_a_view():
-    sessions = Sessions({**dict.fromkeys(ViewRole, 2), ViewRole.VIEW: 1})
+def test_spectators_never_displace_the_key_of_a_view(monkeypatch):
+    monkeypatch.setattr(access_control, "MAX_SESSIONS", 2)
+    sessions = Sessions()
     key = sessions.open()
     watching = [sessions.open(ViewRole.SPECTATOR) for _ in range(3)]
     assert sessions.role(key) is ViewRole.VIEW

@@ -3,13 +3,11 @@
 import aiohttp
 import pytest
 
-from rastrainer.json_records import record_to_json
-from rastrainer_simulator.net.views.outgoing import Mirror
+from rastrainer_simulator.net.views import guarded_server, view_server
 from rastrainer_simulator.presentation.messages import (
     INPUTS,
     Alive,
     Feedback,
-    HeadsetPose,
     ViewRole,
 )
 from rastrainer_simulator.presentation.presenter import Control
@@ -111,7 +109,7 @@ def test_a_spectator_is_sent_everything_that_a_view_is_except_the_code(served, c
         messages = spectator.all_until(lambda message: message["type"] == "state")
         assert "pairing" not in {message["type"] for message in messages}
     # A new code is sent to the views, but to no spectator.
-    served.thread.call(served.server.announce, "https://192.0.2.1:18946")
+    served.thread.call(served.server.add_addresses, "https://192.0.2.1:18946")
     assert "https://192.0.2.1:18946" in view.next("pairing")["addresses"]
     served.tell(Feedback(2, "touch"))
     until_last = spectator.all_until(lambda m: m["type"] == "event" and m["number"] == 2)
@@ -164,24 +162,26 @@ def test_a_headset_that_leaves_is_no_longer_worn(served, connect):
     until(None, spectator)
 
 
-def test_the_newest_headset_is_followed_and_after_it_the_previous_one():
-    mirror, worn = Mirror(), HeadsetPose(tuple(EYES), None, tuple(HAND))
-    mirror.take(1, worn)
-    assert mirror.pose is None, "it is no headset"
-    for headset in (1, 2):
-        mirror.joined(headset)
-        mirror.take(headset, worn)
-        assert record_to_json(mirror.pose) == TOLD
-    mirror.take(1, HeadsetPose(None, None, None))
-    assert record_to_json(mirror.pose) == TOLD, "it was left for the other one"
-    mirror.left(2)
-    assert mirror.pose is None
-    mirror.take(1, worn)
-    assert record_to_json(mirror.pose) == TOLD
+def test_the_newest_headset_is_followed_and_after_it_the_previous_one(served, connect):
+    spectator, page = watch(served, connect), connect(served)
+    page.join()
+    first, second = connect(served), connect(served)
+    first.join(kind="headset")
+    first.send(WORN)
+    until(TOLD, spectator)
+    second.join(kind="headset")
+    until(None, spectator)
+    second.send({**WORN, "right": None})
+    until({**TOLD, "right": None}, spectator)
+    first.send(WORN)
+    assert spectator.next("state")["headset"] == {**TOLD, "right": None}, "it was left"
+    second.leave()
+    until(TOLD, spectator)
 
 
-def test_spectators_do_not_use_up_the_slots_of_views(serve, connect):
-    served = serve(views=1, spectators=1)
+def test_spectators_do_not_use_up_the_slots_of_views(serve, connect, monkeypatch):
+    monkeypatch.setattr(view_server, "SPECTATORS", 1)
+    served = serve(views=1)
     watch(served, connect)
     with pytest.raises(aiohttp.WSServerHandshakeError, match="503"):
         connect(served, ViewRole.SPECTATOR)
@@ -189,8 +189,10 @@ def test_spectators_do_not_use_up_the_slots_of_views(serve, connect):
     assert view.join()["type"] == "welcome"
 
 
-def test_a_spectators_connection_is_dropped_for_a_view_when_there_are_too_many(serve, connect):
-    served = serve(connections=2)
+def test_a_spectators_connection_is_dropped_for_a_view_when_there_are_too_many(
+    served, connect, monkeypatch
+):
+    monkeypatch.setattr(guarded_server, "MAX_CONNECTIONS", 2)
     view, spectator = connect(served), watch(served, connect)
     view.join()
     again = connect(served)

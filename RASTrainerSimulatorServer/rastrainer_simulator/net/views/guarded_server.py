@@ -1,0 +1,166 @@
+"""The HTTP server of views and of a board: only paired clients pass, but to page and pairing."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import socket
+import ssl
+from collections.abc import Sequence
+from pathlib import Path
+
+from aiohttp import hdrs, web
+from aiohttp.http_exceptions import HttpProcessingError
+from aiohttp.typedefs import Handler
+
+from rastrainer.errors import InputError
+from rastrainer_simulator.assets import NOT_BUILT
+from rastrainer_simulator.net.listener import listen
+from rastrainer_simulator.net.views.access_control import (
+    COOKIE,
+    PAIR_FIRST,
+    ROLE,
+    TOO_MANY,
+    WRONG,
+    PairingCode,
+    Sessions,
+    add_security_headers,
+    check_origin,
+    is_public,
+    read_body,
+    refuse_for,
+    session_key,
+)
+from rastrainer_simulator.presentation.messages import PairingRequest, ViewRole
+
+MAX_CONNECTIONS = 128
+HANDSHAKE_S = 5.0
+SHUTDOWN_S = 1.0
+LARGEST_BODY = 1024
+WATCHING_ROLES = [role for role in ViewRole if role.is_watch_only]
+
+_http_log = logging.getLogger(f"{__name__}.http")
+# Only our own errors are logged, and not what strangers send.
+_http_log.addFilter(
+    lambda record: not (record.exc_info and isinstance(record.exc_info[1], HttpProcessingError))
+)
+
+
+class GuardedServer:
+    """Serves clients with a session's key, on any number of ports.
+
+    Where there are as many connections as may be, the oldest that has shown no key yields to a new
+    one, and where all have, the oldest that only watches: whoever takes places and does not even
+    read what was asked for keeps nobody out, and who watches keeps out nobody who takes part.
+    """
+
+    def __init__(
+        self,
+        sessions: Sessions,
+        code: PairingCode,
+        routes: Sequence[web.RouteDef],
+        page: Path | None,
+    ) -> None:
+        """Make a server; nothing listens yet.
+
+        Args:
+            sessions: whose keys let somebody through.
+            code: that a new session is given for, at `POST /pair`.
+            routes: what else is answered.
+            page: folder of the built page, whose files are public; None where there is none.
+        """
+        self._sessions = sessions
+        self._code = code
+        self._roles: dict[asyncio.BaseProtocol, ViewRole] = {}
+        self._sent_away: set[asyncio.BaseProtocol] = set()
+        app = web.Application(middlewares=[self._check], client_max_size=LARGEST_BODY)
+        app.on_response_prepare.append(add_security_headers)
+        app.add_routes([web.post("/pair", self._pair), *routes])
+        if page is not None:
+            app.add_routes([web.static("/", page)])
+        self._runner = web.AppRunner(
+            app, access_log=None, logger=_http_log, shutdown_timeout=SHUTDOWN_S
+        )
+        self._listening: list[asyncio.Server] = []
+
+    async def listen(self, host: str, port: int, tls: ssl.SSLContext | None = None) -> int:
+        """Listen, by TLS where there is a certificate; return on which port, 0 is any free one."""
+        if self._runner.server is None:
+            await self._runner.setup()
+        try:
+            servers = await listen(self._protocol, host, port, tls, HANDSHAKE_S)
+        except (OSError, OverflowError) as error:
+            raise InputError(f"Cannot listen on {host}:{port}: {error}.") from None
+        self._listening += servers
+        return servers[0].sockets[0].getsockname()[1]
+
+    def stop_listening(self) -> None:
+        """Take no further connection."""
+        for server in self._listening:
+            server.close()
+
+    async def close(self) -> None:
+        """End what is still connected."""
+        await self._runner.cleanup()
+
+    def _protocol(self) -> asyncio.BaseProtocol:
+        """Return the protocol of a new connection, for which another one may have to end."""
+        server = self._runner.server
+        assert server is not None, "it listens"
+        self._sent_away.intersection_update(server.connections)
+        there = [each for each in server.connections if each not in self._sent_away]
+        self._roles = {each: self._roles[each] for each in there if each in self._roles}
+        if len(there) >= MAX_CONNECTIONS:
+            strangers = [each for each in there if each not in self._roles]
+            watching = [each for each in there if self._roles.get(each) in WATCHING_ROLES]
+            if not strangers and not watching:
+                return _Refused()
+            oldest = next(iter((*strangers, *watching)))
+            self._sent_away.add(oldest)
+            if oldest.transport is not None:
+                # Closed, it would wait for its peer to read; so the pending write fails.
+                with contextlib.suppress(OSError):
+                    oldest.transport.get_extra_info("socket").shutdown(socket.SHUT_RDWR)
+        return server()
+
+    @web.middleware
+    async def _check(self, request: web.Request, handler: Handler) -> web.StreamResponse:
+        """Refuse what comes from elsewhere or without a session's key."""
+        check_origin(request)
+        role = self._sessions.role(session_key(request))
+        if role is not None:
+            request[ROLE] = role
+            self._roles[request.protocol] = role
+        elif not is_public(request):
+            raise web.HTTPUnauthorized(text=PAIR_FIRST)
+        return await handler(request)
+
+    async def _pair(self, request: web.Request) -> web.Response:
+        """Give a key, and a cookie with it, for the pairing code; a spectator's only watches."""
+        asked = await read_body(request, PairingRequest)
+        refuse_for(self._code.seconds_to_wait(), TOO_MANY)
+        if not self._code.accepts(asked.code):
+            # The one who caused a pause is sent the new code.
+            refuse_for(self._code.seconds_to_wait(), TOO_MANY)
+            raise web.HTTPForbidden(text=WRONG)
+        key = self._sessions.open(asked.role)
+        response = web.json_response({"key": key}, headers={hdrs.CACHE_CONTROL: "no-store"})
+        response.set_cookie(
+            COOKIE, key, path="/", httponly=True, samesite="Strict", secure=request.secure
+        )
+        return response
+
+
+class _Refused(asyncio.Protocol):
+    """Ends a connection at once."""
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        transport.close()
+
+
+def page_answer(page: Path | None, name: str) -> web.StreamResponse:
+    """Return a file of the built page, or a note that it has not been built."""
+    if page is None:
+        return web.Response(text=NOT_BUILT, content_type="text/html")
+    return web.FileResponse(page / name)
