@@ -8,7 +8,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import metadata
 from pathlib import Path
-from types import MappingProxyType
 from typing import Annotated, Any
 
 import rastrainer
@@ -34,16 +33,11 @@ def versions() -> dict[str, str]:
     }
 
 
-def _of_packages() -> Mapping[str, str]:
-    found = {}
-    for package in PACKAGES:
-        with contextlib.suppress(metadata.PackageNotFoundError):
-            found[package] = metadata.version(package)
-    return MappingProxyType(found)
-
-
 # Looked up when imported: it reads folders, and a trial starts within a tick.
-_OF_PACKAGES = _of_packages()
+_OF_PACKAGES: dict[str, str] = {}
+for _package in PACKAGES:
+    with contextlib.suppress(metadata.PackageNotFoundError):
+        _OF_PACKAGES[_package] = metadata.version(_package)
 
 
 def setup_of(
@@ -120,42 +114,6 @@ class DisplayReport:
     dropped: _Frames
 
 
-class DisplayUse:
-    """Adds up the reports of one trial.
-
-    Attributes:
-        guidance: how the trainee is guided to the next point; "" if no screen shows it.
-        ghost: which earlier trial was shown beside the arm; "" for none.
-    """
-
-    def __init__(self) -> None:
-        self.guidance = self.ghost = ""
-        self._last: DisplayReport | None = None
-        self._shown = 0
-        self._dropped = 0
-
-    def add(self, report: DisplayReport) -> None:
-        self._last = report
-        self._shown += report.shown
-        self._dropped += report.dropped
-
-    def summary(self) -> dict[str, str | float]:
-        """Return `display` of the trial's record: the last view, all frames, and the aids."""
-        aids = {"guidance": self.guidance, "ghost": self.ghost}
-        shown = {name: aid for name, aid in aids.items() if aid}
-        if self._last is None:
-            return {**shown}
-        device = {"device": self._last.device} if self._last.device else {}
-        return {
-            "kind": self._last.view,
-            **device,
-            **shown,
-            "refreshHz": self._last.refresh_hz,
-            "shownFrames": self._shown,
-            "droppedFrames": self._dropped,
-        }
-
-
 @dataclass(frozen=True)
 class ViewReport:
     """A view, compared with the scenario's camera.
@@ -194,11 +152,14 @@ class GhostReport:
 
 NotedReport = DisplayReport | ViewReport | GuidanceReport | GhostReport | TutorialOutcome
 """Entries on how a trial is seen and prepared; the simulation does not depend on them."""
-_KINDS = {
-    DisplayReport: "display",
+DRAWING_REPORTS: dict[str, type[DisplayReport | GuidanceReport | GhostReport]] = {
+    "display": DisplayReport,
+    "guidance": GuidanceReport,
+    "ghost": GhostReport,
+}
+"""By their kind of entry, those that the trial's record sums up."""
+_KINDS = {report: kind for kind, report in DRAWING_REPORTS.items()} | {
     ViewReport: "view",
-    GuidanceReport: "guidance",
-    GhostReport: "ghost",
     TutorialOutcome: "tutorial",
 }
 
@@ -226,3 +187,37 @@ class PlayingSession:
 
 
 REAL_TIME = PlayingSession()
+
+
+class DisplayUse:
+    """Adds up the reports of one trial."""
+
+    def __init__(self) -> None:
+        self._aids: dict[str, str | float] = {}
+        self._last: DisplayReport | None = None
+        self._shown = 0
+        self._dropped = 0
+
+    def add(self, report: NotedReport) -> None:
+        """Add a report; those that are no matter of drawing are ignored."""
+        if isinstance(report, DisplayReport):
+            self._last = report
+            self._shown += report.shown
+            self._dropped += report.dropped
+        elif isinstance(report, GuidanceReport | GhostReport):
+            self._aids |= record_to_json(report, with_defaults=True)
+
+    def summary(self) -> dict[str, str | float]:
+        """Return `display` of the trial's record: the last view, all frames, and the aids."""
+        aids = {name: aid for name in ("guidance", "ghost") if (aid := self._aids.get(name))}
+        if self._last is None:
+            return aids
+        device = {"device": self._last.device} if self._last.device else {}
+        return {
+            "kind": self._last.view,
+            **device,
+            **aids,
+            "refreshHz": self._last.refresh_hz,
+            "shownFrames": self._shown,
+            "droppedFrames": self._dropped,
+        }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -30,7 +30,7 @@ from rastrainer_simulator.presentation.presenter import Presenter
 from rastrainer_simulator.rating.rating_pages import RatingWork
 from rastrainer_simulator.rating.rating_presenter import RatingPresenter
 from rastrainer_simulator.record.trial_context import setup_of
-from rastrainer_simulator.replay.playback import Playback
+from rastrainer_simulator.replay.playback import Playback, play_on
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial
 from rastrainer_simulator.replay.replay_presenter import ReplayPresenter
 
@@ -50,14 +50,14 @@ async def _serve(
 ) -> None:
     stop = asyncio.Event()
     presenter = ReplayPresenter(playback, _preferred_language(), stop.set)
-    await _show_until(stop, playback, presenter, playback.run, port, has_window, announce)
+    await _show_until(stop, playback, presenter, playback.advance, port, has_window, announce)
 
 
 async def _show_until(
     stop: asyncio.Event,
     source: StateSource,
     presenter: Presenter,
-    run: Callable[[], Coroutine[Any, Any, None]],
+    advance: Callable[[float], None],
     port: int | None,
     has_window: bool,
     announce: Callable,
@@ -68,7 +68,7 @@ async def _show_until(
         stop: is set by what ends it: the presenter, the closed window, or a signal.
         source: the states that are shown.
         presenter: what is read beside them.
-        run: plays them until it is canceled.
+        advance: plays them on by some s.
         port: where views are served; None for the usual one.
         has_window: whether a window is opened.
         announce: reports where views are served.
@@ -78,7 +78,7 @@ async def _show_until(
     with stop_on_signals(stop):
         views = await start_view_server(source, presenter, announce, port, None)
         try:
-            tasks.append(asyncio.create_task(run()))
+            tasks.append(asyncio.create_task(play_on(advance)))
             if has_window:
                 window = ApplicationWindow(f"http://{DEFAULT_HOST}:{views.port}", views.code.code)
                 tasks.append(asyncio.create_task(window.run(stop.set, announce)))
@@ -183,7 +183,8 @@ async def _serve_rating(
     presenter = RatingPresenter(work, first, load, _preferred_language(), stop.set)
     shown = presenter.shown
 
-    async def run() -> None:
-        await shown.run(presenter.advance)
+    def advance(seconds: float) -> None:
+        shown.playback.advance(seconds)
+        presenter.advance(seconds)
 
-    await _show_until(stop, shown, presenter, run, port, has_window, announce)
+    await _show_until(stop, shown, presenter, advance, port, has_window, announce)
