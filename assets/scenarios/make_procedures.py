@@ -39,7 +39,7 @@ from rastrainer.procedure.plan import (
 )
 from rastrainer.scenario.scenario import FILE_NAME, load_scenario
 from rastrainer_simulator.authoring.planning_setup import WIDER, PlanningSetup
-from rastrainer_simulator.authoring.procedure_plan import GuideReach
+from rastrainer_simulator.authoring.procedure_plan import is_guide_held
 from rastrainer_simulator.authoring.task_set import smooth_places
 
 FOLDER = Path(__file__).parent / "colin27"
@@ -151,7 +151,6 @@ class Planner:
         self.head = read_head_mesh(self.scenario.head_mesh)
         self.skull = read_head_mesh(FOLDER / "skull.ply")
         self.planning = PlanningSetup(self.scenario, self.head)
-        self.reach = GuideReach(self.planning)
         self.poses = self.planning.poses(range(POSES), WIDER)
 
     def trajectories(
@@ -165,8 +164,8 @@ class Planner:
         found: list[ProcedureTrajectory] = []
         for one in wanted:
             for trajectory in self._by_cost(one, diameter_mm, safety_mm):
-                if self._is_free(trajectory, no_go, found) and self.reach.is_held(
-                    trajectory, self.poses
+                if self._is_free(trajectory, no_go, found) and is_guide_held(
+                    self.planning, trajectory, self.poses
                 ):
                     found.append(trajectory)
                     break

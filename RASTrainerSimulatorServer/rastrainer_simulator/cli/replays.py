@@ -27,12 +27,13 @@ def replay(arguments: argparse.Namespace) -> int:
 
     reading = read_journal(arguments.journal)
     report = resimulation.replay(reading, setup_of(reading.header, arguments.scenario))
+    is_identical = report.difference is None
     if arguments.json:
-        whole = {**asdict(report), "identical": report.difference is None, "journal": reading.sentence}
+        whole = {**asdict(report), "identical": is_identical, "journal": reading.sentence}
         print(json.dumps(whole, indent=2, allow_nan=False))
     else:
         print(_summary(reading.sentence, report))
-    return 0 if report.difference is None else 1
+    return 0 if is_identical else 1
 
 
 def _show(arguments: argparse.Namespace) -> int:

@@ -127,11 +127,11 @@ class RecordedTrial:
         tip = tuple(poses[self._tip][:3, 3].tolist())
         training, procedure = now.training, now.training.procedure
         is_fed = procedure is not None and procedure.tool in (Tool.DRILL, Tool.ELECTRODE)
-        elapsed = training.completed_s
+        elapsed = time_s
         if training.phase is Phase.IDLE:
             elapsed = 0.0
-        elif procedure is not None or training.phase in (Phase.RUNNING, Phase.PAUSED):
-            elapsed = time_s
+        elif procedure is None and training.phase not in (Phase.RUNNING, Phase.PAUSED):
+            elapsed = training.completed_s
         return SimulationState(
             tick=self._start_tick + round(time_s / self._tick_s),
             sim_time=self._start_s + time_s,
