@@ -53,9 +53,7 @@ class Moved:
     """Where a motion ended.
 
     Attributes:
-        q: joint angles, rad.
         link_to_world: (4, 4) float, m, by the names of the links.
-        clearance: of this posture.
         stopped_by: "links", "self" or "table" (rarely "tip" or "shaft", at the edge of the arm's
             reach) that cut the motion short, else "". Sliding does not stop a motion.
     """
@@ -97,13 +95,7 @@ class Contact:
         parts may move, but not deeper.
         """
         start = self.at(q)
-        moved = self._move(start, displacement, to_joints)
-        if moved.stopped_by:
-            self._last = replace(moved, stopped_by="")
-        return moved
-
-    def _move(self, start: Moved, displacement: Vector, to_joints: ToJoints) -> Moved:
-        tip = self._tip(start)
+        tip = tuple(start.link_to_world[self._kinematics.model.tip.name][:3, 3].tolist())
         path = self._slide(start, tip, displacement)
         for _ in range(_CORRECTIONS):
             end = self.at(to_joints(subtract(path.position, tip)))
@@ -114,7 +106,10 @@ class Contact:
             if corrected is None:
                 break
             path = corrected
-        return end if not broken else self._shortened(start, end, broken)
+        if not broken:
+            return end
+        self._last = self._shortened(start, end, broken)
+        return replace(self._last, stopped_by=broken)
 
     def _slide(self, start: Moved, tip: Vector, displacement: Vector) -> Slide:
         clearance, reach = start.clearance, length(displacement) + REST
@@ -137,11 +132,8 @@ class Contact:
         if share > _SHORTEST_SHARE:
             part = self.at([a + share * (b - a) for a, b in zip(start.q, end.q, strict=True)])
             if not _broken(start.clearance, part.clearance):
-                return Moved(part.q, part.link_to_world, part.clearance, broken)
-        return Moved(start.q, start.link_to_world, start.clearance, broken)
-
-    def _tip(self, moved: Moved) -> Vector:
-        return tuple(moved.link_to_world[self._kinematics.model.tip.name][:3, 3].tolist())
+                return part
+        return start
 
 
 def _broken(start: Clearance, end: Clearance) -> str:

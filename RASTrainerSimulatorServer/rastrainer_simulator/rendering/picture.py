@@ -16,13 +16,12 @@ from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import (
     vtkActor,
     vtkPolyDataMapper,
-    vtkProperty,
     vtkRenderer,
     vtkRenderWindow,
     vtkWindowToImageFilter,
 )
 
-from rastrainer.errors import InputError
+from rastrainer.files.writing import write_bytes
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.protocol import Proximity
 from rastrainer.scenario.scenario import Camera, Scenario
@@ -48,16 +47,6 @@ from rastrainer_simulator.scene.scene_glb import scene_nodes
 from rastrainer_simulator.scene.surfaces import surface, vtk_matrix
 
 
-def _look_through(camera: Camera, renderer: vtkRenderer) -> None:
-    """Set a renderer's camera; the scenario's is in mm, what is rendered in meters."""
-    view = renderer.GetActiveCamera()
-    view.SetPosition(*(camera.position_mm / MM_PER_M))
-    view.SetFocalPoint(*(camera.focal_point_mm / MM_PER_M))
-    view.SetViewUp(*camera.view_up)
-    view.SetViewAngle(camera.view_angle_deg)
-    renderer.ResetCameraClippingRange()
-
-
 class OffscreenWindow:
     """A renderer's picture in memory; its graphics resources are kept from frame to frame."""
 
@@ -72,7 +61,13 @@ class OffscreenWindow:
     def frame(self, camera: Camera, size: tuple[int, int]) -> np.ndarray:
         """Return (height, width, 3) uint8, the top row first, for `size` = (width, height)."""
         self._window.SetSize(*size)
-        _look_through(camera, self._renderer)
+        # The scenario's cameras are in mm, what is rendered in meters.
+        view = self._renderer.GetActiveCamera()
+        view.SetPosition(*(camera.position_mm / MM_PER_M))
+        view.SetFocalPoint(*(camera.focal_point_mm / MM_PER_M))
+        view.SetViewUp(*camera.view_up)
+        view.SetViewAngle(camera.view_angle_deg)
+        self._renderer.ResetCameraClippingRange()
         with _without_display_warning():
             self._window.Render()
         shot = vtkWindowToImageFilter()
@@ -98,12 +93,7 @@ def write_png(pixels: np.ndarray, path: Path) -> None:
     writer.SetInputData(image)
     writer.WriteToMemoryOn()
     writer.Write()
-    partial = path.with_name(path.name + ".partial")
-    try:
-        partial.write_bytes(vtk_to_numpy(writer.GetResult()).tobytes())
-        partial.replace(path)
-    except OSError as error:
-        raise InputError(f"The picture {path} cannot be written: {error.strerror}.") from error
+    write_bytes(path, vtk_to_numpy(writer.GetResult()).tobytes())
 
 
 @contextmanager
@@ -139,9 +129,10 @@ class SceneMoment:
 
     def poses(self, robot: RobotModel) -> dict[str, np.ndarray]:
         """Return the pose of each moving node, (4, 4) float, m."""
-        first: dict[str, np.ndarray] = {}
-        for link in robot.links:
-            first.setdefault(link_node_name(link.joint), self.link_to_world[link.name])
+        first = {
+            link_node_name(link.joint): self.link_to_world[link.name]
+            for link in reversed(robot.links)
+        }
         head = np.array(self.head_to_world, dtype=float)
         head[:3, 3] /= MM_PER_M
         stand = np.eye(4)
@@ -156,21 +147,6 @@ class SceneMoment:
             colors[f"fiducial_{self.next_point}"] = NEXT
         colors[TIP_MARKER] = TIP_FREE if self.proximity is Proximity.FREE else TIP_NEAR
         return colors
-
-
-def _apply_material(material: Material, target: vtkProperty) -> None:
-    """Set a material on an actor's property."""
-    target.SetOpacity(material.opacity)
-    if material.glowing:
-        # Shadows need a lit material: switching its lighting off breaks their shader.
-        target.SetColor(*material.color)
-        target.SetAmbient(1.0)
-        target.SetDiffuse(0.0)
-        return
-    target.SetInterpolationToPBR()
-    target.SetColor(*material.linear_color)
-    target.SetRoughness(material.roughness)
-    target.SetMetallic(material.metallic)
 
 
 def node_actors(
@@ -197,7 +173,18 @@ def _actor(shape: Surface, material: Material, pose: np.ndarray) -> vtkActor:
     made = vtkActor()
     made.SetMapper(mapper)
     made.SetUserMatrix(vtk_matrix(pose))
-    _apply_material(material, made.GetProperty())
+    target = made.GetProperty()
+    target.SetOpacity(material.opacity)
+    if material.glowing:
+        # Shadows need a lit material: switching its lighting off breaks their shader.
+        target.SetColor(*material.color)
+        target.SetAmbient(1.0)
+        target.SetDiffuse(0.0)
+    else:
+        target.SetInterpolationToPBR()
+        target.SetColor(*material.linear_color)
+        target.SetRoughness(material.roughness)
+        target.SetMetallic(material.metallic)
     return made
 
 
@@ -257,8 +244,6 @@ def draw_preview(path: Path, scenario: Scenario, head: HeadMesh) -> None:
         link_to_world=make_kinematics(robot).links(q),
         head_to_world=scenario.head_to_world,
         head_base=head.base,
-        touched=frozenset(),
-        proximity=Proximity.FREE,
     )
     task = scenario.tasks[0] if scenario.tasks else None
     nodes = scene_nodes(scenario, robot, head, task)

@@ -55,14 +55,11 @@ def kinematics_name() -> str:
 
 
 def _chosen(backend: str | None) -> str:
-    chosen = backend or os.environ.get(VARIABLE) or _available()
+    usual = "numpy" if importlib.util.find_spec("pinocchio") is None else "pinocchio"
+    chosen = backend or os.environ.get(VARIABLE) or usual
     if chosen not in BACKENDS:
         raise InputError(f"{VARIABLE} is {chosen!r}; it should be one of {', '.join(BACKENDS)}.")
     return chosen
-
-
-def _available() -> str:
-    return "numpy" if importlib.util.find_spec("pinocchio") is None else "pinocchio"
 
 
 class NumpyKinematics:
