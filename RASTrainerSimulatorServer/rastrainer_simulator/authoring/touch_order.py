@@ -82,7 +82,12 @@ def turns_deg(
 
     A path straight over curved skin does not turn. Shapes (n, 3).
     """
-    return _angles_deg(_in_plane(at - before, normals), _in_plane(after - at, normals))
+    return _angles_deg(
+        *(
+            along - normals * np.einsum("ij,ij->i", along, normals)[:, None]
+            for along in (at - before, after - at)
+        )
+    )
 
 
 def is_hidden(point: np.ndarray, normal: np.ndarray, mesh: HeadMesh, eye: np.ndarray) -> bool:
@@ -95,10 +100,6 @@ def _angles_deg(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Return the angles (n,) between vectors (n, 3), degrees; 0 where one has no length."""
     across = np.linalg.norm(np.cross(a, b), axis=1)
     return np.degrees(np.arctan2(across, np.einsum("ij,ij->i", a, b)))
-
-
-def _in_plane(vectors: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    return vectors - normals * np.einsum("ij,ij->i", vectors, normals)[:, None]
 
 
 @dataclass(frozen=True)

@@ -127,8 +127,9 @@ class Contact:
 
     def _shortened(self, start: Moved, end: Moved, broken: str) -> Moved:
         """Return the part of a motion that ends before the overlap, or the start."""
-        before = max(_value(start.clearance, broken), 0.0)
-        share = _CAUTION * before / (before - _value(end.clearance, broken))
+        part_m = f"{broken}_m"
+        before = max(getattr(start.clearance, part_m), 0.0)
+        share = _CAUTION * before / (before - getattr(end.clearance, part_m))
         if share > _SHORTEST_SHARE:
             part = self.at([a + share * (b - a) for a, b in zip(start.q, end.q, strict=True)])
             if not _broken(start.clearance, part.clearance):
@@ -151,15 +152,11 @@ def _broken(start: Clearance, end: Clearance) -> str:
     return ""
 
 
-def _value(clearance: Clearance, part: str) -> float:
-    return getattr(clearance, f"{part}_m")
-
-
 def _pushed_back(path: Slide, start: Moved, end: Moved, broken: str) -> Slide | None:
     """Return the path with the overlap at its end undone, None if that is impossible."""
     nearest = end.clearance.tip if broken == "tip" else end.clearance.shaft
     assert nearest is not None, "what is broken was measured"
-    gap = min(REST, _value(start.clearance, broken) + RECOVERY) - nearest.distance_m
+    gap = min(REST, getattr(start.clearance, f"{broken}_m") + RECOVERY) - nearest.distance_m
     planes = (*path.half_spaces, _shifted(nearest.normal, gap, path.position))
     position = nearest_inside(path.position, planes)
     return None if position is None else Slide(position, planes)
@@ -267,7 +264,7 @@ def slide(
         free = here.distance_m - rest
         if distance(position, goal) <= free:  # Within a ball that holds nothing of the head.
             return Slide(nearest_inside(goal, others) or position, tuple(others))
-        planes = (_tangent(here, rest), *others)
+        planes = (_shifted(here.normal, rest, here.point), *others)
         step = _step(nearest_to_point, position, goal, planes, max(free, LONGEST_STEP), rest)
         if step is None:
             break
@@ -298,9 +295,5 @@ def _step(
         there = nearest_to_point(trial)
         if there.distance_m >= rest - _EXACT:
             return trial, there, planes
-        planes = (*planes, _tangent(there, rest))
+        planes = (*planes, _shifted(there.normal, rest, there.point))
     return None
-
-
-def _tangent(nearest: Nearest, rest: float) -> HalfSpace:
-    return HalfSpace(nearest.normal, dot(nearest.normal, nearest.point) + rest)

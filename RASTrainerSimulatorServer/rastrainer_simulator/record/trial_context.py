@@ -75,15 +75,8 @@ _Angle = Annotated[float, number(-360, 360, "degrees")]
 
 @dataclass(frozen=True)
 class TutorialOutcome:
-    """A finished tutorial.
-
-    Attributes:
-        device: value of the `SourceKind` that the arm was driven with.
-        duration_s: menus excluded.
-        first_error_mm: of the first touch.
-        errors_mm: of the guided touches at the end.
-        step_times_s: by the steps' names.
-    """
+    """A finished tutorial: its duration without menus, and the errors of the first touch and of
+    the guided touches at the end."""
 
     trainee: str
     device: Annotated[str, one_of(*(kind.value for kind in SourceKind))]
@@ -97,17 +90,13 @@ class TutorialOutcome:
 
 @dataclass(frozen=True)
 class DisplayReport:
-    """A view's report on the last second.
+    """A view's report on the frames of the last second.
 
-    Attributes:
-        view: "desktop", "page" or "headset".
-        device: model of the headset or name of the browser; "" if unknown.
-        refresh_hz: of the display; 0 if unknown.
-        shown: frames.
-        dropped: frames.
+    `device` is the model of the headset or the name of the browser, "" if unknown; an unknown
+    refresh rate is 0.
     """
 
-    view: str
+    view: str  # "desktop", "page" or "headset"
     device: Annotated[str, text(80, 0)]
     refresh_hz: Annotated[float, number(0, 1e6, "Hz")]
     shown: _Frames
@@ -116,17 +105,12 @@ class DisplayReport:
 
 @dataclass(frozen=True)
 class ViewReport:
-    """A view, compared with the scenario's camera.
+    """A view, compared with the scenario's camera, and whether it has gone there automatically.
 
-    Attributes:
-        azimuth_deg: turn about the vertical, counterclockwise from above.
-        elevation_deg: how much higher it is.
-        zoom: its distance, as a share.
-        is_automatic: whether it has gone there automatically.
-        follows: whether it goes automatically to the best view of each next point, as set.
+    `follows` is whether it goes to the best view of each next point, as set.
     """
 
-    azimuth_deg: _Angle
+    azimuth_deg: _Angle  # about the vertical, counterclockwise from above
     elevation_deg: _Angle
     zoom: Annotated[float, number(0, 1000)]
     is_automatic: bool

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -47,40 +46,40 @@ from rastrainer_simulator.scene.scene_glb import scene_nodes
 from rastrainer_simulator.scene.surfaces import surface, vtk_matrix
 
 
-class OffscreenWindow:
-    """A renderer's picture in memory; its graphics resources are kept from frame to frame."""
+def frames(renderer: vtkRenderer, *shots: tuple[Camera, tuple[int, int]]) -> list[np.ndarray]:
+    """Return a renderer's pictures, made in memory, one for each camera and size (width, height).
 
-    def __init__(self, renderer: vtkRenderer):
-        self._renderer = renderer
-        with _without_display_warning():
-            self._window = vtkRenderWindow()
-        self._window.SetOffScreenRendering(True)
-        self._window.SetMultiSamples(0)
-        self._window.AddRenderer(renderer)
-
-    def frame(self, camera: Camera, size: tuple[int, int]) -> np.ndarray:
-        """Return (height, width, 3) uint8, the top row first, for `size` = (width, height)."""
-        self._window.SetSize(*size)
-        # The scenario's cameras are in mm, what is rendered in meters.
-        view = self._renderer.GetActiveCamera()
-        view.SetPosition(*(camera.position_mm / MM_PER_M))
-        view.SetFocalPoint(*(camera.focal_point_mm / MM_PER_M))
-        view.SetViewUp(*camera.view_up)
-        view.SetViewAngle(camera.view_angle_deg)
-        self._renderer.ResetCameraClippingRange()
-        with _without_display_warning():
-            self._window.Render()
-        shot = vtkWindowToImageFilter()
-        shot.SetInput(self._window)
-        shot.ReadFrontBufferOff()
-        shot.ShouldRerenderOff()
-        shot.Update()
-        pixels = vtk_to_numpy(shot.GetOutput().GetPointData().GetScalars())
-        return pixels.reshape(size[1], size[0], 3)[::-1].copy()
-
-    def close(self) -> None:
-        """Free the graphics resources."""
-        self._window.Finalize()
+    They are (height, width, 3) uint8, the top row first. The graphics resources are freed.
+    """
+    # VTK warns that there is no display: none is needed. Errors are still shown.
+    before = vtkLogger.GetCurrentVerbosityCutoff()
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
+    try:
+        window, pictures = vtkRenderWindow(), []
+        window.SetOffScreenRendering(True)
+        window.SetMultiSamples(0)
+        window.AddRenderer(renderer)
+        for camera, size in shots:
+            window.SetSize(*size)
+            # The scenario's cameras are in mm, what is rendered in meters.
+            view = renderer.GetActiveCamera()
+            view.SetPosition(*(camera.position_mm / MM_PER_M))
+            view.SetFocalPoint(*(camera.focal_point_mm / MM_PER_M))
+            view.SetViewUp(*camera.view_up)
+            view.SetViewAngle(camera.view_angle_deg)
+            renderer.ResetCameraClippingRange()
+            window.Render()
+            shot = vtkWindowToImageFilter()
+            shot.SetInput(window)
+            shot.ReadFrontBufferOff()
+            shot.ShouldRerenderOff()
+            shot.Update()
+            pixels = vtk_to_numpy(shot.GetOutput().GetPointData().GetScalars())
+            pictures.append(pixels.reshape(size[1], size[0], 3)[::-1].copy())
+        window.Finalize()
+        return pictures
+    finally:
+        vtkLogger.SetStderrVerbosity(before)
 
 
 def write_png(pixels: np.ndarray, path: Path) -> None:
@@ -94,17 +93,6 @@ def write_png(pixels: np.ndarray, path: Path) -> None:
     writer.WriteToMemoryOn()
     writer.Write()
     write_bytes(path, vtk_to_numpy(writer.GetResult()).tobytes())
-
-
-@contextmanager
-def _without_display_warning() -> Iterator[None]:
-    """Keep VTK from warning that there is no display: none is needed. Errors are still shown."""
-    before = vtkLogger.GetCurrentVerbosityCutoff()
-    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
-    try:
-        yield
-    finally:
-        vtkLogger.SetStderrVerbosity(before)
 
 
 @dataclass(frozen=True)
@@ -213,12 +201,13 @@ def render_picture(
     for actor in node_actors(nodes, moment.poses(robot), moment.looks()):
         renderer.AddActor(actor)
     light_room(renderer, shadows)
-    window = OffscreenWindow(renderer)
-    pixels = window.frame(camera, size)
+    shots = [(camera, size)]
     if inset:
         width, height = (round(INSET_SHARE * length) for length in size)
-        lay_in_corner(pixels, window.frame(inset, (width, height)))
-    window.close()
+        shots.append((inset, (width, height)))
+    pixels, *corner = frames(renderer, *shots)
+    for picture in corner:
+        lay_in_corner(pixels, picture)
     write_png(pixels, path)
 
 

@@ -20,7 +20,7 @@ from rastrainer.scenario.scenario import Camera
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.rendering.lighting import Shadows, light_room
 from rastrainer_simulator.rendering.picture import (
-    OffscreenWindow,
+    frames,
     lay_in_corner,
     node_actors,
     write_png,
@@ -153,9 +153,7 @@ def _picture(
         _write(renderer, text, MARGIN + SWATCH[0] + 14, bottom)
     scale = _write(renderer, f"{bar_mm(height_mm):g} mm", size[0] - MARGIN, MARGIN + THICK + 4)
     scale.GetTextProperty().SetJustificationToRight()
-    window = OffscreenWindow(renderer)
-    pixels = window.frame(camera, size)
-    window.close()
+    (pixels,) = frames(renderer, (camera, size))
     for bottom, material, _text in rows:
         color = np.round(255.0 * np.array(material.color))
         _paint(pixels, MARGIN, bottom + TEXT_SIZE // 2, *SWATCH, color)

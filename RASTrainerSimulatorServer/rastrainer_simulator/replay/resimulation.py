@@ -48,11 +48,9 @@ class ReplayReport:
     """The result of a replay.
 
     Attributes:
-        ticks: simulated again.
         compared: how many entries of each kind were compared.
         difference: the first difference in words; None if all is equal to the last bit.
         changed_versions: name → (recorded, present), where they differ.
-        motion: the motion metrics of the replayed trial, as its record has them.
     """
 
     trial_id: str

@@ -46,16 +46,11 @@ class RobotModel:
 
     name: str
     joints: tuple[Joint, ...]
-    links: tuple[RobotLink, ...]
+    links: tuple[RobotLink, ...]  # parents before children
     tip: RobotLink
     home: tuple[float, ...]  # rad: elbow bent by 90°, tool straight down
     geometry: SrsGeometry
     meshes: tuple[MeshPart, ...]
-
-    @property
-    def link_names(self) -> tuple[str, ...]:
-        """Every link, parents before children."""
-        return tuple(link.name for link in self.links)
 
     @property
     def lower(self) -> np.ndarray:

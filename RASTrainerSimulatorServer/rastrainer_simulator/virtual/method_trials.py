@@ -171,7 +171,6 @@ class MethodStudy:
     """The common settings of virtual trials, and what they share; points in RAS mm.
 
     Attributes:
-        task: whose fiducials are touched.
         shift_mm: root mean square length of the skin's shift; each trial has its own.
         indentation_mm: how deep the tip presses into the skin.
         screws: (5, 3) float, under every third fiducial.

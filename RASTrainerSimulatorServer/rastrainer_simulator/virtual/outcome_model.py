@@ -38,10 +38,8 @@ class OutcomeModel:
 
     Attributes:
         task_times_s: Median completion time of each task at the first trial in the first mode.
-        trainee_time_sd: Between trainees, of the logarithm of the time.
-        trainee_fle_sd: Between trainees, of the logarithm of the localization error.
-        interaction_sd: How differently modes affect trainees, of both logarithms.
-        trial_time_sd: Between trials of a trainee, of the logarithm of the time.
+        interaction_sd: How differently modes affect trainees; like the other deviations, of the
+            logarithms.
         learning: b; the n-th trial takes n^−b of the first one's time.
         carries_practice: Whether n counts the trials of both modes, as for the virtual trainees
             that are played; otherwise each mode starts from 1.

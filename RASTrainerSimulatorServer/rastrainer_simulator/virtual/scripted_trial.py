@@ -93,9 +93,7 @@ class _View:
     """The scripted trainee's view of the running trial."""
 
     def __init__(self, client: Client, trial_id: str, on_progress: Callable) -> None:
-        self._client = client
-        self._trial_id = trial_id
-        self._on_progress = on_progress
+        self._client, self._trial_id, self._on_progress = client, trial_id, on_progress
         self._sequence = -1
         self.state: dict[str, Any] = {}
 
