@@ -18,6 +18,7 @@ from iiwa7_dimensions import LINK_NAMES, link_origins
 from make_iiwa7 import visual_parts
 
 from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.collision.robot_shape import sphere_directions
 
 DIRECTIONS = 128
 OPEN_FRACTION = 0.05
@@ -31,7 +32,11 @@ def main() -> None:
     parser.add_argument("--official", type=Path, required=True)
     parser.add_argument("--samples", type=int, default=20_000)
     arguments = parser.parse_args()
-    ours, official = our_robot(), official_robot(arguments.official)
+    folder = arguments.official
+    if (folder / "collision").is_dir():
+        folder = folder / "collision"
+    ours = our_robot()
+    official = [trimesh.load_mesh(folder / f"link_{number}.stl") for number in range(8)]
     for title, one, other in (
         ("ours to official", ours, official),
         ("official to ours", official, ours),
@@ -51,13 +56,6 @@ def our_robot() -> list[trimesh.Trimesh]:
     ]
 
 
-def official_robot(folder: Path) -> list[trimesh.Trimesh]:
-    """Return the official links 0 to 7 at q = 0, in the base frame, in meters."""
-    if (folder / "collision").is_dir():
-        folder = folder / "collision"
-    return [trimesh.load_mesh(folder / f"link_{number}.stl") for number in range(8)]
-
-
 def surface_distances(
     one: list[trimesh.Trimesh], other: list[trimesh.Trimesh], samples: int, seed: int = 7
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -75,24 +73,15 @@ def surface_distances(
 
 def _visible(mesh: trimesh.Trimesh, points: np.ndarray, normals: np.ndarray) -> np.ndarray:
     """Return which points (n, 3) see the outside in enough of the directions above them."""
-    directions = _sphere(DIRECTIONS)
     above = np.zeros(len(points))
     free = np.zeros(len(points))
-    for direction in directions:
+    for direction in sphere_directions(DIRECTIONS):
         facing = np.flatnonzero(normals @ direction > 0)
         starts = points[facing] + LIFT * normals[facing]
         hit = mesh.ray.intersects_any(starts, np.tile(direction, (len(facing), 1)))
         above[facing] += 1
         free[facing[~hit]] += 1
     return free >= OPEN_FRACTION * above
-
-
-def _sphere(count: int) -> np.ndarray:
-    """Return (count, 3) float unit vectors, evenly spread (a Fibonacci spiral)."""
-    height = 1 - (2 * np.arange(count) + 1) / count
-    angle = np.pi * (3 - np.sqrt(5)) * np.arange(count)
-    radius = np.sqrt(1 - height**2)
-    return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), height])
 
 
 def _summary(distances: np.ndarray) -> str:

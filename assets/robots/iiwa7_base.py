@@ -3,7 +3,8 @@
 import numpy as np
 import trimesh
 from iiwa7_sections import BASE_FLARE
-from solids import box, cylinder, difference, enclosing, hull, moved, revolve, union
+from solids import box, cylinder, difference, enclosing, moved, revolve, union
+from trimesh.convex import convex_hull
 
 PANEL_X = -112.8
 LUG_ANGLES = (45, 135, 225, 315)
@@ -16,11 +17,19 @@ BOLT_RADIUS = 6.5
 def base(segments: int) -> dict[str, trimesh.Trimesh]:
     """Return the parts of link 0 by color."""
     body = union(revolve(BASE_FLARE, segments), _connector_box())
-    lugs = [moved(_lug_pocket(), turn_z_deg=angle) for angle in LUG_ANGLES]
-    bolts = [moved(_bolt(), turn_z_deg=angle) for angle in LUG_ANGLES]
+    # The upright slot over a mounting lug, open to the outside, and its bolt.
+    well = moved(cylinder(LUG_WIDTH, LUG_FLOOR, 130.0, 24), (LUG_RADIUS, 0.0, 0.0))
+    pocket = union(well, box((LUG_RADIUS, -LUG_WIDTH, LUG_FLOOR), (140.0, LUG_WIDTH, 130.0)))
+    head = cylinder(BOLT_RADIUS, LUG_FLOOR - 1.0, LUG_FLOOR + 6.5, 16)
+    socket = cylinder(3.0, LUG_FLOOR + 3.0, LUG_FLOOR + 10.0, 6)
+    bolt = moved(difference(head, socket), (LUG_RADIUS + 0.5, 0.0, 0.0))
+    lugs, bolts = (
+        [moved(part, turn_z_deg=angle) for angle in LUG_ANGLES] for part in (pocket, bolt)
+    )
+    recess = _plate(PANEL_X - 1.0, PANEL_X + 1.5, 0.0)
     return {
-        "gray": difference(body, *lugs, _panel_recess()),
-        "dark": trimesh.util.concatenate([*bolts, _panel()]),
+        "gray": difference(body, *lugs, recess),
+        "dark": trimesh.util.concatenate([*bolts, _plate(PANEL_X + 0.4, PANEL_X + 2.5, 0.6)]),
         "metal": _sockets(),
     }
 
@@ -37,27 +46,7 @@ def _connector_box() -> trimesh.Trimesh:
     outline = np.array([*half, *((-y, z) for y, z in half)])
     back = np.column_stack([np.full(len(outline), PANEL_X), outline])
     front = np.column_stack([np.full(len(outline), -50.0), outline * (1.04, 1.0)])
-    return hull(np.vstack([back, front]))
-
-
-def _lug_pocket() -> trimesh.Trimesh:
-    """Return the upright slot over a mounting lug, open to the outside."""
-    well = moved(cylinder(LUG_WIDTH, LUG_FLOOR, 130.0, 24), (LUG_RADIUS, 0.0, 0.0))
-    return union(well, box((LUG_RADIUS, -LUG_WIDTH, LUG_FLOOR), (140.0, LUG_WIDTH, 130.0)))
-
-
-def _bolt() -> trimesh.Trimesh:
-    head = cylinder(BOLT_RADIUS, LUG_FLOOR - 1.0, LUG_FLOOR + 6.5, 16)
-    socket = cylinder(3.0, LUG_FLOOR + 3.0, LUG_FLOOR + 10.0, 6)
-    return moved(difference(head, socket), (LUG_RADIUS + 0.5, 0.0, 0.0))
-
-
-def _panel_recess() -> trimesh.Trimesh:
-    return _plate(PANEL_X - 1.0, PANEL_X + 1.5, 0.0)
-
-
-def _panel() -> trimesh.Trimesh:
-    return _plate(PANEL_X + 0.4, PANEL_X + 2.5, 0.6)
+    return convex_hull(np.vstack([back, front]))
 
 
 def _sockets() -> trimesh.Trimesh:
@@ -73,7 +62,7 @@ def _plate(low: float, high: float, inset: float) -> trimesh.Trimesh:
     half = ((50.0 - inset, 14.0 + inset), (37.5 - inset, 134.0 - inset))
     outline = np.array([*half, *((-y, z) for y, z in half)])
     ends = [np.column_stack([np.full(len(outline), x), outline]) for x in (low, high)]
-    return hull(np.vstack(ends))
+    return convex_hull(np.vstack(ends))
 
 
 def _socket(y: float, z: float, radius: float) -> trimesh.Trimesh:

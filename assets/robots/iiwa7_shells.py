@@ -1,12 +1,11 @@
 """The iiwa 7's links 1 to 7: closed parts by color, each in its link's frame, in mm."""
 
-from collections.abc import Callable, Sequence
-
 import numpy as np
 import trimesh
 from iiwa7_dimensions import JOINTS
 from iiwa7_sections import ARM, ARM_RADIUS, ARM_SEAM, FLANGE_PROFILE, HAND, HAND_SEAM, WRIST
-from solids import Station, box, cylinder, difference, enclosing, hull, loft, moved, revolve, trim
+from solids import Station, box, cylinder, difference, enclosing, loft, moved, revolve, trim
+from trimesh.convex import convex_hull
 
 from rastrainer.transforms import MM_PER_M
 
@@ -19,87 +18,51 @@ RING_HEIGHT = 0.5
 RING_SEGMENTS = 40
 
 # How far the pan joint's end of an arm shell is below (links 1, 3) or above (2, 4) the tilt joint.
-LOWER_ARM_ENDS = {1: -182.5, 3: -215.0}
-UPPER_ARM_END = -184.5
+ARM_ENDS = {1: -182.5, 2: -184.5, 3: -215.0, 4: -184.5}
 
 
 def shells(rings: int, segments: int) -> dict[int, Parts]:
     """Return the parts of links 1 to 7 by color, lofted with the given resolution."""
-    return {
-        1: _lower_arm(1, 0, rings, segments),
-        2: _upper_arm(2, 0, rings, segments),
-        3: _lower_arm(3, 180, rings, segments),
-        4: _upper_arm(4, 180, rings, segments),
-        5: _wrist(rings, segments),
-        6: _hand(rings, segments),
-        7: {"metal": _flange(segments)},
+    made = {link: _shell(link, rings, segments) for link in range(1, 7)}
+    parts = {
+        **{link: _ringed(made[link], ARM[-1]) for link in (1, 3)},
+        **{link: _covered(made[link], ARM_SEAM) for link in (2, 4)},
+        5: _ringed(made[5], WRIST[-1]),
+        6: _covered(made[6], HAND_SEAM),
     }
+    placed = {
+        link: {color: _placed(part, link) for color, part in colored.items()}
+        for link, colored in parts.items()
+    }
+    return {**placed, 7: {"metal": _flange(segments)}}
 
 
 def plain_shells(rings: int, segments: int) -> dict[int, trimesh.Trimesh]:
     """Return links 1 to 7, each in one piece without seams that roughly encloses its parts."""
-
-    def shell(stations: Sequence[Station]) -> trimesh.Trimesh:
-        return loft(stations, rings, segments, enclosing=True)
-
     flange = FLANGE_PROFILE[1::3] + FLANGE_PROFILE[-2:]
-    return {
-        1: _place_lower(shell(_arm(LOWER_ARM_ENDS[1])), 1, 0),
-        2: _place_upper(shell(_arm(UPPER_ARM_END)), 2, 0),
-        3: _place_lower(shell(_arm(LOWER_ARM_ENDS[3])), 3, 180),
-        4: _place_upper(shell(_arm(UPPER_ARM_END)), 4, 180),
-        5: moved(shell(WRIST), _to_tilt(5)),
-        6: moved(shell(HAND), _from_tilt(6)),
-        7: revolve(enclosing(flange, segments), segments),
+    placed = {
+        link: _placed(_shell(link, rings, segments, enclosing=True), link) for link in range(1, 7)
     }
+    return {**placed, 7: revolve(enclosing(flange, segments), segments)}
 
 
-def _arm(end: float) -> tuple[Station, ...]:
-    return (Station((ARM_RADIUS, end), (-ARM_RADIUS, end), ARM_RADIUS), *ARM)
+def _shell(link: int, rings: int, segments: int, enclosing: bool = False) -> trimesh.Trimesh:
+    """Return the shell of link 1 to 6 about its tilt joint; those of 2 and 4 are turned over."""
+    stations = {5: WRIST, 6: HAND}.get(link)
+    if stations is None:
+        end = Station((ARM_RADIUS, ARM_ENDS[link]), (-ARM_RADIUS, ARM_ENDS[link]), ARM_RADIUS)
+        stations = (end, *ARM)
+    shell = loft(stations, rings, segments, enclosing)
+    return shell.apply_transform(np.diag([1.0, -1.0, -1.0, 1.0])) if link in (2, 4) else shell
 
 
-def _lower_arm(link: int, turn: float, rings: int, segments: int) -> Parts:
-    shell = loft(_arm(LOWER_ARM_ENDS[link]), rings, segments)
-    parts = _ringed(shell, ARM[-1])
-    return _map(parts, lambda part: _place_lower(part, link, turn))
-
-
-def _upper_arm(link: int, turn: float, rings: int, segments: int) -> Parts:
-    shell = _turned_over(loft(_arm(UPPER_ARM_END), rings, segments))
-    parts = _covered(shell, ARM_SEAM)
-    return _map(parts, lambda part: moved(part, _from_tilt(link), turn))
-
-
-def _wrist(rings: int, segments: int) -> Parts:
-    parts = _ringed(loft(WRIST, rings, segments), WRIST[-1])
-    return _map(parts, lambda part: moved(part, _to_tilt(5)))
-
-
-def _hand(rings: int, segments: int) -> Parts:
-    parts = _covered(loft(HAND, rings, segments), HAND_SEAM)
-    return _map(parts, lambda part: moved(part, _from_tilt(6)))
-
-
-def _place_lower(shell: trimesh.Trimesh, link: int, turn: float) -> trimesh.Trimesh:
-    return moved(shell, _to_tilt(link), turn)
-
-
-def _place_upper(shell: trimesh.Trimesh, link: int, turn: float) -> trimesh.Trimesh:
-    return moved(_turned_over(shell), _from_tilt(link), turn)
-
-
-def _turned_over(shell: trimesh.Trimesh) -> trimesh.Trimesh:
-    return shell.copy().apply_transform(np.diag([1.0, -1.0, -1.0, 1.0]))
-
-
-def _to_tilt(link: int) -> tuple[float, float, float]:
-    """Return the tilt joint's center in the frame of the link whose far end it is."""
-    return (0.0, 0.0, JOINTS[link].origin[2] * MM_PER_M)
-
-
-def _from_tilt(link: int) -> tuple[float, float, float]:
-    """Return the tilt joint's center in the frame of the link that it moves."""
-    return (0.0, -JOINTS[link - 1].origin[1] * MM_PER_M, 0.0)
+def _placed(part: trimesh.Trimesh, link: int) -> trimesh.Trimesh:
+    """Move a part from its tilt joint to its link's frame: at the link's far end or at its own."""
+    if link % 2:
+        center = (0.0, 0.0, JOINTS[link].origin[2] * MM_PER_M)
+    else:
+        center = (0.0, -JOINTS[link - 1].origin[1] * MM_PER_M, 0.0)
+    return moved(part, center, 180.0 if link in (3, 4) else 0.0)
 
 
 def _ringed(shell: trimesh.Trimesh, face: Station) -> Parts:
@@ -117,21 +80,15 @@ def _covered(
     """Set an orange cover off the shell beyond the plane through `line` and the x direction."""
     (y0, z0), (y1, z1) = line
     normal = np.array([0.0, z1 - z0, y0 - y1]) / np.hypot(z1 - z0, y0 - y1)
-    gray, seam, cover = _split(shell, normal, float(normal @ (0.0, y0, z0)))
-    return {"gray": gray, "orange": cover, "dark": seam}
-
-
-def _split(
-    shell: trimesh.Trimesh, normal: np.ndarray, offset: float
-) -> tuple[trimesh.Trimesh, trimesh.Trimesh, trimesh.Trimesh]:
-    """Cut a shell by a plane: the part behind it, a recessed seam, and the part before it."""
+    offset = float(normal @ (0.0, y0, z0))
     low, high = offset - SEAM_GAP / 2, offset + SEAM_GAP / 2
     behind, before = trim(shell, -normal, -low), trim(shell, normal, high)
+    # Between the two a recessed seam.
     slab = trim(trim(shell, normal, low), -normal, -high).vertices
     across = slab - np.outer(slab @ normal, normal)
     spokes = across - across.mean(axis=0)
     shrink = SEAM_DEPTH / np.linalg.norm(spokes, axis=1, keepdims=True)
-    return behind, hull(slab - spokes * shrink), before
+    return {"gray": behind, "orange": before, "dark": convex_hull(slab - spokes * shrink)}
 
 
 def _flange(segments: int) -> trimesh.Trimesh:
@@ -146,7 +103,3 @@ def _flange(segments: int) -> trimesh.Trimesh:
         for angle in (-67.5, -22.5, 22.5, 67.5, 112.5, 157.5, 202.5, 247.5)
     ]
     return difference(body, cylinder(15.5, 29.0, 40.0, 24), *windows, *slots)
-
-
-def _map(parts: Parts, place: Callable[[trimesh.Trimesh], trimesh.Trimesh]) -> Parts:
-    return {color: place(part) for color, part in parts.items()}

@@ -13,7 +13,6 @@ from iiwa7_dimensions import (
     TOOL_LENGTH,
     TOOL_LINK,
     TOOL_TIP_LINK,
-    Joint,
 )
 
 HEADER = "<!-- KUKA LBR iiwa 7 R800 with a pointer tool. Written by make_iiwa7.py: do not edit. -->"
@@ -48,9 +47,21 @@ def urdf_text(bodies: Mapping[str, LinkBody], tip: tuple[str, str]) -> str:
         _add_link(robot, link, bodies[link])
     _add_visual(ElementTree.SubElement(robot, "link", name=TOOL_TIP_LINK), *tip)
     for joint, parent, child in zip(JOINTS, LINK_NAMES[:7], LINK_NAMES[1:8], strict=True):
-        _add_revolute(robot, joint, parent, child)
-    _add_fixed(robot, "iiwa_joint_tool", LINK_NAMES[7], TOOL_LINK, FLANGE_OFFSET)
-    _add_fixed(robot, "iiwa_joint_tool_tip", TOOL_LINK, TOOL_TIP_LINK, TOOL_LENGTH)
+        element = _add_joint(robot, joint.name, "revolute", parent, child, joint.origin)
+        ElementTree.SubElement(element, "axis", xyz=_numbers(joint.axis))
+        ElementTree.SubElement(
+            element,
+            "limit",
+            lower=repr(-math.radians(joint.limit_deg)),
+            upper=repr(math.radians(joint.limit_deg)),
+            velocity=repr(math.radians(joint.speed_deg_s)),
+            effort=_number(joint.torque_nm),
+        )
+    for name, parent, child, height in (
+        ("iiwa_joint_tool", LINK_NAMES[7], TOOL_LINK, FLANGE_OFFSET),
+        ("iiwa_joint_tool_tip", TOOL_LINK, TOOL_TIP_LINK, TOOL_LENGTH),
+    ):
+        _add_joint(robot, name, "fixed", parent, child, (0.0, 0.0, height))
     ElementTree.indent(robot)
     body = ElementTree.tostring(robot, encoding="unicode")
     return f'<?xml version="1.0"?>\n{HEADER}\n{body}\n'
@@ -79,25 +90,6 @@ def _add_mesh(parent: ElementTree.Element, file: str) -> None:
     ElementTree.SubElement(parent, "origin", xyz="0 0 0", rpy="0 0 0")
     geometry = ElementTree.SubElement(parent, "geometry")
     ElementTree.SubElement(geometry, "mesh", filename=file)
-
-
-def _add_revolute(robot: ElementTree.Element, joint: Joint, parent: str, child: str) -> None:
-    element = _add_joint(robot, joint.name, "revolute", parent, child, joint.origin)
-    ElementTree.SubElement(element, "axis", xyz=_numbers(joint.axis))
-    ElementTree.SubElement(
-        element,
-        "limit",
-        lower=repr(-math.radians(joint.limit_deg)),
-        upper=repr(math.radians(joint.limit_deg)),
-        velocity=repr(math.radians(joint.speed_deg_s)),
-        effort=_number(joint.torque_nm),
-    )
-
-
-def _add_fixed(
-    robot: ElementTree.Element, name: str, parent: str, child: str, height: float
-) -> None:
-    _add_joint(robot, name, "fixed", parent, child, (0.0, 0.0, height))
 
 
 def _add_joint(

@@ -42,11 +42,12 @@ def write_robot(folder: Path) -> None:
     collisions = plain_parts(COARSE_RINGS, COARSE_SEGMENTS)
     bodies = {}
     for link in LINK_NAMES:
+        short = link.removeprefix("iiwa_")
         files = [
-            (_write(part, folder, f"visual/{_short(link)}_{color}.stl"), color)
+            (_write(part, folder, f"visual/{short}_{color}.stl"), color)
             for color, part in visuals[link].items()
         ]
-        collision = _write(collisions[link], folder, f"collision/{_short(link)}.stl")
+        collision = _write(collisions[link], folder, f"collision/{short}.stl")
         bodies[link] = _body(files, collision, MASSES[link], solids[link])
     tip_file = _write(visuals[TOOL_TIP_LINK]["blue"], folder, "visual/tool_tip_blue.stl")
     text = urdf_text(bodies, (tip_file, "blue"))
@@ -58,11 +59,12 @@ def write_robot(folder: Path) -> None:
 
 def visual_parts() -> dict[str, dict[str, trimesh.Trimesh]]:
     """Return the colored parts of each link, in its frame, in meters."""
-    parts = {f"{LINK_PREFIX}0": base(ROUND_SEGMENTS)}
-    for number, link_parts in shells(RINGS, SEGMENTS).items():
-        parts[f"{LINK_PREFIX}{number}"] = link_parts
-    parts[TOOL_LINK] = tool(TOOL_SEGMENTS)
-    parts[TOOL_TIP_LINK] = {"blue": tip(TOOL_SEGMENTS)}
+    links = {0: base(ROUND_SEGMENTS), **shells(RINGS, SEGMENTS)}
+    parts = {
+        **{f"{LINK_PREFIX}{number}": link_parts for number, link_parts in links.items()},
+        TOOL_LINK: tool(TOOL_SEGMENTS),
+        TOOL_TIP_LINK: {"blue": tip(TOOL_SEGMENTS)},
+    }
     return {
         link: {color: in_meters(part) for color, part in link_parts.items()}
         for link, link_parts in parts.items()
@@ -71,11 +73,9 @@ def visual_parts() -> dict[str, dict[str, trimesh.Trimesh]]:
 
 def plain_parts(rings: int, segments: int) -> dict[str, trimesh.Trimesh]:
     """Return each link in one piece, in its frame, in meters: for collisions and inertia."""
-    parts = {f"{LINK_PREFIX}0": plain_base(segments)}
-    for number, part in plain_shells(rings, segments).items():
-        parts[f"{LINK_PREFIX}{number}"] = part
-    parts[TOOL_LINK] = plain_tool(segments)
-    return {link: in_meters(part) for link, part in parts.items()}
+    links = {0: plain_base(segments), **plain_shells(rings, segments)}
+    parts = {f"{LINK_PREFIX}{number}": in_meters(part) for number, part in links.items()}
+    return {**parts, TOOL_LINK: in_meters(plain_tool(segments))}
 
 
 def in_meters(part: trimesh.Trimesh) -> trimesh.Trimesh:
@@ -114,10 +114,6 @@ def _body(
 def _rounded(values: np.ndarray, decimals: int) -> tuple[float, ...]:
     """Round away what a uniform density cannot know, and minus zero."""
     return tuple(float(value) + 0.0 for value in np.round(values, decimals))
-
-
-def _short(link: str) -> str:
-    return link.removeprefix("iiwa_")
 
 
 if __name__ == "__main__":

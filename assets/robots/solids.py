@@ -1,12 +1,14 @@
 """Closed solids: revolved outlines, boxes, prisms, their cuts and unions, and lofted shells."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import manifold3d
 import numpy as np
 import trimesh
 from scipy.interpolate import PchipInterpolator
+
+from rastrainer_simulator.scene.surfaces import stitched
 
 Outline = Sequence[tuple[float, float]]
 
@@ -30,11 +32,6 @@ def cylinder(radius: float, bottom: float, top: float, segments: int) -> trimesh
 def box(low: Sequence[float], high: Sequence[float]) -> trimesh.Trimesh:
     """Return the box between two corners."""
     return trimesh.creation.box(bounds=[low, high])
-
-
-def hull(points: np.ndarray) -> trimesh.Trimesh:
-    """Return the convex hull of (n, 3) float points."""
-    return trimesh.convex.convex_hull(points)
 
 
 def union(*solids: trimesh.Trimesh) -> trimesh.Trimesh:
@@ -86,11 +83,6 @@ class Station:
     inner_exponent: float = 2.0
     outer_exponent: float = 2.0
 
-    def as_row(self) -> np.ndarray:
-        """Return the (8,) float numbers that the loft interpolates."""
-        shape = (self.half_width, self.widest, self.inner_exponent, self.outer_exponent)
-        return np.array([*self.inner, *self.outer, *shape], dtype=float)
-
 
 def loft(
     stations: Sequence[Station], rings: int, segments: int, enclosing: bool = False
@@ -103,7 +95,7 @@ def loft(
     Between the stations every number of a section follows a monotone cubic, so that the shell
     neither overshoots nor kinks. Rings are spread evenly over the mean of both outlines' lengths.
     """
-    rows = np.array([station.as_row() for station in stations])
+    rows = np.array([np.hstack(astuple(station)) for station in stations])
     steps = np.linalg.norm(np.diff(rows[:, 0:2], axis=0), axis=1)
     steps += np.linalg.norm(np.diff(rows[:, 2:4], axis=0), axis=1)
     lengths = np.concatenate(([0.0], np.cumsum(steps / 2)))
@@ -111,28 +103,14 @@ def loft(
     places = np.linspace(CHAMFER, lengths[-1] - CHAMFER, rings)
     scale = 1 / np.cos(np.pi / segments) if enclosing else 1.0
     sections = [_outline(row, segments, scale) for row in curve(places)]
-    first = _chamfered(_outline(rows[0], segments, scale))
-    last = _chamfered(_outline(rows[-1], segments, scale))
-    return stitch(np.array([first, *sections, last]))
-
-
-def stitch(sections: np.ndarray) -> trimesh.Trimesh:
-    """Join sections (rings, segments, 3) float into a closed shell, a fan over either end."""
-    rings, segments, _ = sections.shape
-    centers = [sections[0].mean(axis=0), sections[-1].mean(axis=0)]
-    vertices = np.vstack([sections.reshape(-1, 3), centers])
-    here = np.arange(segments)
-    following = (here + 1) % segments
-    faces = []
-    for ring in range(rings - 1):
-        a, b = ring * segments, (ring + 1) * segments
-        faces.append(np.column_stack([a + here, a + following, b + following]))
-        faces.append(np.column_stack([a + here, b + following, b + here]))
-    bottom, top = len(vertices) - 2, len(vertices) - 1
-    end = (rings - 1) * segments
-    faces.append(np.column_stack([following, here, np.full(segments, bottom)]))
-    faces.append(np.column_stack([end + here, end + following, np.full(segments, top)]))
-    mesh = trimesh.Trimesh(vertices, np.vstack(faces), process=False)
+    ends = []
+    for row in (rows[0], rows[-1]):
+        # Pulled inward by the chamfer, within its plane.
+        outline = _outline(row, segments, scale)
+        spokes = outline - outline.mean(axis=0)
+        length = np.linalg.norm(spokes, axis=1, keepdims=True)
+        ends.append(outline - spokes * (CHAMFER / length))
+    mesh = trimesh.Trimesh(*stitched(np.array([ends[0], *sections, ends[1]])), process=False)
     if mesh.volume < 0:
         mesh.invert()
     return mesh
@@ -150,10 +128,3 @@ def _outline(row: np.ndarray, segments: int, scale: float) -> np.ndarray:
     along = widest + reach * np.sign(sine) * np.abs(sine) ** power
     along = 0.5 + scale * (along - 0.5)
     return np.column_stack([scale * x, inner + along[:, None] * (outer - inner)])
-
-
-def _chamfered(outline: np.ndarray) -> np.ndarray:
-    """Pull an end's outline inward by the chamfer, within its plane."""
-    spokes = outline - outline.mean(axis=0)
-    length = np.linalg.norm(spokes, axis=1, keepdims=True)
-    return outline - spokes * (CHAMFER / length)

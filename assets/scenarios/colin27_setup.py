@@ -1,9 +1,11 @@
 """Where the default head stands, how it is looked at and where it comes from."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from rastrainer.files.writing import write_text
 from rastrainer.head.trial_head import Perturbation
 from rastrainer.scenario.scenario import FORMAT_VERSION
 
@@ -42,6 +44,15 @@ NOTICE = (
 )
 
 
+def write_table(script: str, table: str) -> None:
+    """Print a script's table, and put it into README."""
+    readme = Path(__file__).with_name("README.md")
+    start, end = f"<!-- table by {script} -->\n", "<!-- end of table -->\n"
+    before, _, rest = readme.read_text(encoding="utf-8").partition(start)
+    write_text(readme, before + start + table + end + rest.partition(end)[2])
+    print(table)
+
+
 def head_to_world(center_ras: np.ndarray) -> np.ndarray:
     """Return the nominal pose (4, 4), mm: upright, the face to −y, the right side to the robot."""
     pose = np.diag([-1.0, -1.0, 1.0, 1.0])
@@ -50,12 +61,7 @@ def head_to_world(center_ras: np.ndarray) -> np.ndarray:
 
 
 def scenario_json(center_ras: np.ndarray, tasks: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return the content of `scenario.json`.
-
-    Args:
-        center_ras: (3,) float, the head's center, RAS mm.
-        tasks: the tasks' entries.
-    """
+    """Return the content of `scenario.json`; the head's center is (3,) float, RAS mm."""
     return {
         "formatVersion": FORMAT_VERSION,
         "name": "colin27",

@@ -9,12 +9,13 @@ from pathlib import Path
 
 import numpy as np
 import vtk
-from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+from vtk.util.numpy_support import numpy_to_vtk
 
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import PREVIEW_NAME, load_scenario
 from rastrainer_simulator.rendering.picture import draw_preview
+from rastrainer_simulator.scene.surfaces import surface
 
 FOLDER = Path(__file__).parent / "colin27"
 TILE = (300, 270)
@@ -37,7 +38,9 @@ def main() -> int:
     window.OffScreenRenderingOn()
     window.SetMultiSamples(4)
     window.SetSize(TILE[0] * len(scenario.tasks), TILE[1] * len(VIEWS))
-    skin = _skin(mesh)
+    skin = vtk.vtkPolyDataNormals()
+    skin.SetInputData(surface(mesh.vertices, mesh.triangles))
+    skin.SetFeatureAngle(60)
     for column, task in enumerate(scenario.tasks):
         for row, (view, direction) in enumerate(VIEWS.items()):
             renderer = _renderer(mesh, task, np.array(direction), skin)
@@ -59,7 +62,7 @@ def main() -> int:
 
 
 def _renderer(
-    mesh: HeadMesh, task: Task, direction: np.ndarray, skin: vtk.vtkPolyDataMapper
+    mesh: HeadMesh, task: Task, direction: np.ndarray, skin: vtk.vtkPolyDataNormals
 ) -> vtk.vtkRenderer:
     center = mesh.centroid + np.array([0.0, 0.0, 10.0])
     eye = center + EYE_DISTANCE_MM * direction / np.linalg.norm(direction)
@@ -98,47 +101,27 @@ def _way(mesh: HeadMesh, task: Task) -> np.ndarray:
     return np.concatenate(way)
 
 
-def _skin(mesh: HeadMesh) -> vtk.vtkPolyDataMapper:
-    points, triangles, surface = vtk.vtkPoints(), vtk.vtkCellArray(), vtk.vtkPolyData()
-    points.SetData(numpy_to_vtk(mesh.vertices, deep=True))
-    corners = mesh.triangles.astype(np.int64).ravel()
-    triangles.SetData(3, numpy_to_vtkIdTypeArray(corners, deep=True))
-    surface.SetPoints(points)
-    surface.SetPolys(triangles)
-    normals = vtk.vtkPolyDataNormals()
-    normals.SetInputData(surface)
-    normals.SetFeatureAngle(60)
-    return _mapper(normals)
-
-
-def _ball(point: np.ndarray) -> vtk.vtkPolyDataMapper:
+def _ball(point: np.ndarray) -> vtk.vtkSphereSource:
     ball = vtk.vtkSphereSource()
     ball.SetCenter(point)
     ball.SetRadius(2.6)
     ball.SetThetaResolution(16)
     ball.SetPhiResolution(16)
-    return _mapper(ball)
+    return ball
 
 
-def _tube(way: np.ndarray) -> vtk.vtkPolyDataMapper:
-    line = vtk.vtkLineSource()
-    points = vtk.vtkPoints()
+def _tube(way: np.ndarray) -> vtk.vtkTubeFilter:
+    line, points, tube = vtk.vtkLineSource(), vtk.vtkPoints(), vtk.vtkTubeFilter()
     points.SetData(numpy_to_vtk(way, deep=True))
     line.SetPoints(points)
-    tube = vtk.vtkTubeFilter()
     tube.SetInputConnection(line.GetOutputPort())
     tube.SetRadius(0.8)
-    return _mapper(tube)
+    return tube
 
 
-def _mapper(source: vtk.vtkPolyDataAlgorithm) -> vtk.vtkPolyDataMapper:
-    mapper = vtk.vtkPolyDataMapper()
+def _actor(source: vtk.vtkPolyDataAlgorithm, color: tuple[float, float, float]) -> vtk.vtkActor:
+    actor, mapper = vtk.vtkActor(), vtk.vtkPolyDataMapper()
     mapper.SetInputConnection(source.GetOutputPort())
-    return mapper
-
-
-def _actor(mapper: vtk.vtkPolyDataMapper, color: tuple[float, float, float]) -> vtk.vtkActor:
-    actor = vtk.vtkActor()
     actor.SetMapper(mapper)
     actor.GetProperty().SetColor(color)
     return actor

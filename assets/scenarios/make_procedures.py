@@ -7,19 +7,18 @@ numbers from publications; nothing else of them is in the repository. The no-go 
 schematic tubes along a course that is written down here: they are no vessels of this person.
 """
 
-import json
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import trimesh
+from colin27_setup import write_table
 
 from rastrainer.files.reading import read_json
-from rastrainer.files.writing import write_text
+from rastrainer.files.writing import write_json
 from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
 from rastrainer.procedure.checks import distances_to_no_go, planned_bone
 from rastrainer.procedure.geometry import (
@@ -39,12 +38,10 @@ from rastrainer.procedure.plan import (
 )
 from rastrainer.scenario.scenario import FILE_NAME, load_scenario
 from rastrainer_simulator.authoring.planning_setup import WIDER, PlanningSetup
-from rastrainer_simulator.authoring.procedure_plan import GuideReach
+from rastrainer_simulator.authoring.procedure_plan import is_guide_held
 from rastrainer_simulator.authoring.task_set import smooth_places
 
 FOLDER = Path(__file__).parent / "colin27"
-README = Path(__file__).parent / "README.md"
-TABLE_START, TABLE_END = "<!-- table by make_procedures.py -->\n", "<!-- end of table -->\n"
 
 HEAD_SPACE = (
     "The MRI is in the space of the MNI (stereotaxic, not warped), so the coordinates are only as "
@@ -69,13 +66,7 @@ SCHEMATIC = (
 
 @dataclass(frozen=True)
 class WantedTrajectory:
-    """A trajectory whose entry is to be found.
-
-    Attributes:
-        name: for people.
-        target: R, A, S in mm.
-        toward: direction from the target to the entry that is preferred, R, A, S.
-    """
+    """A target (R, A, S in mm), and the direction from it to the entry that is preferred."""
 
     name: str
     target: tuple[float, float, float]
@@ -87,43 +78,28 @@ class Tube:
     """A schematic structure: a course through points (R, A, S) and a radius, mm."""
 
     name: str
-    file: str
     radius: float
     course: tuple[tuple[float, float, float], ...]
 
 
-RIGHT_VENTRICLE = (
-    (9, 30, 0),
-    (12, 20, 12),
-    (12, 5, 20),
-    (14, -12, 23),
-    (18, -30, 21),
-    (24, -42, 12),
-)
+VENTRICLE = ((9, 30, 0), (12, 20, 12), (12, 5, 20), (14, -12, 23), (18, -30, 21), (24, -42, 12))
 TUBES = {
-    "right-ventricle": Tube(
-        "Right lateral ventricle (schematic)", "right-ventricle", 4.0, RIGHT_VENTRICLE
-    ),
+    "right-ventricle": Tube("Right lateral ventricle (schematic)", 4.0, VENTRICLE),
     "left-ventricle": Tube(
-        "Left lateral ventricle (schematic)",
-        "left-ventricle",
-        4.0,
-        tuple((-r, a, s) for r, a, s in RIGHT_VENTRICLE),
+        "Left lateral ventricle (schematic)", 4.0, tuple((-r, a, s) for r, a, s in VENTRICLE)
     ),
     "right-mca": Tube(
         "Right middle cerebral artery (schematic)",
-        "right-mca",
         1.5,
         ((9, 1, -14), (22, 3, -17), (35, 4, -15), (44, 8, -5), (46, 5, 6), (47, -8, 14)),
     ),
     "right-pca": Tube(
         "Right posterior cerebral artery (schematic)",
-        "right-pca",
         1.3,
         ((3, -20, -12), (13, -23, -9), (18, -34, -5), (15, -48, 0), (11, -62, 3)),
     ),
 }
-SINUS = Tube("Superior sagittal sinus (schematic)", "sagittal-sinus", 4.0, ())
+SINUS, SINUS_RADIUS = "sagittal-sinus", 4.0
 """Its course follows the inner table in the midline."""
 
 DIRECTIONS = {
@@ -151,13 +127,12 @@ class Planner:
         self.head = read_head_mesh(self.scenario.head_mesh)
         self.skull = read_head_mesh(FOLDER / "skull.ply")
         self.planning = PlanningSetup(self.scenario, self.head)
-        self.reach = GuideReach(self.planning)
         self.poses = self.planning.poses(range(POSES), WIDER)
 
     def trajectories(
         self,
         wanted: list[WantedTrajectory],
-        no_go: dict[str, HeadMesh],
+        no_go: list[HeadMesh],
         diameter_mm: float,
         safety_mm: float,
     ) -> tuple[ProcedureTrajectory, ...]:
@@ -165,8 +140,8 @@ class Planner:
         found: list[ProcedureTrajectory] = []
         for one in wanted:
             for trajectory in self._by_cost(one, diameter_mm, safety_mm):
-                if self._is_free(trajectory, no_go, found) and self.reach.is_held(
-                    trajectory, self.poses
+                if self._is_free(trajectory, no_go, found) and is_guide_held(
+                    self.planning, trajectory, self.poses
                 ):
                     found.append(trajectory)
                     break
@@ -206,17 +181,14 @@ class Planner:
     def _is_free(
         self,
         trajectory: ProcedureTrajectory,
-        no_go: dict[str, HeadMesh],
+        no_go: list[HeadMesh],
         others: list[ProcedureTrajectory],
     ) -> bool:
-        radius, entry, target = (
-            trajectory.diameter_mm / 2,
-            trajectory.entry_ras,
-            trajectory.target_ras,
-        )
+        radius = trajectory.diameter_mm / 2
+        entry, target = trajectory.entry_ras, trajectory.target_ras
         is_clear = all(
             axis_distance_mm(mesh, entry, target) - radius > trajectory.safety_mm + 0.5
-            for mesh in no_go.values()
+            for mesh in no_go
         )
         return is_clear and all(
             segment_distances_mm(entry, target, other.entry_ras[None], other.target_ras[None])[0]
@@ -245,8 +217,8 @@ class Planner:
         for degrees in np.arange(35.0, 196.0, 10.0):
             out = np.array([0.0, np.cos(np.radians(degrees)), np.sin(np.radians(degrees))])
             inner = mesh_crossings(self.skull, center, out, REACH_MM)[0].distance_mm
-            course.append(tuple((center + (inner - SINUS.radius) * out).round(2).tolist()))
-        return Tube(SINUS.name, SINUS.file, SINUS.radius, tuple(course))
+            course.append(tuple((center + (inner - SINUS_RADIUS) * out).round(2).tolist()))
+        return Tube("Superior sagittal sinus (schematic)", SINUS_RADIUS, tuple(course))
 
 
 def tube_mesh(tube: Tube) -> HeadMesh:
@@ -263,19 +235,15 @@ def tube_mesh(tube: Tube) -> HeadMesh:
 
 def planned(planner: Planner) -> tuple[list[Procedure], dict[str, HeadMesh]]:
     """Return the three procedures, and the meshes of their no-go structures by file name."""
-    tubes = {**TUBES, SINUS.file: planner.sinus()}
+    tubes = {**TUBES, SINUS: planner.sinus()}
     meshes = {name: tube_mesh(tube) for name, tube in tubes.items()}
-
-    def no_go(*names: str) -> tuple[dict[str, HeadMesh], tuple[NoGoStructure, ...]]:
-        structures = tuple(
-            NoGoStructure(tubes[name].name, FOLDER / "no-go" / f"{name}.ply") for name in names
-        )
-        return {name: meshes[name] for name in names}, structures
-
     checkpoints = planner.checkpoints()
     procedures = []
     for name, title, kind, source, wanted, structures, diameter, safety in PLANS:
-        obstacles, named = no_go(*structures)
+        named = tuple(
+            NoGoStructure(tubes[each].name, FOLDER / "no-go" / f"{each}.ply") for each in structures
+        )
+        obstacles = [meshes[each] for each in structures]
         trajectories = planner.trajectories(wanted, obstacles, diameter, safety)
         text = f"{source} {SCHEMATIC} {HEAD_SPACE}"
         procedures.append(Procedure(name, title, kind, text, trajectories, named, checkpoints))
@@ -289,7 +257,7 @@ PLANS = (
         ProcedureKind.BIOPSY,
         "Target: the center of a made-up lesion in the right frontal white matter.",
         [WantedTrajectory("Right frontal lesion", (28.0, 30.0, 24.0), (0.4, 0.35, 0.8))],
-        (SINUS.file, "right-ventricle"),
+        (SINUS, "right-ventricle"),
         2.1,
         3.0,
     ),
@@ -304,7 +272,7 @@ PLANS = (
             ),
             WantedTrajectory("Right subthalamic nucleus", (12.58, -13.41, -5.87), (0.3, 0.5, 0.85)),
         ],
-        (SINUS.file, "left-ventricle", "right-ventricle"),
+        (SINUS, "left-ventricle", "right-ventricle"),
         1.27,
         2.0,
     ),
@@ -320,7 +288,7 @@ PLANS = (
             WantedTrajectory("Right middle cingulate", (7.02, -8.83, 39.79), (0.6, 0.2, 0.8)),
             WantedTrajectory("Right posterior cingulate", (6.44, -41.81, 21.87), (0.5, -0.6, 0.6)),
         ],
-        (SINUS.file, "right-mca", "right-pca"),
+        (SINUS, "right-mca", "right-pca"),
         0.8,
         3.0,
     ),
@@ -334,20 +302,12 @@ def main() -> int:
     (FOLDER / "no-go").mkdir(exist_ok=True)
     for name, mesh in meshes.items():
         write_head_mesh(FOLDER / "no-go" / name, mesh)
-    write_procedures([procedure_json(procedure) for procedure in procedures])
-    table = table_of(procedures)
-    before, _, rest = README.read_text(encoding="utf-8").partition(TABLE_START)
-    write_text(README, before + TABLE_START + table + TABLE_END + rest.partition(TABLE_END)[2])
-    print(table)
-    return 0
-
-
-def write_procedures(entries: list[dict[str, Any]]) -> None:
-    """Put skull and procedures into `scenario.json`; everything else stays as it is."""
     content = read_json(FOLDER / FILE_NAME, 2**20)
     content["skull"] = {"file": "skull.ply", "kind": "approximation"}
-    content["procedures"] = entries
-    write_text(FOLDER / FILE_NAME, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
+    content["procedures"] = [procedure_json(procedure) for procedure in procedures]
+    write_json(FOLDER / FILE_NAME, content)
+    write_table(Path(__file__).name, table_of(procedures))
+    return 0
 
 
 def table_of(procedures: list[Procedure]) -> str:

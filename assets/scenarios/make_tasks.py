@@ -6,18 +6,17 @@ Takes about two minutes. The same head, robot, seed and program give the same ta
 shipped stay as they are though the proposer has changed since: recorded trials refer to them.
 """
 
-import json
 import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from colin27_setup import CLOSE_UP_MM, PERTURBATION, head_to_world, scenario_json
+from colin27_setup import CLOSE_UP_MM, PERTURBATION, head_to_world, scenario_json, write_table
 
 from rastrainer import transforms
 from rastrainer.files.point_files import write_markups
 from rastrainer.files.point_list import PointList
-from rastrainer.files.writing import write_text
+from rastrainer.files.writing import write_json
 from rastrainer.head.mesh import outward_normal, read_head_mesh
 from rastrainer.head.trial_head import Perturbation, perturbed_pose
 from rastrainer.scenario.points import LABELS
@@ -39,8 +38,6 @@ from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from rastrainer_simulator.robot.model import load_robot
 
 FOLDER = Path(__file__).parent / "colin27"
-README = Path(__file__).parent / "README.md"
-TABLE_START, TABLE_END = "<!-- table by make_tasks.py -->\n", "<!-- end of table -->\n"
 
 SEED = 27
 PLACE_SPACING_MM = 10.0
@@ -83,12 +80,8 @@ def main() -> int:
     for proposal in proposals:
         write_markups(FOLDER / _file(proposal), PointList(LABELS, proposal.fiducials))
     content = scenario_json(bench.center, [entry(proposal, bench) for proposal in proposals])
-    write_text(FOLDER / FILE_NAME, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
-    table = table_of(proposals, bench.center)
-    before, _, rest = README.read_text(encoding="utf-8").partition(TABLE_START)
-    after = rest.partition(TABLE_END)[2]
-    write_text(README, before + TABLE_START + table + TABLE_END + after)
-    print(table)
+    write_json(FOLDER / FILE_NAME, content)
+    write_table(Path(__file__).name, table_of(proposals, bench.center))
     return 0 if all(is_touchable(bench, proposal) for proposal in proposals) else 1
 
 

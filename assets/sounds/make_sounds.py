@@ -22,12 +22,9 @@ REED = tuple((n, 1.0 / n, 1.0) for n in range(1, 9))
 
 @dataclass(frozen=True)
 class Note:
-    """One tone of a sound.
+    """One tone of a sound; its pitch in Hz, start and length in s.
 
     Attributes:
-        pitch: frequency, Hz.
-        start: s after the sound begins.
-        length: s until it has died away.
         timbre: partials as (multiple of the pitch, strength, share of the length).
         is_struck: whether it dies away from its start on; else it is held.
         strength: loudness beside the other notes.
@@ -89,15 +86,6 @@ def samples(sound: Sound) -> np.ndarray:
     return np.round(total * (sound.peak * LARGEST / np.abs(total).max())).astype("<i2")
 
 
-def write_wave(path: Path, values: np.ndarray) -> None:
-    """Write (n,) int16 as a mono WAV file."""
-    with wave.open(str(path), "wb") as file:
-        file.setnchannels(1)
-        file.setsampwidth(2)
-        file.setframerate(RATE_HZ)
-        file.writeframes(values.tobytes())
-
-
 def _tone(note: Note) -> np.ndarray:
     times = np.arange(round(note.length * RATE_HZ)) / RATE_HZ
     tone = np.zeros_like(times)
@@ -113,7 +101,11 @@ def _tone(note: Note) -> np.ndarray:
 
 def main() -> None:
     for name, sound in SOUNDS.items():
-        write_wave(Path(__file__).with_name(f"{name}.wav"), samples(sound))
+        with wave.open(str(Path(__file__).with_name(f"{name}.wav")), "wb") as file:
+            file.setnchannels(1)
+            file.setsampwidth(2)
+            file.setframerate(RATE_HZ)
+            file.writeframes(samples(sound).tobytes())
 
 
 if __name__ == "__main__":

@@ -38,20 +38,10 @@ from rastrainer_simulator.scene.surfaces import surface
 
 @dataclass(frozen=True)
 class Grid:
-    """The grid of an image's voxels.
-
-    Attributes:
-        shape: number of voxels along each axis.
-        ijk_to_ras: (4, 4) float, mm.
-    """
+    """The grid of an image's voxels; the matrix is (4, 4) float, mm."""
 
     shape: tuple[int, int, int]
     ijk_to_ras: np.ndarray
-
-    @property
-    def spacing(self) -> np.ndarray:
-        """(3,) float: size of a voxel along each axis, mm."""
-        return np.linalg.norm(self.ijk_to_ras[:3, :3], axis=0)
 
     def part(self, slices: tuple[slice, slice, slice]) -> Grid:
         first = np.array([each.start for each in slices])
@@ -96,7 +86,7 @@ class Grid:
         """Return the distance (i, j, k) float, mm, of each voxel to the nearest marked one."""
         image = vtkImageData()
         image.SetDimensions(self.shape)
-        image.SetSpacing(*self.spacing.tolist())
+        image.SetSpacing(*np.linalg.norm(self.ijk_to_ras[:3, :3], axis=0).tolist())
         unmarked = np.asarray(~marked, np.uint8).ravel(order="F")
         image.GetPointData().SetScalars(numpy_to_vtk(unmarked, deep=True))
         squared = vtkImageEuclideanDistance()
@@ -128,10 +118,6 @@ def without_face_in(volume: HeadVolume, head: HeadMesh) -> HeadVolume:
 
     What is removed depends on the shield of `without_face`, not on the face: the images reveal no
     more about it than the exported surface.
-
-    Args:
-        volume: the images.
-        head: with its face.
     """
     shield, tip = without_face(head), nose_tip(head)
     grid = Grid(volume.values.shape, volume.ijk_to_ras)
@@ -142,7 +128,13 @@ def without_face_in(volume: HeadVolume, head: HeadMesh) -> HeadVolume:
     is_near = np.linalg.norm(part.places() - tip, axis=-1) < RADIUS_MM + BEYOND_MM
     is_face = face_vertices(head)
     to_shield = part.distances(part.at(_samples(shield, is_face)))
-    is_taken = ~part.inside(shield) | (to_shield < _depth(head.vertices[is_face], shield))
+    # The depth behind the shield that contains the whole face.
+    signed = vtkImplicitPolyDataDistance()
+    signed.SetInput(surface(shield.vertices, shield.triangles))
+    face = head.vertices[is_face].astype(float)
+    deepest = max((-signed.EvaluateFunction(place) for place in face), default=0.0)
+    depth = max(LEAST_DEPTH_MM, deepest + BEHIND_FACE_MM)
+    is_taken = ~part.inside(shield) | (to_shield < depth)
     values[around][is_near & is_taken] = nothing
     return replace(volume, values=values)
 
@@ -153,14 +145,6 @@ def _samples(mesh: HeadMesh, is_wanted: np.ndarray) -> np.ndarray:
     steps = np.arange(_SAMPLES + 1) / _SAMPLES
     weights = np.array([(a, b, 1.0 - a - b) for a in steps for b in steps if a + b < 1.0 + 1e-9])
     return np.einsum("wc,tcx->wtx", weights, corners).reshape(-1, 3)
-
-
-def _depth(face: np.ndarray, shield: HeadMesh) -> float:
-    """Return the depth behind the shield (mm) that contains all points (n, 3) of the face."""
-    signed = vtkImplicitPolyDataDistance()
-    signed.SetInput(surface(shield.vertices, shield.triangles))
-    deepest = max((-signed.EvaluateFunction(place) for place in face.astype(float)), default=0.0)
-    return max(LEAST_DEPTH_MM, deepest + BEHIND_FACE_MM)
 
 
 FACELESS = " The face was taken off."
@@ -185,8 +169,6 @@ def pack_for_sharing(
     """Write a scenario as one zip file and return a sentence about what was removed.
 
     Args:
-        folder: of the scenario, which is not changed.
-        package: the new file.
         keeps_face: keep the head, its picture, its images and its skull; otherwise head, picture
             and images have no face, and the skull is left out with the procedures, which need it.
         keeps_names: keep title, name and source, which often are the patient's name, and the
@@ -244,12 +226,10 @@ def _faceless(scenario: Scenario, head: HeadMesh) -> tuple[Scenario, HeadMesh]:
 def _nameless(scenario: Scenario, head: HeadMesh) -> Scenario:
     number = hashlib.sha256(head.vertices.astype("<f4").tobytes()).hexdigest()[:6]
     title = f"Head {number}"
-    provenance = replace(scenario.provenance, source=NO_SOURCE)
-    procedures = tuple(replace(each, source=NO_SOURCE) for each in scenario.procedures)
     return replace(
         scenario,
         name=scenario_name(title),
         title=title,
-        provenance=provenance,
-        procedures=procedures,
+        provenance=replace(scenario.provenance, source=NO_SOURCE),
+        procedures=tuple(replace(each, source=NO_SOURCE) for each in scenario.procedures),
     )

@@ -10,7 +10,7 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.head.volume import HeadVolume
 from rastrainer.scenario.scenario import Camera
-from rastrainer_simulator.rendering.picture import OffscreenWindow, write_png
+from rastrainer_simulator.rendering.picture import frames, write_png
 from rastrainer_simulator.scene.surfaces import surface
 
 VIEWS = np.array([[0.3, 1.0, 0.1], [1.0, 0.0, 0.0], [0.0, -1.0, 0.1]])
@@ -47,16 +47,13 @@ def _views(head: HeadMesh, before: HeadMesh) -> list[np.ndarray]:
     actor.GetProperty().SetColor(*_SKIN)
     renderer.AddActor(actor)
     renderer.SetBackground(*_AROUND)
-    window = OffscreenWindow(renderer)
     reach = _DISTANCE * float(before.size.max()) / 2.0
     up = np.array([0.0, 0.0, 1.0])
     cameras = (
         Camera(before.middle + reach * view / np.linalg.norm(view), before.middle, up, _ANGLE_DEG)
         for view in VIEWS
     )
-    views = [window.frame(camera, (SIDE, SIDE)) for camera in cameras]
-    window.close()
-    return views
+    return frames(renderer, *((camera, (SIDE, SIDE)) for camera in cameras))
 
 
 def _middle(volume: HeadVolume, head: HeadMesh) -> np.ndarray:

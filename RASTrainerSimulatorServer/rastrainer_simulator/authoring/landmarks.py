@@ -10,8 +10,6 @@ them. The result is a proposal, to be checked.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -31,7 +29,7 @@ from rastrainer.scenario.points import (
     on_skin,
     spread_first,
 )
-from rastrainer.scenario.scenario import Scenario, load_scenario
+from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.face_removal import nose_tip
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
@@ -61,60 +59,27 @@ POSES_TRIED = 12
 NEAR_MM, PLACES_TRIED = 6.0, 8
 
 
-@dataclass(frozen=True)
-class ProposedLandmarks:
-    """A proposal.
-
-    Attributes:
-        landmarks: in the order of touching, the three that a trace begins with first.
-        left_out: a sentence for each landmark that is not among them.
-    """
-
-    landmarks: tuple[Landmark, ...]
-    left_out: tuple[str, ...]
-
-
-def _propose_landmarks(scenario: Scenario) -> ProposedLandmarks:
-    """Return landmarks for the head of a scenario that the robot can touch in its trials."""
-    mesh = read_head_mesh(scenario.head_mesh)
-    found = landmarks_on(mesh)
-    missing = [name for name in FACE_LANDMARKS if name not in {each.name for each in found}]
-    left_out = [f"{name} is not on the head, which ends above it." for name in missing]
-    unreached = unreachable(PlanningSetup(scenario, mesh), found)
-    left_out += [
-        f"{name} is left out: the robot does not reach it in every pose of a trial."
-        for name in unreached
-    ]
-    kept = [each for each in found if each.name not in unreached]
-    return ProposedLandmarks(spread_first(kept), tuple(left_out))
-
-
 def unreachable(planning: PlanningSetup, landmarks: Sequence[Landmark]) -> list[str]:
     """Return the names of landmarks that the robot cannot touch in some pose of a trial.
 
     It reaches one if it can touch a place within 6 mm of it: a landmark is not an exact point.
     """
-    poses = planning.poses(range(POSES_TRIED))
-    return [each.name for each in landmarks if not _is_reached(planning, each.position_ras, poses)]
-
-
-def _is_reached(planning: PlanningSetup, place: np.ndarray, poses: list[np.ndarray]) -> bool:
-    mesh = planning.mesh
-    around = np.flatnonzero(np.linalg.norm(mesh.vertices - place, axis=1) < NEAR_MM)
-    places = np.vstack([place, mesh.vertices[_thinned(around, PLACES_TRIED)]]).astype(float)
-    normals = outward_normals(mesh, places)
-    return all(
-        any(
-            planning.touchable(places[[row]], normals[[row]], [pose])[0]
-            for row in range(len(places))
-        )
-        for pose in poses
-    )
+    poses, mesh = planning.poses(range(POSES_TRIED)), planning.mesh
+    found = []
+    for landmark in landmarks:
+        away = np.linalg.norm(mesh.vertices - landmark.position_ras, axis=1)
+        around = mesh.vertices[_thinned(np.flatnonzero(away < NEAR_MM), PLACES_TRIED)]
+        places = np.vstack([landmark.position_ras, around]).astype(float)
+        each = [*zip(places[:, None], outward_normals(mesh, places)[:, None], strict=True)]
+        is_reached = all(any(planning.touchable(*one, [pose])[0] for one in each) for pose in poses)
+        if not is_reached:
+            found.append(landmark.name)
+    return found
 
 
 def landmarks_on(mesh: HeadMesh) -> tuple[Landmark, ...]:
     """Return the reference's landmarks on another head, RAS mm, in the order of their names."""
-    reference = _reference()
+    reference = read_head_mesh(asset_path("scenarios", "colin27") / "head.ply")
     onto = _whole(reference, mesh)
     places = {
         name: _local(reference, np.array(place), onto, mesh) for name, place in REFERENCE.items()
@@ -129,11 +94,6 @@ def landmarks_on(mesh: HeadMesh) -> tuple[Landmark, ...]:
         for name in FACE_LANDMARKS
         if name in places and places[name][2] > base
     )
-
-
-@cache
-def _reference() -> HeadMesh:
-    return read_head_mesh(asset_path("scenarios", "colin27") / "head.ply")
 
 
 def _whole(reference: HeadMesh, mesh: HeadMesh) -> np.ndarray:
@@ -184,17 +144,16 @@ def _thinned(indices: np.ndarray, count: int) -> np.ndarray:
 
 def _beginning(reference: HeadMesh, mesh: HeadMesh) -> tuple[np.ndarray, np.ndarray]:
     """Return scales (3,) and a shift (4, 4): same top, width and length."""
-    own, other = (_extent(each.vertices) for each in (reference, mesh))
+    own, other = (
+        np.array([each.vertices.min(axis=0), each.vertices.max(axis=0)])
+        for each in (reference, mesh)
+    )
     across = (other[1] - other[0]) / (own[1] - own[0])
     scales = np.clip(np.array([across[0], across[1], across[:2].mean()]), *SCALES)
     shift = np.eye(4)
     shift[:2, 3] = (other.mean(axis=0) - scales * own.mean(axis=0))[:2]
     shift[2, 3] = other[1, 2] - scales[2] * own[1, 2]
     return scales, shift
-
-
-def _extent(vertices: np.ndarray) -> np.ndarray:
-    return np.array([vertices.min(axis=0), vertices.max(axis=0)])
 
 
 def _local(reference: HeadMesh, place: np.ndarray, onto: np.ndarray, mesh: HeadMesh) -> np.ndarray:
@@ -256,11 +215,24 @@ def check_on_planned_head(planning: PlanningSetup, landmarks: Sequence[Landmark]
 
 def write_proposal(folder: Path, path: Path) -> list[str]:
     """Write landmarks for the head of a scenario to a markups file; return sentences about them."""
-    proposed = _propose_landmarks(load_scenario(folder))
-    names = tuple(landmark.name for landmark in proposed.landmarks)
-    places = np.array([each.position_ras for each in proposed.landmarks], dtype=float).reshape(
-        -1, 3
-    )
-    write_markups(path, PointList(names, places))
-    said = f"{len(names)} landmarks are proposed: look at each, and move it where it is wrong."
-    return [said, *proposed.left_out]
+    scenario = load_scenario(folder)
+    mesh = read_head_mesh(scenario.head_mesh)
+    found = landmarks_on(mesh)
+    unreached = unreachable(PlanningSetup(scenario, mesh), found)
+    # In the order of touching, the three that a trace begins with first.
+    kept = spread_first([each for each in found if each.name not in unreached])
+    places = np.array([each.position_ras for each in kept], dtype=float).reshape(-1, 3)
+    write_markups(path, PointList(tuple(each.name for each in kept), places))
+    on_head = {each.name for each in found}
+    return [
+        f"{len(kept)} landmarks are proposed: look at each, and move it where it is wrong.",
+        *(
+            f"{name} is not on the head, which ends above it."
+            for name in FACE_LANDMARKS
+            if name not in on_head
+        ),
+        *(
+            f"{name} is left out: the robot does not reach it in every pose of a trial."
+            for name in unreached
+        ),
+    ]

@@ -51,11 +51,7 @@ class ScenarioOptions:
     """The options of a scenario besides its head.
 
     Attributes:
-        title: for people; the name is made from it.
-        source, license: for the provenance.
-        setup: how the head is placed before the robot.
         targets: planned; the target error is reported at the first.
-        trajectory: planned.
         task_files: manually placed markups, in the order of the tasks; without any, tasks are
             proposed.
         seed: of the proposal.
@@ -82,9 +78,6 @@ def make_scenario(
     """Write the scenario of a head into a new folder and return it.
 
     Args:
-        draft: of the head; its skull may be missing.
-        options: of the scenario.
-        folder: to be made.
         progress: called with each step's name and the share done; may raise to cancel.
         wait_for_skull: returns the same draft with the skull, which is made meanwhile; None if
             `draft` is complete.
@@ -191,19 +184,16 @@ def copy_with_plan(
     procedure: Procedure | None = None,
     landmarks: tuple[Landmark, ...] | None = None,
 ) -> Scenario:
-    """Write a copy of a scenario with another plan and return it.
+    """Write a copy of a scenario with another plan into a new folder and return it.
+
+    What is empty or None is kept.
 
     Args:
-        folder: of the scenario, which stays as it is.
-        title: of the copy; its name is made from it.
-        copy: a new folder.
-        targets: RAS mm, replacing all others; the first is where the error is reported. If empty,
-            the targets are kept.
-        trajectory: RAS mm, replacing the other one; None keeps it.
+        targets: RAS mm, replacing all others; the first is where the error is reported.
+        trajectory: RAS mm, replacing the other one.
         warn: called if the first target is too deep for trials to start above it.
-        procedure: replacing the one of the same name, or added; None keeps all as they are.
-        landmarks: RAS mm, replacing all others; those near the skin are moved onto it. None keeps
-            them.
+        procedure: replacing the one of the same name, or added.
+        landmarks: RAS mm, replacing all others; those near the skin are moved onto it.
     """
     before = checked_scenario(folder)
     head = read_head_mesh(before.head_mesh)
@@ -250,12 +240,7 @@ class HeadProcess:
         self._folder = folder
 
     def head(self, progress: Progress, warn: Warn) -> HeadDraft:
-        """Wait for the head and return its draft without a skull.
-
-        Args:
-            progress: called with each step's name and the share done; may raise to cancel.
-            warn: called with each warning.
-        """
+        """Wait for the head, and return its draft without a skull; `progress` may cancel."""
         assert self._process.stdout is not None  # It is a pipe.
         for line in self._process.stdout:
             if line.rstrip() == HEAD_MADE:
@@ -282,9 +267,8 @@ class HeadProcess:
 def head_process(volume: Path, options: list[str]) -> Iterator[HeadProcess]:
     """Yield a process that makes the head in a volume; it ends with the context.
 
-    Args:
-        volume: NRRD, NIfTI, or a folder of DICOM files.
-        options: further arguments of `python -m rastrainer_headless.make_head`.
+    The volume is NRRD, NIfTI, or a folder of DICOM files; `options` are further arguments of
+    `python -m rastrainer_headless.make_head`.
     """
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary) / "draft"

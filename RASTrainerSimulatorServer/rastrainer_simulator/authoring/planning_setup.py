@@ -15,10 +15,18 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.touch_order import SurfaceGraph
 from rastrainer_simulator.collision.collision import Collision, head_collision
-from rastrainer_simulator.collision.touch_planner import TouchPlanner
+from rastrainer_simulator.collision.touch_planner import PlanReach, TouchPlanner
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.viewpoint.best_view import TouchViews
+
+
+def pose_head(collision: Collision, head_to_world: np.ndarray) -> np.ndarray:
+    """Set the head's pose, HeadToWorld (4, 4) float, mm, and return it in m."""
+    pose = np.array(head_to_world, dtype=float)
+    pose[:3, 3] /= MM_PER_M
+    collision.set_head_pose(pose)
+    return pose
 
 
 def touchable(
@@ -31,8 +39,7 @@ def touchable(
     """Return which points (n,) bool can be touched in every pose of the head.
 
     Args:
-        planner: looks for the touches, with the same `collision`.
-        collision: its head is put into each pose.
+        planner: with the same `collision`, whose head is put into each pose.
         positions: (n, 3) float, RAS mm.
         normals: (n, 3) float, outward unit normals, RAS.
         poses: HeadToWorld, (4, 4) float, mm, one after the other.
@@ -40,9 +47,7 @@ def touchable(
     can_be = np.ones(len(positions), dtype=bool)
     likely = np.zeros(len(positions), dtype=int)
     for head_to_world in poses:
-        pose = np.array(head_to_world, dtype=float)
-        pose[:3, 3] /= MM_PER_M
-        collision.set_head_pose(pose)
+        pose = pose_head(collision, head_to_world)
         for place in np.flatnonzero(can_be):
             position = transforms.apply(pose, positions[place] / MM_PER_M)
             normal = pose[:3, :3] @ normals[place]
@@ -57,13 +62,7 @@ WIDER = 1.2
 
 
 class PlanningSetup:
-    """Robot, head and set-up of one scenario; its tasks do not matter.
-
-    Attributes:
-        scenario: the set-up.
-        mesh: its head, RAS mm.
-        setup: the robot.
-    """
+    """Robot, head (RAS mm) and set-up of one scenario; its tasks do not matter."""
 
     def __init__(
         self, scenario: Scenario, mesh: HeadMesh, setup: SimulationSetup | None = None
@@ -73,8 +72,13 @@ class PlanningSetup:
         self.mesh = mesh
         self.setup = replace(setup or load_setup(), scenario=scenario)
         self.collision = head_collision(self.setup.shape, mesh, scenario.furniture)
-        self.kinematics = make_kinematics(self.setup.robot)
         self._planner = TouchPlanner(self.setup.robot, self.collision)
+
+    @cached_property
+    def reach(self) -> PlanReach:
+        """Judges plans on the head as it is posed."""
+        robot = self.setup.robot
+        return PlanReach(robot, make_kinematics(robot), self.collision)
 
     @cached_property
     def graph(self) -> SurfaceGraph:

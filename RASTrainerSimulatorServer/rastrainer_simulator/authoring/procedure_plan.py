@@ -29,8 +29,7 @@ from rastrainer.procedure.plan import (
 from rastrainer.scenario.library import require_usable_lines
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.authoring.planning_setup import PlanningSetup
-from rastrainer_simulator.collision.touch_planner import PlanReach
+from rastrainer_simulator.authoring.planning_setup import PlanningSetup, pose_head
 from rastrainer_simulator.core.setup import SimulationSetup
 
 STAND_OFFS_M = (0.01, 0.03, 0.05, 0.08)
@@ -38,29 +37,20 @@ STAND_OFFS_M = (0.01, 0.03, 0.05, 0.08)
 POSES_TRIED = 12
 
 
-class GuideReach:
-    """Determines where the robot can hold the guide."""
+def is_guide_held(
+    planning: PlanningSetup, trajectory: ProcedureTrajectory, poses: Iterable[np.ndarray]
+) -> bool:
+    """Return whether the guide can be held along a line before the head in all its poses.
 
-    def __init__(self, planning: PlanningSetup) -> None:
-        self._collision = planning.collision
-        self._reach = PlanReach(planning.setup.robot, planning.kinematics, planning.collision)
-
-    def is_held(self, trajectory: ProcedureTrajectory, poses: Iterable[np.ndarray]) -> bool:
-        """Return whether the guide can be held along a line before the head in all its poses.
-
-        Args:
-            trajectory: planned, RAS mm.
-            poses: HeadToWorld, (4, 4) float, mm, one after the other.
-        """
-        return all(self._is_held(trajectory, pose) for pose in poses)
-
-    def _is_held(self, trajectory: ProcedureTrajectory, head_to_world: np.ndarray) -> bool:
-        pose = np.array(head_to_world, dtype=float)
-        pose[:3, 3] /= MM_PER_M
-        self._collision.set_head_pose(pose)
-        entry = transforms.apply(pose, trajectory.entry_ras / MM_PER_M)
-        direction = pose[:3, :3] @ trajectory.direction
-        return self._reach.judge_guide(entry.tolist(), direction.tolist(), STAND_OFFS_M).reachable
+    `poses` are HeadToWorld, (4, 4) float, mm, one after the other.
+    """
+    for head_to_world in poses:
+        pose = pose_head(planning.collision, head_to_world)
+        entry = transforms.apply(pose, trajectory.entry_ras / MM_PER_M).tolist()
+        direction = (pose[:3, :3] @ trajectory.direction).tolist()
+        if not planning.reach.judge_guide(entry, direction, STAND_OFFS_M).reachable:
+            return False
+    return True
 
 
 def check_procedures(planning: PlanningSetup) -> list[str]:
@@ -106,13 +96,13 @@ def _lines_held(
     planning: PlanningSetup, procedure: Procedure, poses_tried: int = POSES_TRIED
 ) -> tuple[list[bool], list[str]]:
     """Return whether the guide can be held on each line, and a sentence for each failure."""
-    reach, held, wrong = GuideReach(planning), [], []
+    held, wrong = [], []
     nominal, *others = planning.poses(range(poses_tried))
     for trajectory in procedure.trajectories:
         where = ""
-        if not reach.is_held(trajectory, [nominal]):
+        if not is_guide_held(planning, trajectory, [nominal]):
             where = "where the head is"
-        elif not reach.is_held(trajectory, others):
+        elif not is_guide_held(planning, trajectory, others):
             where = "in every trial"
         held.append(not where)
         if where:
@@ -126,26 +116,19 @@ def _lines_held(
 def measure_procedures(
     folder: Path, procedure: Procedure | None = None
 ) -> tuple[MeasuredProcedure, ...]:
-    """Return the procedures of a scenario, or another one on its head, as measured.
-
-    Args:
-        folder: of the scenario.
-        procedure: in place of the scenario's own.
-    """
+    """Return the procedures of a scenario, or another one on its head, as measured."""
     scenario = load_scenario(folder)
     skull = _skull(scenario)
     planning = PlanningSetup(scenario, read_head_mesh(scenario.head_mesh))
-    procedures = scenario.procedures if procedure is None else (procedure,)
-    return tuple(_measured(planning, each, skull) for each in procedures)
-
-
-def _measured(planning: PlanningSetup, procedure: Procedure, skull: Path) -> MeasuredProcedure:
-    wrong = _check_on_head(planning, procedure)
-    lines = measure_lines(procedure, read_procedure_meshes(procedure, skull))
-    if not wrong:
-        held, wrong = _lines_held(planning, procedure)
-        lines = [replace(line, is_held=each) for line, each in zip(lines, held, strict=True)]
-    return MeasuredProcedure(procedure.name, procedure.title, tuple(lines), tuple(wrong))
+    measured = []
+    for each in scenario.procedures if procedure is None else (procedure,):
+        wrong = _check_on_head(planning, each)
+        lines = measure_lines(each, read_procedure_meshes(each, skull))
+        if not wrong:
+            held, wrong = _lines_held(planning, each)
+            lines = [replace(line, is_held=can) for line, can in zip(lines, held, strict=True)]
+        measured.append(MeasuredProcedure(each.name, each.title, tuple(lines), tuple(wrong)))
+    return tuple(measured)
 
 
 def with_procedure(
@@ -153,9 +136,8 @@ def with_procedure(
 ) -> tuple[Scenario, dict[str, HeadMesh]]:
     """Return a scenario with a procedure, in place of one of the same name.
 
-    Returns:
-        The scenario, and the meshes of all its no-go structures by file name. A new mesh whose file
-        name another procedure has for another structure gets a name of its own.
+    The second value has the meshes of all its no-go structures by file name. A new mesh whose file
+    name another procedure has for another structure gets a name of its own.
     """
     _skull(scenario)
     others = [each for each in scenario.procedures if each.name != procedure.name]
@@ -165,7 +147,10 @@ def with_procedure(
         name, mesh = structure.file.name, read_head_mesh(structure.file)
         stem = structure.file.stem
         numbers = count(2)
-        while name in kept and not _are_same(kept[name], mesh):
+        while name in kept and not (
+            np.array_equal(kept[name].vertices, mesh.vertices)
+            and np.array_equal(kept[name].triangles, mesh.triangles)
+        ):
             name = f"{stem[:36]}-{next(numbers)}.ply"
         kept[name] = mesh
         structures.append(replace(structure, file=Path(NO_GO_FOLDER, name)))
@@ -177,11 +162,6 @@ def with_procedure(
     else:
         procedures.append(placed)
     return replace(scenario, procedures=tuple(procedures)), kept
-
-
-def _are_same(one: HeadMesh, other: HeadMesh) -> bool:
-    are_alike = np.array_equal(one.vertices, other.vertices)
-    return are_alike and np.array_equal(one.triangles, other.triangles)
 
 
 def _skull(scenario: Scenario) -> Path:
@@ -204,8 +184,7 @@ def line_table(procedures: Iterable[MeasuredProcedure]) -> list[str]:
     """Return the lines of a text: each procedure with its table, and what is wrong with it."""
     text = []
     for measured in procedures:
-        rows = [HEADER]
-        rows += [(*_cells(line), REACH[line.is_held]) for line in measured.lines]
+        rows = [HEADER, *map(_cells, measured.lines)]
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         text.append(f"{measured.title} ({measured.procedure})")
         for row in rows:
@@ -215,7 +194,7 @@ def line_table(procedures: Iterable[MeasuredProcedure]) -> list[str]:
     return text[:-1] or ["The scenario has no procedure."]
 
 
-def _cells(line: LineMeasures) -> tuple[str, str, str, str, str]:
+def _cells(line: LineMeasures) -> tuple[str, ...]:
     angle = line.skull_angle_deg
     near, other = line.nearest_no_go, line.nearest_line_mm
     return (
@@ -224,4 +203,5 @@ def _cells(line: LineMeasures) -> tuple[str, str, str, str, str]:
         "–" if angle is None else fixed(angle, 1),
         f"{fixed(line.no_go_mm[near], 1)} {near}" if near else "–",
         "–" if other is None else f"{fixed(other, 1)} {line.nearest_line}",
+        REACH[line.is_held],
     )

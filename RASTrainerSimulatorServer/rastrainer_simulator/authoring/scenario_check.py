@@ -19,11 +19,10 @@ from rastrainer.scenario.points import LABELS, Task, touch_order
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer.work_progress import Progress, Warn
-from rastrainer_simulator.authoring.planning_setup import PlanningSetup
+from rastrainer_simulator.authoring.planning_setup import PlanningSetup, pose_head
 from rastrainer_simulator.authoring.procedure_plan import check_procedures
 from rastrainer_simulator.authoring.task_proposal import PLANS, TaskPlan, target_spread
 from rastrainer_simulator.authoring.touch_order import complexity, shortest_path_mm
-from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.arm import start_joints
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.viewpoint.best_view import WIDEST_DEG
@@ -90,7 +89,7 @@ def check_plan(planning: PlanningSetup) -> list[str]:
         start_joints(planning.setup.robot, scenario, height)
     except InputError as error:
         wrong.append(str(error))
-    _pose_head(planning)
+    pose_head(planning.collision, scenario.head_to_world)
     targets = [(scenario.target_name, scenario.target_position)]
     targets += [(target.name, target.position_ras) for target in scenario.targets]
     if scenario.trajectory is not None:
@@ -125,15 +124,8 @@ def _wrong_trajectory(planning: PlanningSetup) -> list[str]:
         transforms.apply(to_world, point) / MM_PER_M
         for point in (trajectory.entry_ras, trajectory.target_ras)
     )
-    reach = PlanReach(planning.setup.robot, planning.kinematics, planning.collision)
-    answer = reach.judge(target.tolist(), entry.tolist())
+    answer = planning.reach.judge(target.tolist(), entry.tolist())
     return [] if answer.reachable else [f"{trajectory.name}: {answer.reason}"]
-
-
-def _pose_head(planning: PlanningSetup) -> None:
-    pose = np.array(planning.scenario.head_to_world)
-    pose[:3, 3] /= MM_PER_M
-    planning.collision.set_head_pose(pose)
 
 
 def _distance_mm(planning: PlanningSetup, position: np.ndarray) -> float:
@@ -159,6 +151,10 @@ APART_MM = 20.0
 WORST_SPREAD = 1.0
 """Largest ratio of the expected TRE at the target to the FLE."""
 
+NO_ROOM = (
+    "there is no room for all numbers beside the arrows; spread the fiducials, or touch them in "
+    "another order."
+)
 POSES_TRIED = 12
 COMPLEXITY_TOLERANCE = 0.02
 SHORTEST_PATH_TOLERANCE = 0.01
@@ -181,7 +177,7 @@ def check_tasks(planning: PlanningSetup, tasks: Iterable[Task], first_seed: int 
     for task in tasks:
         wrong += _wrong_places(planning, task) or [
             *(_untouchable(planning, task, first_seed) or _unseen(planning, task)),
-            *_unreadable(planning, task),
+            *([] if planning.views.placement(task).has_room else [f"{task.title}: {NO_ROOM}"]),
             *_wrong_measures(task, measured(planning, task)),
         ]
     for easier, harder in pairwise(tasks):
@@ -248,15 +244,6 @@ def _unseen(planning: PlanningSetup, task: Task) -> list[str]:
     ]
 
 
-def _unreadable(planning: PlanningSetup, task: Task) -> list[str]:
-    if planning.views.placement(task).has_room:
-        return []
-    return [
-        f"{task.title}: there is no room for all numbers beside the arrows; spread the fiducials, "
-        "or touch them in another order."
-    ]
-
-
 def _wrong_measures(task: Task, right: Task) -> list[str]:
     wrong = []
     if abs(right.complexity - task.complexity) > COMPLEXITY_TOLERANCE:
@@ -291,13 +278,8 @@ def read_placed_tasks(
 ) -> tuple[tuple[Task, ...], list[str]]:
     """Return the tasks of markups files, and what is wrong with them, one sentence each.
 
-    Fiducials within 5 mm of the skin are moved onto it.
-
-    Args:
-        planning: with the head.
-        files: the trial run's, Task 1's and so on.
-        progress: called with each step's name and the share done; may raise to cancel.
-        warn: called for each task whose fiducials are moved.
+    The files are the trial run's, Task 1's and so on. Fiducials within 5 mm of the skin are moved
+    onto it; `warn` is called for each task with such.
     """
     if len(files) > len(PLANS):
         return (), [f"A scenario has at most {len(PLANS)} tasks; {len(files)} are given."]

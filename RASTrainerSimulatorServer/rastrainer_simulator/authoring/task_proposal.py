@@ -13,7 +13,6 @@ from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer_simulator.authoring.touch_order import (
     Complexity,
     SurfaceGraph,
-    Transitions,
     arc_lengths,
     complexity,
     crossing_order,
@@ -90,17 +89,8 @@ class Proposal:
     complexity: Complexity
 
 
-@dataclass(frozen=True)
-class _Draw:
-    """Fiducials (15, 3) float in the order to touch, and an estimate of their index."""
-
-    plan: TaskPlan
-    fiducials: np.ndarray
-    rough_index: float
-
-
-def _all_usable(positions: np.ndarray) -> np.ndarray:
-    return np.ones(len(positions), dtype=bool)
+_Draw = tuple[np.ndarray, float]
+"""Fiducials (15, 3) float in the order to touch, and an estimate of their index."""
 
 
 def places_seen_from(
@@ -126,16 +116,13 @@ class TaskProposer:
         eye: np.ndarray,
         target: np.ndarray,
         accepts: Callable[[Proposal], bool] = lambda _proposal: True,
-        usable: Callable[[np.ndarray], np.ndarray] = _all_usable,
+        usable: Callable[[np.ndarray], np.ndarray] = lambda places: np.ones(len(places), bool),
     ) -> None:
         """Prepare proposals on a head.
 
         Args:
-            mesh: the head, RAS mm.
-            places: candidates for fiducials.
             eye: (3,) float, position of the default view, RAS mm.
             target: (3,) float, to be located well, RAS mm.
-            accepts: whether a proposal of `propose_rising` is accepted.
             usable: returns which of some points (n, 3) can be used, (n,) bool; it is expensive, so
                 it is called for chosen points only, and unusable ones are not chosen again.
         """
@@ -152,58 +139,52 @@ class TaskProposer:
     ) -> list[Proposal]:
         """Return a task for each plan, each more demanding than the one before.
 
-        Args:
-            plans: the demands of the tasks.
-            seed: of the draws.
-            begins_easy: use the easiest of many draws as the first task, for a head of which
-                little can be touched: there the others are not much harder.
+        With `begins_easy` the first task is the easiest of many draws, for a head of which little
+        can be touched: there the others are not much harder.
         """
         seeds = np.random.default_rng(seed).integers(0, 2**31, (len(plans), ATTEMPTS))
         proposals: list[Proposal] = []
         for plan, own_seeds in zip(plans, seeds.tolist(), strict=True):
             least = RISE * proposals[-1].complexity.index if proposals else 0.0
             if begins_easy and not proposals:
-                own_seeds = self._easiest_first(plan, own_seeds)
-            draws = (self._usable_draw(plan, own_seed) for own_seed in own_seeds)
-            likely = (draw for draw in draws if draw.rough_index >= ROUGHLY * least)
-            measured = (self._measured(draw) for draw in likely)
-            harder = (draw for draw in measured if draw.complexity.index >= least)
-            rising = next(filter(self._accepts, harder), None)
+                own_seeds = sorted(own_seeds, key=lambda seed: self._draw(plan, seed)[1])
+            found = (self.propose(plan, own_seed, least) for own_seed in own_seeds)
+            rising = next((one for one in found if one and self._accepts(one)), None)
             if rising is None:
                 raise InputError(f"{plan.title} cannot be made harder than the task before it.")
             proposals.append(rising)
         return proposals
 
-    def propose(self, plan: TaskPlan, seed: int) -> Proposal:
-        """Return a task as planned."""
-        return self._measured(self._usable_draw(plan, seed))
-
-    def _measured(self, draw: _Draw) -> Proposal:
-        demands = complexity(draw.fiducials, self._mesh, self._graph, self._eye)
-        return Proposal(draw.plan, draw.fiducials, demands)
-
-    def _easiest_first(self, plan: TaskPlan, seeds: Sequence[int]) -> list[int]:
-        return sorted(seeds, key=lambda seed: self._draw(plan, seed).rough_index)
-
-    def _usable_draw(self, plan: TaskPlan, seed: int) -> _Draw:
-        """Draw again without the unusable points until all are usable."""
+    def propose(self, plan: TaskPlan, seed: int, least: float = 0.0) -> Proposal | None:
+        """Return a task as planned; None if its complexity index is below `least`."""
         while True:
-            draw = self._draw(plan, seed)
-            is_usable = self._usable(draw.fiducials)
+            fiducials, rough_index = self._draw(plan, seed)
+            is_usable = self._usable(fiducials)
             if is_usable.all():
-                return draw
-            useless = draw.fiducials[~is_usable]
+                break
+            # Draw again without the unusable points.
+            useless = fiducials[~is_usable]
             kept = ~(self._places.positions[:, None] == useless[None]).all(axis=2).any(axis=1)
             self._places = CandidatePlaces(
                 *(values[kept] for values in vars(self._places).values())
             )
+        if rough_index < ROUGHLY * least:
+            return None
+        demands = complexity(fiducials, self._mesh, self._graph, self._eye)
+        return Proposal(plan, fiducials, demands) if demands.index >= least else None
 
     def _draw(self, plan: TaskPlan, seed: int) -> _Draw:
         chosen = self._chosen(plan, np.random.default_rng(seed))
         positions, normals = self._places.positions[chosen], self._places.normals[chosen]
         transitions = transitions_between(positions, normals, arc_lengths(positions, normals))
-        order = _order(plan, positions, transitions)
-        return _Draw(plan, positions[order], float(transitions.costs([order])[0]) + plan.hidden)
+        if plan.crossings == 0:
+            order = easiest_order(transitions, list(range(len(positions))))
+        else:
+            by_side = np.argsort(-positions[:, 0], kind="stable").tolist()
+            half = (len(positions) + 1) // 2
+            sides = [by_side[:half], by_side[half:]]
+            order = crossing_order(transitions, sides, plan.crossings)
+        return positions[order], float(transitions.costs([order])[0]) + plan.hidden
 
     def _chosen(self, plan: TaskPlan, random: np.random.Generator) -> list[int]:
         """Return the rows of the draw, of several, that locates the target best."""
@@ -236,15 +217,6 @@ class TaskProposer:
                 if count == 0:
                     break
         return chosen
-
-
-def _order(plan: TaskPlan, positions: np.ndarray, transitions: Transitions) -> list[int]:
-    """Return the order in which the points (15, 3) of a task are touched."""
-    if plan.crossings == 0:
-        return easiest_order(transitions, list(range(len(positions))))
-    by_side = np.argsort(-positions[:, 0], kind="stable").tolist()
-    half = (len(positions) + 1) // 2
-    return crossing_order(transitions, [by_side[:half], by_side[half:]], plan.crossings)
 
 
 def target_spread(fiducials: np.ndarray, target: np.ndarray) -> float:

@@ -17,7 +17,6 @@ from rastrainer_simulator.authoring.task_proposal import (
     PLANS,
     CandidatePlaces,
     Proposal,
-    TaskPlan,
     TaskProposer,
     places_seen_from,
 )
@@ -102,14 +101,18 @@ class TaskSetProposer:
                 self._places,
                 planning.eye,
                 planning.scenario.target_position,
-                self._is_readable,
+                lambda one: place_marks(self._skin, one.fiducials, LABELS).has_room,
                 self._are_touchable,
             )
             self._report("Placing fiducials", 0.3 + 0.1 * attempt)
             try:
-                proposals = proposer.propose_rising(
-                    _plans(attempt), seed + attempt, begins_easy=attempt > 0
-                )
+                # With further attempts the easy ones have more room.
+                wider = WIDEN_DEG * attempt
+                plans = [
+                    replace(plan, off_axis_deg=min(WIDEST_DEG, plan.off_axis_deg + wider))
+                    for plan in PLANS
+                ]
+                proposals = proposer.propose_rising(plans, seed + attempt, attempt > 0)
             except InputError as error:
                 problem = str(error)
                 continue
@@ -159,17 +162,6 @@ class TaskSetProposer:
     def _report(self, step: str, share: float) -> None:
         self._share = max(self._share, min(share, MAX_SHARE))
         self._progress(step, self._share)
-
-    def _is_readable(self, proposal: Proposal) -> bool:
-        return place_marks(self._skin, proposal.fiducials, LABELS).has_room
-
-
-def _plans(attempt: int) -> list[TaskPlan]:
-    """Return the plans; after failed attempts the easy ones have more room."""
-    wider = WIDEN_DEG * attempt
-    return [
-        replace(plan, off_axis_deg=min(WIDEST_DEG, plan.off_axis_deg + wider)) for plan in PLANS
-    ]
 
 
 def _task(proposal: Proposal, planning: PlanningSetup) -> Task:

@@ -35,14 +35,7 @@ GRAZING_DEG = 75.0
 
 @dataclass(frozen=True)
 class Complexity:
-    """The four parts of the index.
-
-    Attributes:
-        path_length_mm: L.
-        turning_deg: T.
-        hidden_points: H.
-        reorientation_deg: R.
-    """
+    """The four parts of the index: L, T, H and R."""
 
     path_length_mm: float
     turning_deg: float
@@ -63,20 +56,14 @@ class Complexity:
 def complexity(
     fiducials: np.ndarray, mesh: HeadMesh, graph: SurfaceGraph, eye: np.ndarray
 ) -> Complexity:
-    """Return the complexity of touching `fiducials` in order.
+    """Return the complexity of touching `fiducials` (n, 3) float, RAS mm, in order.
 
-    Args:
-        fiducials: (n, 3) float, on the surface, RAS mm.
-        mesh: the head, RAS mm.
-        graph: the paths over that mesh.
-        eye: (3,) float, the position of the default view, RAS mm.
+    `graph` has the paths over the mesh; `eye` is the position (3,) of the default view.
     """
     fiducials = np.asarray(fiducials, dtype=float)
     normals = np.array([outward_normal(mesh, point) for point in fiducials])
     return Complexity(
-        path_length_mm=sum(
-            graph.distance(start, end) for start, end in itertools.pairwise(fiducials)
-        ),
+        path_length_mm=sum(itertools.starmap(graph.distance, itertools.pairwise(fiducials))),
         turning_deg=float(
             turns_deg(fiducials[:-2], fiducials[1:-1], fiducials[2:], normals[1:-1]).sum()
         ),
@@ -95,7 +82,12 @@ def turns_deg(
 
     A path straight over curved skin does not turn. Shapes (n, 3).
     """
-    return _angles_deg(_in_plane(at - before, normals), _in_plane(after - at, normals))
+    return _angles_deg(
+        *(
+            along - normals * np.einsum("ij,ij->i", along, normals)[:, None]
+            for along in (at - before, after - at)
+        )
+    )
 
 
 def is_hidden(point: np.ndarray, normal: np.ndarray, mesh: HeadMesh, eye: np.ndarray) -> bool:
@@ -108,10 +100,6 @@ def _angles_deg(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Return the angles (n,) between vectors (n, 3), degrees; 0 where one has no length."""
     across = np.linalg.norm(np.cross(a, b), axis=1)
     return np.degrees(np.arctan2(across, np.einsum("ij,ij->i", a, b)))
-
-
-def _in_plane(vectors: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    return vectors - normals * np.einsum("ij,ij->i", vectors, normals)[:, None]
 
 
 @dataclass(frozen=True)
@@ -167,7 +155,23 @@ def arc_lengths(points: np.ndarray, normals: np.ndarray) -> np.ndarray:
 
 
 def easiest_order(transitions: Transitions, members: list[int]) -> list[int]:
-    orders = [_improved(transitions, _greedy(transitions, members, start)) for start in members]
+    """Return the easiest order that is found from any start.
+
+    The nearest fiducial comes next; then stretches are reversed and moved while that is cheaper.
+    """
+    orders = []
+    for start in members:
+        order, left = [start], set(members) - {start}
+        while left:
+            order.append(min(left, key=lambda other: (transitions.steps[order[-1], other], other)))
+            left.remove(order[-1])
+        best = np.inf
+        while True:
+            cost, cheapest = transitions.easiest(np.array(order)[_changes(len(order))])
+            if cost >= best - 1e-9:
+                break
+            order, best = cheapest, cost
+        orders.append(order)
     return transitions.easiest(orders)[1]
 
 
@@ -176,40 +180,15 @@ def crossing_order(transitions: Transitions, sides: list[list[int]], crossings: 
 
     Each side is touched in its own easiest order, in runs of equal length.
     """
-    runs: list[list[list[int]]] = []
-    for side, members in enumerate(sides):
-        count = (crossings + 2 - side) // 2
-        order = easiest_order(transitions, members)
-        runs.append([part.tolist() for part in np.array_split(order, count)])
-    second_turned = [part[::-1] for part in runs[1][::-1]]
-    return transitions.easiest(
-        [_interleaved(runs[0], second) for second in (runs[1], second_turned)]
-    )[1]
-
-
-def _interleaved(first: list[list[int]], second: list[list[int]]) -> list[int]:
-    order: list[int] = []
-    for index, run in enumerate(first):
-        order += run + (second[index] if index < len(second) else [])
-    return order
-
-
-def _greedy(transitions: Transitions, members: list[int], start: int) -> list[int]:
-    order, left = [start], set(members) - {start}
-    while left:
-        order.append(min(left, key=lambda other: (transitions.steps[order[-1], other], other)))
-        left.remove(order[-1])
-    return order
-
-
-def _improved(transitions: Transitions, order: list[int]) -> list[int]:
-    """Reverse and move stretches of the order while that makes it cheaper."""
-    best = np.inf
-    while True:
-        cost, cheapest = transitions.easiest(np.array(order)[_changes(len(order))])
-        if cost >= best - 1e-9:
-            return order
-        order, best = cheapest, cost
+    first, second = (
+        np.array_split(easiest_order(transitions, members), (crossings + 2 - side) // 2)
+        for side, members in enumerate(sides)
+    )
+    orders = []
+    for other in (second, [part[::-1] for part in second[::-1]]):
+        runs = itertools.chain(*itertools.zip_longest(first, other, fillvalue=np.empty(0, int)))
+        orders.append(np.concatenate(list(runs)))
+    return transitions.easiest(orders)[1]
 
 
 @cache
@@ -231,7 +210,10 @@ class SurfaceGraph:
 
     def __init__(self, mesh: HeadMesh) -> None:
         self._mesh = mesh
-        pairs, lengths = _paths(mesh)
+        across, across_mm = _paths_across(mesh)
+        straight = np.linalg.norm(np.diff(mesh.vertices[mesh.edges], axis=1)[:, 0], axis=1)
+        pairs = np.concatenate([mesh.edges, across])
+        lengths = np.concatenate([straight, across_mm])
         both = np.concatenate([pairs, pairs[:, ::-1]])
         order = np.argsort(both[:, 0], kind="stable")
         self._starts = np.searchsorted(both[order, 0], np.arange(len(mesh.vertices) + 1)).tolist()
@@ -244,23 +226,20 @@ class SurfaceGraph:
         # Complexity and shortest path of a task need the same paths.
         key = (*map(float, start), *map(float, end))
         if key not in self._known:
-            self._known[key] = self._distance(start, end)
+            first, last = nearest_on_mesh(self._mesh, start), nearest_on_mesh(self._mesh, end)
+            if first.triangle == last.triangle:
+                self._known[key] = float(np.linalg.norm(first.position - last.position))
+            else:
+                reached = self._from_corners(first, last)
+                leaving = self._leaving(last).items()
+                self._known[key] = min(reached.get(v, np.inf) + length for v, length in leaving)
         return self._known[key]
 
-    def _distance(self, start: np.ndarray, end: np.ndarray) -> float:
-        first, last = nearest_on_mesh(self._mesh, start), nearest_on_mesh(self._mesh, end)
-        if first.triangle == last.triangle:
-            return float(np.linalg.norm(first.position - last.position))
-        reached = self._from_corners(first, last)
-        return min(reached.get(v, np.inf) + length for length, v in self._leaving(last))
-
-    def _corners(self, point: NearestPoint) -> list[int]:
-        return self._mesh.triangles[point.triangle].tolist()
-
-    def _leaving(self, point: NearestPoint) -> list[tuple[float, int]]:
-        corners = self._corners(point)
+    def _leaving(self, point: NearestPoint) -> dict[int, float]:
+        """Return the distances of the corners around a point."""
+        corners = self._mesh.triangles[point.triangle].tolist()
         lengths = np.linalg.norm(self._mesh.vertices[corners] - point.position, axis=1)
-        return list(zip(lengths.tolist(), corners, strict=True))
+        return dict(zip(corners, lengths.tolist(), strict=True))
 
     def _from_corners(self, first: NearestPoint, last: NearestPoint) -> dict[int, float]:
         """Return the distances of vertices until the corners of the last triangle are reached.
@@ -268,8 +247,7 @@ class SurfaceGraph:
         Vertices are visited by distance plus straight line to the goal (A*, Hart 1968).
         """
         left = np.linalg.norm(self._mesh.vertices - last.position, axis=1).tolist()
-        missing = set(self._corners(last))
-        shortest = {vertex: length for length, vertex in self._leaving(first)}
+        missing, shortest = set(self._leaving(last)), self._leaving(first)
         waiting = [(length + left[vertex], length, vertex) for vertex, length in shortest.items()]
         heapq.heapify(waiting)
         while waiting and missing:
@@ -283,14 +261,6 @@ class SurfaceGraph:
                     shortest[end] = further
                     heapq.heappush(waiting, (further + left[end], further, end))
         return shortest
-
-
-def _paths(mesh: HeadMesh) -> tuple[np.ndarray, np.ndarray]:
-    """Return the graph's pairs of vertices (n, 2) and their distances (n,)."""
-    edges = mesh.edges
-    straight = np.linalg.norm(mesh.vertices[edges[:, 0]] - mesh.vertices[edges[:, 1]], axis=1)
-    pairs, across = _paths_across(mesh)
-    return np.concatenate([edges, pairs]), np.concatenate([straight, across])
 
 
 def _paths_across(mesh: HeadMesh) -> tuple[np.ndarray, np.ndarray]:

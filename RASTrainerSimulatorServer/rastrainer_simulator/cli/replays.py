@@ -9,6 +9,7 @@ import sys
 from dataclasses import asdict
 from functools import partial
 
+from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.study.database.study import Study
 from rastrainer.study.ratings import FORMS, RatingStore, find_form
@@ -33,12 +34,13 @@ def replay(arguments: argparse.Namespace) -> int:
 
     reading = read_journal(arguments.journal)
     report = resimulation.replay(reading, setup_of(reading.header, arguments.scenario))
+    is_identical = report.difference is None
     if arguments.json:
-        whole = {**asdict(report), "identical": report.is_identical, "journal": reading.sentence}
+        whole = {**asdict(report), "identical": is_identical, "journal": reading.sentence}
         print(json.dumps(whole, indent=2, allow_nan=False))
     else:
         print(_summary(reading.sentence, report))
-    return 0 if report.is_identical else 1
+    return 0 if is_identical else 1
 
 
 def _film(arguments: argparse.Namespace) -> int:

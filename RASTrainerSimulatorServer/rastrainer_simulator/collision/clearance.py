@@ -60,11 +60,6 @@ class Clearance(NamedTuple):
         """Signed clearance of the whole tool to the head, m: what the trainee is shown."""
         return min(self.tip_m, self.shaft_m)
 
-    @property
-    def worst(self) -> str:
-        parts = ("tip", "shaft", "links", "self", "table")
-        return min(parts, key=lambda part: getattr(self, f"{part}_m"))
-
 
 _ROUGHLY_FAR = 0.2
 """Distances whose rough bound is above this, m, are not measured exactly."""
@@ -95,15 +90,22 @@ class DistanceBounds:
     def due(self, traveled: float, rough: Callable[[], np.ndarray] | None = None) -> list[int]:
         """Return the rows that may be below FAR, rising; each must then be `put_off`.
 
-        Args:
-            traveled: total motion of the arm, m.
-            rough: gives a lower bound of each distance, (count,) float, m.
+        `traveled` is the total motion of the arm, m; `rough` gives a lower bound of each distance,
+        (count,) float, m.
         """
         due, rows = self._due, []
         while due and due[0][0] <= traveled:
             rows.append(heappop(due)[1])
             if rough is not None and len(rows) > _FEW:
-                rows = self._roughly_near(rows, rough(), traveled)
+                # Put off those of all due rows that are far.
+                rows += [row for moment, row in due if moment <= traveled]
+                bounds = rough()
+                until = (traveled + (bounds - FAR - _ROUNDING) / self._closing).tolist()
+                far = (bounds >= _ROUGHLY_FAR).tolist()
+                waiting = [entry for entry in due if entry[0] > traveled]
+                self._due = [*waiting, *((until[row], row) for row in rows if far[row])]
+                heapify(self._due)
+                rows = [row for row in rows if not far[row]]
                 break
         rows.sort()
         return rows
@@ -127,16 +129,6 @@ class DistanceBounds:
         """Make a row due again when it may be below FAR; it is now at least `distance`, m."""
         until = traveled + (distance - FAR - _ROUNDING) / self._closing
         heappush(self._due, (until, row))
-
-    def _roughly_near(self, rows: list[int], bounds: np.ndarray, traveled: float) -> list[int]:
-        """Put off those of `rows` and of the other due ones that are far; return the rest."""
-        rows = rows + [row for moment, row in self._due if moment <= traveled]
-        until = (traveled + (bounds - FAR - _ROUNDING) / self._closing).tolist()
-        far = (bounds >= _ROUGHLY_FAR).tolist()
-        waiting = [entry for entry in self._due if entry[0] > traveled]
-        self._due = [*waiting, *((until[row], row) for row in rows if far[row])]
-        heapify(self._due)
-        return [row for row in rows if not far[row]]
 
 
 _RIGID = 1e-6
@@ -227,7 +219,7 @@ class HeadClearance:
                 off_sphere = off_sphere or self._off_sphere(posed)
                 bounds.append(off_sphere[row])
                 continue
-            start, end = posed.axis(row)
+            start, end = posed.ends[row].tolist()
             bounds.append(known - max(dist(start, start_then), dist(end, end_then)))
         return bounds
 
@@ -256,7 +248,7 @@ class HeadClearance:
         pose = self._world_to_head @ posed.poses[self._bodies[row]]
         segment.setRotation(pose[:3, :3])
         segment.setTranslation(pose[:3, 3])
-        start, end = posed.axis(row)
+        start, end = posed.ends[row].tolist()
         rows = self._world_to_head_rows
         found = self._head.nearest_to_segment(
             segment, _moved(rows, start), _moved(rows, end), radius

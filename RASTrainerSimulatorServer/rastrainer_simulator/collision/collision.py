@@ -21,7 +21,7 @@ from rastrainer_simulator.collision.clearance import (
 from rastrainer_simulator.collision.head_surface import HeadSurface, Nearest
 from rastrainer_simulator.collision.line_of_sight import LineOfSight
 from rastrainer_simulator.collision.robot_shape import ArmCapsules, PosedArm, RobotShape
-from rastrainer_simulator.vectors import Vector, segment_distance
+from rastrainer_simulator.vectors import segment_distance
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ class TableClearance:
         return np.minimum(bounds, np.sqrt(np.einsum("ij,ij->i", away, away)) - self._around)
 
     def _distance(self, posed: PosedArm, row: int) -> float:
-        start, end = posed.axis(row)
+        start, end = posed.ends[row].tolist()
         distance = min(start[2], end[2]) - self._below[row]
         if self._stand is None:
             return distance
@@ -135,7 +135,8 @@ class SelfClearance:
 
     def _distance(self, posed: PosedArm, pair: int) -> float:
         first, second = self._pairs[pair]
-        return segment_distance(*posed.axis(first), *posed.axis(second)) - self._radii[pair]
+        ends = *posed.ends[first].tolist(), *posed.ends[second].tolist()
+        return segment_distance(*ends) - self._radii[pair]
 
 
 class Collision:
@@ -154,13 +155,12 @@ class Collision:
         """Build the shapes; takes about half a second for a head of 60,000 triangles.
 
         Args:
-            shape: the robot's capsules.
             head_vertices: (n, 3) float, m, head frame, whose z points to the head's top.
             head_triangles: (m, 3) int, a closed surface.
-            surroundings: the table and the head's stand.
         """
         self._arm = ArmCapsules(shape)
         self._head = HeadClearance(HeadSurface(head_vertices, head_triangles), self._arm)
+        self.nearest_to_point = self._head.nearest_to_point
         self._self = SelfClearance(self._arm)
         surroundings = surroundings or Surroundings()
         self.table_height = surroundings.table_height
@@ -217,9 +217,6 @@ class Collision:
     def line_of_sight(self, link_to_world: Mapping[str, np.ndarray]) -> LineOfSight:
         """Return what determines which points are seen while the arm has such a posture."""
         return LineOfSight(self._head, self._arm, self._arm.pose(link_to_world), self.table_height)
-
-    def nearest_to_point(self, point: Vector) -> Nearest:
-        return self._head.nearest_to_point(point)
 
     def nearest_to_shaft(
         self, link_to_world: Mapping[str, np.ndarray], limit: float

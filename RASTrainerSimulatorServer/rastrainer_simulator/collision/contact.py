@@ -53,9 +53,7 @@ class Moved:
     """Where a motion ended.
 
     Attributes:
-        q: joint angles, rad.
         link_to_world: (4, 4) float, m, by the names of the links.
-        clearance: of this posture.
         stopped_by: "links", "self" or "table" (rarely "tip" or "shaft", at the edge of the arm's
             reach) that cut the motion short, else "". Sliding does not stop a motion.
     """
@@ -97,13 +95,7 @@ class Contact:
         parts may move, but not deeper.
         """
         start = self.at(q)
-        moved = self._move(start, displacement, to_joints)
-        if moved.stopped_by:
-            self._last = replace(moved, stopped_by="")
-        return moved
-
-    def _move(self, start: Moved, displacement: Vector, to_joints: ToJoints) -> Moved:
-        tip = self._tip(start)
+        tip = tuple(start.link_to_world[self._kinematics.model.tip.name][:3, 3].tolist())
         path = self._slide(start, tip, displacement)
         for _ in range(_CORRECTIONS):
             end = self.at(to_joints(subtract(path.position, tip)))
@@ -114,7 +106,10 @@ class Contact:
             if corrected is None:
                 break
             path = corrected
-        return end if not broken else self._shortened(start, end, broken)
+        if not broken:
+            return end
+        self._last = self._shortened(start, end, broken)
+        return replace(self._last, stopped_by=broken)
 
     def _slide(self, start: Moved, tip: Vector, displacement: Vector) -> Slide:
         clearance, reach = start.clearance, length(displacement) + REST
@@ -132,16 +127,14 @@ class Contact:
 
     def _shortened(self, start: Moved, end: Moved, broken: str) -> Moved:
         """Return the part of a motion that ends before the overlap, or the start."""
-        before = max(_value(start.clearance, broken), 0.0)
-        share = _CAUTION * before / (before - _value(end.clearance, broken))
+        part_m = f"{broken}_m"
+        before = max(getattr(start.clearance, part_m), 0.0)
+        share = _CAUTION * before / (before - getattr(end.clearance, part_m))
         if share > _SHORTEST_SHARE:
             part = self.at([a + share * (b - a) for a, b in zip(start.q, end.q, strict=True)])
             if not _broken(start.clearance, part.clearance):
-                return Moved(part.q, part.link_to_world, part.clearance, broken)
-        return Moved(start.q, start.link_to_world, start.clearance, broken)
-
-    def _tip(self, moved: Moved) -> Vector:
-        return tuple(moved.link_to_world[self._kinematics.model.tip.name][:3, 3].tolist())
+                return part
+        return start
 
 
 def _broken(start: Clearance, end: Clearance) -> str:
@@ -159,15 +152,11 @@ def _broken(start: Clearance, end: Clearance) -> str:
     return ""
 
 
-def _value(clearance: Clearance, part: str) -> float:
-    return getattr(clearance, f"{part}_m")
-
-
 def _pushed_back(path: Slide, start: Moved, end: Moved, broken: str) -> Slide | None:
     """Return the path with the overlap at its end undone, None if that is impossible."""
     nearest = end.clearance.tip if broken == "tip" else end.clearance.shaft
     assert nearest is not None, "what is broken was measured"
-    gap = min(REST, _value(start.clearance, broken) + RECOVERY) - nearest.distance_m
+    gap = min(REST, getattr(start.clearance, f"{broken}_m") + RECOVERY) - nearest.distance_m
     planes = (*path.half_spaces, _shifted(nearest.normal, gap, path.position))
     position = nearest_inside(path.position, planes)
     return None if position is None else Slide(position, planes)
@@ -275,7 +264,7 @@ def slide(
         free = here.distance_m - rest
         if distance(position, goal) <= free:  # Within a ball that holds nothing of the head.
             return Slide(nearest_inside(goal, others) or position, tuple(others))
-        planes = (_tangent(here, rest), *others)
+        planes = (_shifted(here.normal, rest, here.point), *others)
         step = _step(nearest_to_point, position, goal, planes, max(free, LONGEST_STEP), rest)
         if step is None:
             break
@@ -306,9 +295,5 @@ def _step(
         there = nearest_to_point(trial)
         if there.distance_m >= rest - _EXACT:
             return trial, there, planes
-        planes = (*planes, _tangent(there, rest))
+        planes = (*planes, _shifted(there.normal, rest, there.point))
     return None
-
-
-def _tangent(nearest: Nearest, rest: float) -> HalfSpace:
-    return HalfSpace(nearest.normal, dot(nearest.normal, nearest.point) + rest)

@@ -46,13 +46,17 @@ class ClosedSurface:
         """Take (n, 3) float vertices and (m, 3) int triangles; equal vertices become one."""
         vertices, triangles = _checked(vertices, triangles)
         neighbors = _neighbors(triangles, len(vertices))
-        if _volume(vertices, triangles) < 0.0:
+        a, b, c = vertices[triangles].swapaxes(0, 1)
+        if np.einsum("ij,ij->", a, np.cross(b, c)) < 0.0:
             triangles, neighbors = triangles[:, ::-1], neighbors[:, [1, 0, 2]]
         self.vertices = vertices
         self.triangles = triangles
         self._corners = vertices[triangles]
         faces = _face_normals(self._corners, neighbors)
-        angles = _corner_angles(self._corners)
+        u = np.roll(self._corners, -1, axis=1) - self._corners
+        v = np.roll(self._corners, 1, axis=1) - self._corners
+        sines = np.linalg.norm(np.cross(u, v), axis=2)
+        angles = np.arctan2(sines, np.einsum("ijk,ijk->ij", u, v))
         around = [
             np.bincount(triangles.ravel(), (faces[:, None, k] * angles).ravel(), len(vertices))
             for k in range(3)
@@ -138,11 +142,6 @@ def _neighbors(triangles: np.ndarray, vertex_count: int) -> np.ndarray:
     return (twins // 3).reshape(-1, 3)
 
 
-def _volume(vertices: np.ndarray, triangles: np.ndarray) -> float:
-    a, b, c = (vertices[triangles[:, k]] for k in range(3))
-    return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
-
-
 def _face_normals(corners: np.ndarray, neighbors: np.ndarray) -> np.ndarray:
     """Return unit normals (m, 3); a triangle without area takes those of its neighbors."""
     sides = np.roll(corners, -1, axis=1) - corners
@@ -153,14 +152,6 @@ def _face_normals(corners: np.ndarray, neighbors: np.ndarray) -> np.ndarray:
     normals[flat] = 0.0
     normals[flat] = normals[neighbors[flat]].sum(axis=1)
     return normals
-
-
-def _corner_angles(corners: np.ndarray) -> np.ndarray:
-    """Return the angle (m, 3) at each corner, rad."""
-    u = np.roll(corners, -1, axis=1) - corners
-    v = np.roll(corners, 1, axis=1) - corners
-    sines = np.linalg.norm(np.cross(u, v), axis=2)
-    return np.arctan2(sines, np.einsum("ijk,ijk->ij", u, v))
 
 
 _REQUEST = fcl.DistanceRequest(enable_nearest_points=True)
@@ -224,7 +215,14 @@ class HeadSurface:
         if distance <= 0.0:
             point, normal = self._surface.crossing(triangle, start, end)
             return Nearest(-radius, point, normal, triangle)
-        return self._signed(_foot(start, end, on_head), distance, on_head, triangle, radius)
+        (ax, ay, az), (bx, by, bz), (px, py, pz) = start, end, on_head.tolist()
+        ux, uy, uz = bx - ax, by - ay, bz - az
+        size = ux * ux + uy * uy + uz * uz
+        share = ((px - ax) * ux + (py - ay) * uy + (pz - az) * uz) / size if size > 0.0 else 0.0
+        share = min(max(share, 0.0), 1.0)
+        return self._signed(
+            (ax + share * ux, ay + share * uy, az + share * uz), distance, on_head, triangle, radius
+        )
 
     def is_crossed(self, start: Vector, end: Vector) -> bool:
         """Return whether the segment between two points goes through the surface."""
@@ -280,13 +278,3 @@ def _shapes(vertices: _Numbers, triangles: _Numbers) -> tuple[ClosedSurface, fcl
     mesh.addSubModel(surface.vertices, surface.triangles)
     mesh.endModel()
     return surface, mesh
-
-
-def _foot(start: Vector, end: Vector, point: np.ndarray) -> Vector:
-    """Return the point of the segment from `start` to `end` that is nearest to `point`."""
-    (ax, ay, az), (bx, by, bz), (px, py, pz) = start, end, point.tolist()
-    ux, uy, uz = bx - ax, by - ay, bz - az
-    size = ux * ux + uy * uy + uz * uz
-    share = ((px - ax) * ux + (py - ay) * uy + (pz - az) * uz) / size if size > 0.0 else 0.0
-    share = min(max(share, 0.0), 1.0)
-    return (ax + share * ux, ay + share * uy, az + share * uz)

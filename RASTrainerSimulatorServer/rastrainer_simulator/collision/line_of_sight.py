@@ -48,8 +48,9 @@ class LineOfSight:
         self, head: HeadClearance, arm: ArmCapsules, posed: PosedArm, table_height: float
     ) -> None:
         self._head = head
-        self._ends, self._radii = posed.ends, arm.radii
-        self._link_count = arm.link_count
+        count = arm.link_count
+        self._links = posed.ends[:count], arm.radii[:count]
+        self._tool = posed.ends[count:], arm.radii[count:]
         self._lowest = table_height + ABOVE_TABLE_M
 
     def is_free(self, eye: Vector, place: Vector) -> bool:
@@ -65,12 +66,8 @@ class LineOfSight:
 
     def off_links(self, eyes: np.ndarray, place: np.ndarray) -> np.ndarray:
         """Return how far the lines from eyes (m, 3) to a place (3,) pass the links, (m,), m."""
-        return self._off(eyes, place, slice(self._link_count))
+        return sight_clearances(eyes, np.broadcast_to(place, eyes.shape), *self._links).min(axis=1)
 
     def off_tool(self, eyes: np.ndarray, place: np.ndarray) -> np.ndarray:
         """Return how far the lines from eyes (m, 3) to a place (3,) pass the tool, (m,), m."""
-        return self._off(eyes, place, slice(self._link_count, None))
-
-    def _off(self, eyes: np.ndarray, place: np.ndarray, rows: slice) -> np.ndarray:
-        places = np.broadcast_to(place, eyes.shape)
-        return sight_clearances(eyes, places, self._ends[rows], self._radii[rows]).min(axis=1)
+        return sight_clearances(eyes, np.broadcast_to(place, eyes.shape), *self._tool).min(axis=1)

@@ -83,11 +83,8 @@ class Pressing:
     ) -> None:
         """Note a tick at whose end the tool is in contact.
 
-        Args:
-            commanded: displacement of the tip, World.
-            carried_out: actual displacement of the tip, World.
-            clearance: at the tick's end; the part of the tool that is nearer to the head counts.
-            to_goal: from the tip to the end of a commanded move, None without an end.
+        The displacements are those of the tip, World. Of the clearance, the part of the tool that
+        is nearer to the head counts; `to_goal` leads from the tip to the end of a commanded move.
         """
         if not self._is_in_contact:
             self._is_in_contact, self.deepest = True, 0.0

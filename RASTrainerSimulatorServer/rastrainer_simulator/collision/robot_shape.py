@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.transforms import apply, rigid
 from rastrainer_simulator.robot.meshes import load_meshes
 from rastrainer_simulator.robot.model import RobotLink, RobotModel
 from rastrainer_simulator.vectors import Vector
@@ -82,7 +83,11 @@ def _fit(points: np.ndarray, directions: np.ndarray) -> Capsule:
         found.append(_pattern_search(outermost, ends))
     _, best = min(found, key=lambda each: each[0])
     start, end = best[:3], best[3:]
-    return Capsule(start, end, _radius(points, start, end))
+    axis = end - start
+    shares = ((points - start) @ axis / max(axis @ axis, 1e-12)).clip(0.0, 1.0)
+    return Capsule(
+        start, end, float(np.linalg.norm(points - start - shares[:, None] * axis, axis=1).max())
+    )
 
 
 def _pattern_search(points: np.ndarray, ends: np.ndarray) -> tuple[float, np.ndarray]:
@@ -109,13 +114,6 @@ def _volumes(points: np.ndarray, ends: np.ndarray) -> np.ndarray:
     offsets -= shares.clip(0.0, 1.0)[:, :, None] * axis[:, None]
     squares = np.einsum("tki,tki->tk", offsets, offsets).max(axis=1)
     return math.pi * squares * (np.sqrt(sizes) + 4.0 / 3.0 * np.sqrt(squares))
-
-
-def _radius(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> float:
-    """Return the distance of the farthest point from a segment."""
-    axis = end - start
-    shares = ((points - start) @ axis / max(axis @ axis, 1e-12)).clip(0.0, 1.0)
-    return float(np.linalg.norm(points - start - shares[:, None] * axis, axis=1).max())
 
 
 def sphere_directions(count: int = 200) -> np.ndarray:
@@ -169,18 +167,22 @@ def robot_shape(model: RobotModel) -> RobotShape:
         name: [(np.asarray(mesh.vertices), np.asarray(mesh.faces)) for mesh, _ in parts]
         for name, parts in load_meshes(model, "collision").items()
     }
-    tool = _tool_link(model, meshes)
-    tool_capsules = _tool_capsules(model, tool, meshes.pop(tool.name, []))
-    shapes = tuple(
-        LinkShape(
-            name,
-            links[name].joint,
-            _rounded(covering_capsules(_points(parts, _LINK_SPACING), _LINK_SPACING)),
+
+    def distance_to_tip(link: RobotLink) -> float:
+        tip = (np.linalg.inv(link.offset) @ model.tip.offset)[:3, 3]
+        return min(
+            np.linalg.norm(vertices - tip, axis=1).min() for vertices, _ in meshes[link.name]
         )
-        for name, parts in meshes.items()
-    )
+
+    behind = [link for link in model.links if link.joint == 7 and link.name in meshes]
+    tool = min(behind, key=distance_to_tip, default=model.tip)
+    tool_capsules = _tool_capsules(model, tool, meshes.pop(tool.name, []))
+    shapes = []
+    for name, parts in meshes.items():
+        capsules = covering_capsules(_points(parts, _LINK_SPACING), _LINK_SPACING)
+        shapes.append(LinkShape(name, links[name].joint, _rounded(capsules)))
     tool_shape = LinkShape(tool.name, tool.joint, _rounded(tool_capsules))
-    return RobotShape(shapes, tool_shape, model.tip.name)
+    return RobotShape(tuple(shapes), tool_shape, model.tip.name)
 
 
 def _rounded(capsules: tuple[Capsule, ...]) -> tuple[Capsule, ...]:
@@ -202,45 +204,24 @@ def _points(parts: list[Mesh], spacing: float) -> np.ndarray:
     return np.concatenate([surface_points(*part, spacing) for part in parts])
 
 
-def _tool_link(model: RobotModel, meshes: dict[str, list[Mesh]]) -> RobotLink:
-    def distance_to_tip(link: RobotLink) -> float:
-        tip = (np.linalg.inv(link.offset) @ model.tip.offset)[:3, 3]
-        return min(
-            np.linalg.norm(vertices - tip, axis=1).min() for vertices, _ in meshes[link.name]
-        )
-
-    behind = [link for link in model.links if link.joint == 7 and link.name in meshes]
-    return min(behind, key=distance_to_tip, default=model.tip)
-
-
 def _tool_capsules(model: RobotModel, tool: RobotLink, parts: list[Mesh]) -> tuple[Capsule, ...]:
     """Return the capsules, in the tip's frame, of a tool whose mesh is in its link's frame."""
-    shaft_to_tip = _shaft_to_tip(model)
+    # The pose, in the tip's frame, of a frame there whose z runs up the tool.
+    up = -model.geometry.tip_rotation[2]
+    x = np.cross(np.eye(3)[np.abs(up).argmin()], up)
+    x /= np.linalg.norm(x)
+    shaft_to_tip = rigid(np.column_stack([x, np.cross(up, x), up]), np.zeros(3))
     if parts:
         tool_to_shaft = np.linalg.inv(model.tip.offset @ shaft_to_tip) @ tool.offset
-        capsules = capsules_along(_moved(tool_to_shaft, _points(parts, _TOOL_SPACING)), SHAFT_START)
+        capsules = capsules_along(apply(tool_to_shaft, _points(parts, _TOOL_SPACING)), SHAFT_START)
     else:
         ends = np.outer((SHAFT_START, model.geometry.tool), (0.0, 0.0, 1.0))
         capsules = (Capsule(ends[0], ends[1], _ROD_RADIUS),)
     moved = []
     for capsule in capsules:
-        start, end = _moved(shaft_to_tip, np.array([capsule.start, capsule.end]))
+        start, end = apply(shaft_to_tip, np.array([capsule.start, capsule.end]))
         moved.append(Capsule(start, end, capsule.radius))
     return tuple(moved)
-
-
-def _shaft_to_tip(model: RobotModel) -> np.ndarray:
-    """Return the pose (4, 4), in the tip's frame, of a frame there whose z runs up the tool."""
-    up = -model.geometry.tip_rotation[2]
-    x = np.cross(np.eye(3)[np.abs(up).argmin()], up)
-    x /= np.linalg.norm(x)
-    pose = np.eye(4)
-    pose[:3, :3] = np.column_stack([x, np.cross(up, x), up])
-    return pose
-
-
-def _moved(pose: np.ndarray, points: np.ndarray) -> np.ndarray:
-    return points @ pose[:3, :3].T + pose[:3, 3]
 
 
 _SLICE = 0.0005
@@ -255,21 +236,24 @@ def capsules_along(points: np.ndarray, start: float, count: int = 5) -> tuple[Ca
     """
     if points[:, 2].max() < start:
         raise InputError("The tool's collision mesh should reach from its tip toward the wrist.")
-    profile = _profile(points, start)
-    cuts = _slenderest_cuts(profile, start, min(count, len(profile)))
-    return tuple(
-        _section(profile[first:last], start + first * _SLICE) for first, last in pairwise(cuts)
-    )
-
-
-def _profile(points: np.ndarray, start: float) -> np.ndarray:
-    """Return the radius of each slice of half a millimeter, from z = start on."""
     slices = np.floor((points[:, 2] - start) / _SLICE).astype(int)
     kept = slices >= 0
     radii = np.zeros(slices.max() + 1)
     np.maximum.at(radii, slices[kept], np.hypot(points[kept, 0], points[kept, 1]))
     # A point on the border of two slices belongs to both.
-    return np.maximum(radii, np.concatenate([radii[1:], [0.0]]))
+    profile = np.maximum(radii, np.concatenate([radii[1:], [0.0]]))
+    cuts = _slenderest_cuts(profile, start, min(count, len(profile)))
+    capsules = []
+    for begin, end in pairwise(cuts):
+        # The round ends stick out only as needed.
+        radii, low = profile[begin:end], start + begin * _SLICE + np.arange(end - begin) * _SLICE
+        radius = float(radii.max())
+        rounding = np.sqrt(radius**2 - radii**2)
+        first = float((low + rounding).min())
+        last = max(float((low + _SLICE - rounding).max()), first)
+        ends = np.array([0.0, 0.0, first]), np.array([0.0, 0.0, last])
+        capsules.append(Capsule(*ends, radius))
+    return tuple(capsules)
 
 
 def _slenderest_cuts(profile: np.ndarray, start: float, count: int) -> list[int]:
@@ -293,26 +277,12 @@ def _slenderest_cuts(profile: np.ndarray, start: float, count: int) -> list[int]
     return cuts[::-1]
 
 
-def _section(profile: np.ndarray, start: float) -> Capsule:
-    """Return the capsule about the slices of a section: its round ends stick out only as needed."""
-    radius = float(profile.max())
-    low = start + np.arange(len(profile)) * _SLICE
-    rounding = np.sqrt(radius**2 - profile**2)
-    first = float((low + rounding).min())
-    last = max(float((low + _SLICE - rounding).max()), first)
-    return Capsule(np.array([0.0, 0.0, first]), np.array([0.0, 0.0, last]), radius)
-
-
 class PosedArm(NamedTuple):
     """The arm's n capsules in World, m; the rows are those of `ArmCapsules`."""
 
     poses: np.ndarray  # (links + 1, 4, 4) float: LinkToWorld of each link, ToolTipToWorld last
     ends: np.ndarray  # (n, 2, 3) float: start and end of each axis
     tip: Vector
-
-    def axis(self, row: int) -> list[Vector]:
-        """Return start and end of a capsule's axis as plain floats."""
-        return self.ends[row].tolist()
 
     @property
     def middles(self) -> np.ndarray:

@@ -10,7 +10,6 @@ from typing import NamedTuple
 import numpy as np
 
 from rastrainer.transforms import frame_along
-from rastrainer_simulator.collision.clearance import Clearance
 from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.robot.fabrik import Fabrik
 from rastrainer_simulator.robot.goal import FabrikSettings
@@ -49,10 +48,8 @@ class PlanReach:
     def judge(self, target: Sequence[float], entry: Sequence[float] | None) -> PlanAnswer:
         """Return whether a plan can be carried out in the present pose of the head.
 
-        Args:
-            target: (3,) float, World, m.
-            entry: (3,) float, World, m: where the trajectory starts; None leaves the tool's
-                direction free.
+        Both points are (3,) float, World, m. The trajectory starts at the entry; None leaves the
+        tool's direction free.
         """
         if not self._fabrik.solve(target, q_start=self._home).converged:
             return PlanAnswer(False, OUT_OF_REACH)
@@ -74,10 +71,8 @@ class PlanReach:
     ) -> PlanAnswer:
         """Return whether the guide can be held on a line before the head, in its present pose.
 
-        Args:
-            entry: (3,) float, World, m.
-            direction: (3,) float, World, unit vector into the head.
-            stand_offs: distances of the guide's tip from the entry, m.
+        Entry and direction (a unit vector into the head) are (3,) float, World; `stand_offs` are
+        distances of the guide's tip from the entry, m.
         """
         begin, along = np.asarray(entry, dtype=float), np.asarray(direction, dtype=float)
         is_held = all(self._has_room(begin - each * along, along) for each in stand_offs)
@@ -104,19 +99,16 @@ SWIVELS_DEG = (0.0, 60.0, -60.0)
 
 @dataclass(frozen=True)
 class PlannedTouch:
-    """A planned touch of a point.
+    """A planned touch of a point: the joint angles, rad, and how the tool is held.
 
     Attributes:
-        q: seven joint angles, rad.
         direction: (3,) float, of the tool, from the wrist to the tip, World.
         leaning_deg: between the direction and the inward normal.
-        clearance: of that posture, m.
     """
 
     q: tuple[float, ...]
     direction: np.ndarray
     leaning_deg: float
-    clearance: Clearance
 
 
 class TouchPlanner:
@@ -133,22 +125,19 @@ class TouchPlanner:
         self._kinematics = make_kinematics(model)
         # No later pass can hold a goal that the first cannot: it would only approach it.
         self._fabrik = Fabrik(model, FabrikSettings(max_iterations=1))
-        self._starts = [_swiveled(model.home, degrees) for degrees in SWIVELS_DEG]
+        turns = np.outer(np.radians(SWIVELS_DEG), (1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0))
+        self._starts = [tuple(q) for q in (np.array(model.home) + turns).tolist()]
 
     def touch(self, position: np.ndarray, normal: np.ndarray) -> PlannedTouch | None:
         """Return a touch of a point of the skin, None if there is none.
 
-        The least leaning of `LEANING_DEG` that works is taken.
-
-        Args:
-            position: (3,) float, World, m.
-            normal: (3,) float, outward unit normal there, World.
+        The least leaning of `LEANING_DEG` that works is taken. Position (m) and outward unit
+        normal there are (3,) float, World.
         """
         for leaning_deg, direction in tool_directions(normal):
             q = self._posture(position, direction)
             if q is not None:
-                clearance = self._collision.check(self._kinematics.links(q))
-                return PlannedTouch(q, direction, leaning_deg, clearance)
+                return PlannedTouch(q, direction, leaning_deg)
         return None
 
     def working_direction(
@@ -189,10 +178,3 @@ def _leaning(frame: np.ndarray, number: int) -> np.ndarray:
     across, along, normal = frame
     aside = np.cos(azimuth) * across + np.sin(azimuth) * along
     return np.sin(leaning) * aside - np.cos(leaning) * normal
-
-
-def _swiveled(home: tuple[float, ...], degrees: float) -> tuple[float, ...]:
-    q = list(home)
-    q[0] += np.radians(degrees)
-    q[2] -= np.radians(degrees)
-    return tuple(q)

@@ -57,14 +57,10 @@ class Journal:
         self._seed_path = path.with_suffix(SEED_SUFFIX)
         self._descriptor: int | None = None
         self._count = 0
-        self._previous = NO_LINE
+        self.last_hash = NO_LINE
         self._size: int | None = None
         self._is_new = True
         self._unwritten: list[Mapping[str, Any]] = []
-
-    @property
-    def last_hash(self) -> str:
-        return self._previous
 
     @classmethod
     def reopened(cls, reading: JournalReading) -> Journal:
@@ -86,18 +82,37 @@ class Journal:
         self._unwritten.extend(entries)
         try:
             descriptor, size = self._opened()
-            count, previous, data = self._encoded()
-            _write_at(descriptor, size, data)
+            count, last_hash, lines = self._count, self.last_hash, []
+            for entry in self._unwritten:
+                count += 1
+                line, last_hash = encode_line(count, last_hash, entry)
+                lines.append(line)
+            data = b"".join(lines)
+            os.lseek(descriptor, size, os.SEEK_SET)
+            rest = memoryview(data)
+            while rest:
+                rest = rest[os.write(descriptor, rest) :]
             is_revealed = any("seed" in entry for entry in self._unwritten)
             if sync or is_revealed:
                 os.fsync(descriptor)
             if is_revealed:
                 self._seed_path.unlink(missing_ok=True)
         except OSError as error:
-            self._cut_off()
+            if self._descriptor is not None and self._size is not None:
+                # Leave no partial line behind; if even that fails, the next `write` does it.
+                with contextlib.suppress(OSError):
+                    os.ftruncate(self._descriptor, self._size)
+            self.close()
             raise RecordError(f"{self.path.name}: {error.strerror or error}") from error
-        self._count, self._previous, self._size = count, previous, size + len(data)
+        self._count, self.last_hash, self._size = count, last_hash, size + len(data)
         self._unwritten.clear()
+
+    def append(self, entry: Mapping[str, Any]) -> None:
+        """Write an entry to the disk, and close the file."""
+        try:
+            self.write([entry], sync=True)
+        finally:
+            self.close()
 
     def close(self) -> None:
         """Close the file; a later `write` opens it again."""
@@ -122,73 +137,40 @@ class Journal:
         if self._size is None:
             make_private_folder(self.path.parent)
             if self._seed is not None:
-                _write_seed(self._seed_path, self._seed)
+                seed = open_private(self._seed_path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+                try:
+                    os.write(seed, str(self._seed).encode("ascii"))
+                    os.fsync(seed)
+                finally:
+                    os.close(seed)
             self._descriptor = descriptor = open_private(self.path, flags | os.O_CREAT | os.O_EXCL)
             self._size = 0
-            _sync_folder(self.path.parent)
+            if os.name == "posix":
+                # Make the new file's name durable; Windows does it automatically.
+                folder = os.open(self.path.parent, os.O_RDONLY)
+                try:
+                    os.fsync(folder)
+                finally:
+                    os.close(folder)
         else:
             self._descriptor = descriptor = open_private(self.path, flags)
         lock(descriptor)
         if os.fstat(descriptor).st_size != self._size:
-            self._size = self._caught_up()
-            os.ftruncate(descriptor, self._size)
+            # Another process has written.
+            reading = read_journal(self.path)
+            if reading.integrity is Integrity.ALTERED:
+                raise RecordError(
+                    f"{self.path.name} is {reading.sentence}; nothing is added to it."
+                )
+            os.ftruncate(descriptor, self._append_to(reading))
         return descriptor, self._size
 
-    def _encoded(self) -> tuple[int, str, bytes]:
-        count, previous, lines = self._count, self._previous, []
-        for entry in self._unwritten:
-            count += 1
-            line, previous = encode_line(count, previous, entry)
-            lines.append(line)
-        return count, previous, b"".join(lines)
-
-    def _cut_off(self) -> None:
-        """Leave no partial line behind; if even that fails, the next `write` does it."""
-        if self._descriptor is not None:
-            if self._size is not None:
-                with contextlib.suppress(OSError):
-                    os.ftruncate(self._descriptor, self._size)
-            os.close(self._descriptor)
-            self._descriptor = None
-
-    def _caught_up(self) -> int:
-        """Continue after what another process has written; return the size of its whole lines."""
-        reading = read_journal(self.path)
-        if reading.integrity is Integrity.ALTERED:
-            raise RecordError(f"{self.path.name} is {reading.sentence}; nothing is added to it.")
-        self._append_to(reading)
-        return reading.end
-
-    def _append_to(self, reading: JournalReading) -> None:
+    def _append_to(self, reading: JournalReading) -> int:
+        """Continue after the whole lines of a file, and return their size."""
         self._count = len(reading.entries)
-        self._previous = reading.last_hash
+        self.last_hash = reading.last_hash
         self._size = reading.end
-
-
-def _write_seed(path: Path, seed: int) -> None:
-    descriptor = open_private(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
-    try:
-        os.write(descriptor, str(seed).encode("ascii"))
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
-
-
-def _write_at(descriptor: int, place: int, data: bytes) -> None:
-    os.lseek(descriptor, place, os.SEEK_SET)
-    rest = memoryview(data)
-    while rest:
-        rest = rest[os.write(descriptor, rest) :]
-
-
-def _sync_folder(folder: Path) -> None:
-    """Make a new file's name durable; Windows has no such call and does it automatically."""
-    if os.name == "posix":
-        descriptor = os.open(folder, os.O_RDONLY)
-        try:
-            os.fsync(descriptor)
-        finally:
-            os.close(descriptor)
+        return reading.end
 
 
 PEEK_S = 0.5
@@ -207,6 +189,9 @@ class RecordsFolder:
             datetime.now(timezone.utc).isoformat(timespec="milliseconds"),
             os.environ.get(STARTED_BY, ""),
         )
+        # Users who have started the simulator themselves can choose.
+        chosen = not self._holder.started_by
+        elsewhere = ", or choose another folder with --records" if chosen else ""
         try:
             make_private_folder(folder)
             flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_CLOEXEC", 0)
@@ -214,10 +199,13 @@ class RecordsFolder:
         except OSError as error:
             raise InputError(
                 f"Trials cannot be recorded in {folder}: {error.strerror}. Allow writing to it"
-                f"{self._or_elsewhere}."
+                f"{elsewhere}."
             ) from None
         try:
-            self._take()
+            self._lock(elsewhere)
+            self.announce("", 0, "")
+            for journal in folder.glob(f"*{SUFFIX}"):
+                keep_others_out(journal)
         except BaseException:
             os.close(self._descriptor)
             raise
@@ -233,32 +221,7 @@ class RecordsFolder:
         """Leave the folder to others."""
         os.close(self._descriptor)
 
-    @property
-    def _or_elsewhere(self) -> str:
-        """Advice for users who have started the simulator themselves."""
-        if self._holder.started_by:
-            return ""
-        return ", or choose another folder with --records"
-
-    def _take(self) -> None:
-        try:
-            self._lock()
-        except (BlockingIOError, PermissionError):
-            pid = read_open_holder(self._descriptor).pid
-            who = f" (process {pid})" if pid else ""
-            raise InputError(
-                f"Another simulator{who} records in {self._folder}: end it{self._or_elsewhere}."
-            ) from None
-        except OSError as error:
-            raise InputError(
-                f"{self._folder} cannot be locked against a second simulator: {error.strerror}. "
-                f"Use a folder on a disk of this computer{self._or_elsewhere}."
-            ) from None
-        self.announce("", 0, "")
-        for journal in self._folder.glob(f"*{SUFFIX}"):
-            keep_others_out(journal)
-
-    def _lock(self) -> None:
+    def _lock(self, elsewhere: str) -> None:
         """Lock the folder, waiting for programs that only check its lock."""
         end = time.monotonic() + PEEK_S
         while True:
@@ -266,5 +229,14 @@ class RecordsFolder:
                 return lock(self._descriptor)
             except (BlockingIOError, PermissionError):
                 if time.monotonic() > end:
-                    raise
+                    pid = read_open_holder(self._descriptor).pid
+                    who = f" (process {pid})" if pid else ""
+                    raise InputError(
+                        f"Another simulator{who} records in {self._folder}: end it{elsewhere}."
+                    ) from None
+            except OSError as error:
+                raise InputError(
+                    f"{self._folder} cannot be locked against a second simulator: "
+                    f"{error.strerror}. Use a folder on a disk of this computer{elsewhere}."
+                ) from None
             time.sleep(_PERIOD_S)

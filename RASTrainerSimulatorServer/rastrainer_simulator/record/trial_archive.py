@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import json
 import os
 import re
@@ -16,12 +15,17 @@ import numpy as np
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.journal.folder import SUFFIX, journals_of
-from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
+from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal, stamp
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.procedure.record import UsedRegistration
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
-from rastrainer_simulator.record.aborted_archive import AbortedArchive
+from rastrainer_simulator.record.aborted_trials import (
+    ArchivedAttempt,
+    archived_attempt,
+    attempt_entry,
+    interrupted_attempt,
+)
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training.head_pose import Truth
@@ -41,15 +45,10 @@ _AFTER_THE_TRIAL = frozenset(
 
 @dataclass(frozen=True)
 class ArchivedTrial:
-    """A registered trial.
+    """A registered trial; its truth and seed are revealed with the registration.
 
-    Attributes:
-        record: as it is delivered.
-        truth: where the head really was.
-        seed: of the trial, revealed with the truth.
-        registration: the arguments of SubmitRegistration; None before.
-        scored: the arguments of TrialScored; None before.
-        acknowledged: whether a client has acknowledged the record.
+    `registration` and `scored` are the arguments of SubmitRegistration and TrialScored; None before
+    those.
     """
 
     record: TrialRecord
@@ -79,6 +78,29 @@ class ArchivedTrial:
         touches = zip(self.record.labels, self.record.positions_mm, strict=True)
         return self.truth.revealed(matrix, touches)
 
+    @property
+    def is_settled(self) -> bool:
+        """Whether nothing more is expected."""
+        return self.acknowledged and self.scored is not None
+
+    def after(self, command: str, arguments: Mapping[str, Any]) -> tuple[str, ArchivedTrial]:
+        """Return the trial after a command, and the kind of its entry; "" if nothing changes.
+
+        A registration is final, because it reveals the truth.
+        """
+        if command == CommandName.SUBMIT_REGISTRATION:
+            if self.registration is None:
+                return "registration", replace(self, registration=arguments)
+            kept, given = map(UsedRegistration.from_arguments, (self.registration, arguments))
+            if not kept.agrees_with(given):
+                raise InputError(say("registration is final"))
+        elif command == CommandName.TRIAL_SCORED:
+            if self.registration is None:
+                raise InputError(say("no registration"))
+            if self.scored != arguments:
+                return "scored", replace(self, scored=arguments)
+        return "", self
+
 
 class TrialArchive:
     """The registered and aborted trials of a folder.
@@ -92,9 +114,7 @@ class TrialArchive:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._trials: dict[str, ArchivedTrial] = {}
-        self._journals: dict[str, Journal] = {}
-        self._aborted = AbortedArchive()
+        self._kept: dict[str, tuple[ArchivedTrial | ArchivedAttempt, Journal]] = {}
         self.problems: list[str] = []
         self.arrivals = 0
         for path in find_unacknowledged(folder):
@@ -105,33 +125,37 @@ class TrialArchive:
 
         Of each kind the oldest come first.
         """
-        trials = list(self._trials.values())
-        finished = (trial.record for trial in trials if not trial.acknowledged)
-        return (*self._aborted.unacknowledged(), *finished)
+        waiting = [trial for trial, _ in list(self._kept.values()) if not trial.acknowledged]
+        waiting.sort(key=lambda trial: isinstance(trial, ArchivedTrial))
+        return tuple(trial.record for trial in waiting)
 
     def was_played(self, seed: int) -> bool:
         revealed = f'"seed":{seed},'.encode()
         return any(revealed in _end(path) for path in self._folder.glob(f"*{SUFFIX}"))
 
-    def add(self, trial: ArchivedTrial, journal: Journal) -> None:
-        """Add a trial that has just been registered."""
-        self._trials[trial.record.trial_id] = trial
-        self._journals[trial.record.trial_id] = journal
-        self.arrivals += 1
-
-    def add_aborted(self, record: AbortedTrial, journal: Journal) -> None:
-        self._aborted.add(record, journal)
+    def add(self, trial: ArchivedTrial | ArchivedAttempt, journal: Journal) -> None:
+        """Add a trial that has just been registered or aborted."""
+        self._kept[trial.record.trial_id] = trial, journal
         self.arrivals += 1
 
     def add_interrupted(self, path: Path) -> None:
         """Add the trial of a journal that was still open when another trial was started."""
-        if not _OVER.isdisjoint(_last_kinds(path)):
+        if not _OVER.isdisjoint(_KIND.findall(_end(path))):
             return
         try:
-            self._aborted.add_interrupted(path)
-            self.arrivals += 1
+            reading = read_journal(path)
+            if reading.integrity is Integrity.ALTERED:
+                raise InputError(f"{path} is {reading.sentence}; its trial is not delivered.")
+            record = interrupted_attempt(reading)
+            if record is None:
+                return
+            journal, last = Journal.reopened(reading), reading.entries[-1]
+            entry = attempt_entry(record, stamp(last["tick"], last["simTimeS"]))
+            journal.append({**entry, "seed": reading.header["seed"]})
         except RASTrainerError as error:
             self.problems.append(str(error))
+        else:
+            self.add(ArchivedAttempt(record), journal)
 
     def answer(
         self, command: str, arguments: Mapping[str, Any], times: Mapping[str, Any]
@@ -143,32 +167,33 @@ class TrialArchive:
         Raises:
             RecordError: its journal cannot be written.
         """
-        if arguments["trialId"] not in self._trials:
-            find = functools.partial(self._reading_of, arguments["trialId"])
-            data = self._aborted.answer(arguments["trialId"], command, times, find)
-            if data is not None:
-                return data
-        trial = self._found(arguments["trialId"])
-        trial_id = trial.record.trial_id
+        trial_id = arguments["trialId"]
+        trial, journal = self._found(trial_id)
         # As they are read from a journal, so that repeated arguments compare equal.
         arguments = json.loads(json.dumps(arguments))
-        if command == CommandName.ACKNOWLEDGE_TRIAL and not trial.acknowledged:
-            self._append(trial_id, {"kind": "acknowledged", **times})
-            trial = replace(trial, acknowledged=True)
-        elif command == CommandName.SUBMIT_REGISTRATION:
-            trial = self._with_registration(trial, arguments, times)
-        elif command == CommandName.TRIAL_SCORED and trial.registration is None:
-            raise InputError(say("no registration"))
-        elif command == CommandName.TRIAL_SCORED and trial.scored != arguments:
-            self._append(trial_id, {"kind": "scored", **times, "arguments": arguments})
-            trial = replace(trial, scored=arguments)
-        self._keep(trial)
+        if command == CommandName.ACKNOWLEDGE_TRIAL:
+            if not trial.acknowledged:
+                journal.append({"kind": "acknowledged", **times})
+                trial = replace(trial, acknowledged=True)
+        elif isinstance(trial, ArchivedTrial):
+            kind, changed = trial.after(command, arguments)
+            if kind:
+                journal.append({"kind": kind, **times, "arguments": arguments})
+                trial = changed
+        elif command != CommandName.GET_TRIAL:
+            raise InputError(f"The trial {trial_id} was aborted; it has no score.")
+        # A trial is kept in memory until nothing more is expected.
+        if trial.is_settled:
+            del self._kept[trial_id]
+        else:
+            self._kept[trial_id] = trial, journal
         if command == CommandName.GET_TRIAL:
             return trial.summary()
-        if command == CommandName.GET_JOURNAL:
+        if isinstance(trial, ArchivedTrial) and command == CommandName.GET_JOURNAL:
             return self._journal_piece(trial, arguments["start"])
-        revealed = trial.revealed() if command == CommandName.SUBMIT_REGISTRATION else {}
-        return {"trialId": trial_id, **revealed}
+        if isinstance(trial, ArchivedTrial) and command == CommandName.SUBMIT_REGISTRATION:
+            return {"trialId": trial_id, **trial.revealed()}
+        return {"trialId": trial_id}
 
     def _journal_piece(self, trial: ArchivedTrial, start: int) -> dict[str, Any]:
         """Return a piece of a trial's journal, once the truth in it is no secret."""
@@ -184,61 +209,23 @@ class TrialArchive:
             raise InputError(f"{path.name} cannot be read: {error.strerror}.") from None
         return {"text": piece.decode("ascii"), "next": start + len(piece) if is_more else None}
 
-    def _with_registration(
-        self, trial: ArchivedTrial, arguments: Mapping[str, Any], times: Mapping[str, Any]
-    ) -> ArchivedTrial:
-        """Accept a registration, which is final because it reveals the truth."""
-        if trial.registration is None:
-            entry = {"kind": "registration", **times, "arguments": arguments}
-            self._append(trial.record.trial_id, entry)
-            return replace(trial, registration=arguments)
-        kept, given = map(UsedRegistration.from_arguments, (trial.registration, arguments))
-        if not kept.agrees_with(given):
-            raise InputError(say("registration is final"))
-        return trial
-
-    def _keep(self, trial: ArchivedTrial) -> None:
-        """Keep a trial in memory until it is acknowledged and scored."""
-        trial_id = trial.record.trial_id
-        if trial.acknowledged and trial.scored is not None:
-            del self._trials[trial_id], self._journals[trial_id]
-        else:
-            self._trials[trial_id] = trial
-
-    def _found(self, trial_id: str) -> ArchivedTrial:
-        if trial_id not in self._trials:
+    def _found(self, trial_id: str) -> tuple[ArchivedTrial | ArchivedAttempt, Journal]:
+        if trial_id not in self._kept:
             for path in journals_of(self._folder, trial_id):
                 self._load(path)
-        if trial_id not in self._trials:
+        if trial_id not in self._kept:
             raise InputError(say("no such trial", trial_id=trial_id))
-        return self._trials[trial_id]
-
-    def _reading_of(self, trial_id: str) -> JournalReading | None:
-        """Read the journal of an aborted trial; None if there is none or it was altered."""
-        for path in journals_of(self._folder, trial_id):
-            if b"attempt" in _last_kinds(path):
-                reading = read_journal(path)
-                return None if reading.integrity is Integrity.ALTERED else reading
-        return None
+        return self._kept[trial_id]
 
     def _load(self, path: Path) -> None:
         try:
             reading = read_journal(path)
-            trial = archived_trial(reading)
-            if trial is None:
-                self._aborted.load(reading)
+            trial = archived_trial(reading) or archived_attempt(reading)
         except InputError as error:
             self.problems.append(str(error))
-            return
-        if trial is not None:
-            self.add(trial, Journal.reopened(reading))
-
-    def _append(self, trial_id: str, entry: Mapping[str, Any]) -> None:
-        journal = self._journals[trial_id]
-        try:
-            journal.write([entry], sync=True)
-        finally:
-            journal.close()
+        else:
+            if trial is not None:
+                self.add(trial, Journal.reopened(reading))
 
 
 def archived_trial(reading: JournalReading) -> ArchivedTrial | None:
@@ -280,17 +267,13 @@ def find_unacknowledged(folder: Path) -> list[Path]:
 
     Only the end of each file is read: a lab's folder holds thousands.
     """
-    last_kinds = {path: set(_last_kinds(path)) for path in sorted(folder.glob(f"*{SUFFIX}"))}
+    paths = sorted(folder.glob(f"*{SUFFIX}"))
+    last_kinds = {path: set(_KIND.findall(_end(path))) for path in paths}
     return [
         path
         for path, kinds in last_kinds.items()
         if kinds & {b"registered", b"attempt"} and b"acknowledged" not in kinds
     ]
-
-
-def _last_kinds(path: Path) -> list[bytes]:
-    """Return the kinds of the last lines, back to before the trial was registered."""
-    return _KIND.findall(_end(path))
 
 
 def _end(path: Path) -> bytes:

@@ -8,7 +8,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import metadata
 from pathlib import Path
-from types import MappingProxyType
 from typing import Annotated, Any
 
 import rastrainer
@@ -34,16 +33,11 @@ def versions() -> dict[str, str]:
     }
 
 
-def _of_packages() -> Mapping[str, str]:
-    found = {}
-    for package in PACKAGES:
-        with contextlib.suppress(metadata.PackageNotFoundError):
-            found[package] = metadata.version(package)
-    return MappingProxyType(found)
-
-
 # Looked up when imported: it reads folders, and a trial starts within a tick.
-_OF_PACKAGES = _of_packages()
+_OF_PACKAGES: dict[str, str] = {}
+for _package in PACKAGES:
+    with contextlib.suppress(metadata.PackageNotFoundError):
+        _OF_PACKAGES[_package] = metadata.version(_package)
 
 
 def setup_of(
@@ -81,15 +75,8 @@ _Angle = Annotated[float, number(-360, 360, "degrees")]
 
 @dataclass(frozen=True)
 class TutorialOutcome:
-    """A finished tutorial.
-
-    Attributes:
-        device: value of the `SourceKind` that the arm was driven with.
-        duration_s: menus excluded.
-        first_error_mm: of the first touch.
-        errors_mm: of the guided touches at the end.
-        step_times_s: by the steps' names.
-    """
+    """A finished tutorial: its duration without menus, and the errors of the first touch and of
+    the guided touches at the end."""
 
     trainee: str
     device: Annotated[str, one_of(*(kind.value for kind in SourceKind))]
@@ -103,72 +90,27 @@ class TutorialOutcome:
 
 @dataclass(frozen=True)
 class DisplayReport:
-    """A view's report on the last second.
+    """A view's report on the frames of the last second.
 
-    Attributes:
-        view: "desktop", "page" or "headset".
-        device: model of the headset or name of the browser; "" if unknown.
-        refresh_hz: of the display; 0 if unknown.
-        shown: frames.
-        dropped: frames.
+    `device` is the model of the headset or the name of the browser, "" if unknown; an unknown
+    refresh rate is 0.
     """
 
-    view: str
+    view: str  # "desktop", "page" or "headset"
     device: Annotated[str, text(80, 0)]
     refresh_hz: Annotated[float, number(0, 1e6, "Hz")]
     shown: _Frames
     dropped: _Frames
 
 
-class DisplayUse:
-    """Adds up the reports of one trial.
-
-    Attributes:
-        guidance: how the trainee is guided to the next point; "" if no screen shows it.
-        ghost: which earlier trial was shown beside the arm; "" for none.
-    """
-
-    def __init__(self) -> None:
-        self.guidance = self.ghost = ""
-        self._last: DisplayReport | None = None
-        self._shown = 0
-        self._dropped = 0
-
-    def add(self, report: DisplayReport) -> None:
-        self._last = report
-        self._shown += report.shown
-        self._dropped += report.dropped
-
-    def summary(self) -> dict[str, str | float]:
-        """Return `display` of the trial's record: the last view, all frames, and the aids."""
-        aids = {"guidance": self.guidance, "ghost": self.ghost}
-        shown = {name: aid for name, aid in aids.items() if aid}
-        if self._last is None:
-            return {**shown}
-        device = {"device": self._last.device} if self._last.device else {}
-        return {
-            "kind": self._last.view,
-            **device,
-            **shown,
-            "refreshHz": self._last.refresh_hz,
-            "shownFrames": self._shown,
-            "droppedFrames": self._dropped,
-        }
-
-
 @dataclass(frozen=True)
 class ViewReport:
-    """A view, compared with the scenario's camera.
+    """A view, compared with the scenario's camera, and whether it has gone there automatically.
 
-    Attributes:
-        azimuth_deg: turn about the vertical, counterclockwise from above.
-        elevation_deg: how much higher it is.
-        zoom: its distance, as a share.
-        is_automatic: whether it has gone there automatically.
-        follows: whether it goes automatically to the best view of each next point, as set.
+    `follows` is whether it goes to the best view of each next point, as set.
     """
 
-    azimuth_deg: _Angle
+    azimuth_deg: _Angle  # about the vertical, counterclockwise from above
     elevation_deg: _Angle
     zoom: Annotated[float, number(0, 1000)]
     is_automatic: bool
@@ -194,11 +136,14 @@ class GhostReport:
 
 NotedReport = DisplayReport | ViewReport | GuidanceReport | GhostReport | TutorialOutcome
 """Entries on how a trial is seen and prepared; the simulation does not depend on them."""
-_KINDS = {
-    DisplayReport: "display",
+DRAWING_REPORTS: dict[str, type[DisplayReport | GuidanceReport | GhostReport]] = {
+    "display": DisplayReport,
+    "guidance": GuidanceReport,
+    "ghost": GhostReport,
+}
+"""By their kind of entry, those that the trial's record sums up."""
+_KINDS = {report: kind for kind, report in DRAWING_REPORTS.items()} | {
     ViewReport: "view",
-    GuidanceReport: "guidance",
-    GhostReport: "ghost",
     TutorialOutcome: "tutorial",
 }
 
@@ -226,3 +171,37 @@ class PlayingSession:
 
 
 REAL_TIME = PlayingSession()
+
+
+class DisplayUse:
+    """Adds up the reports of one trial."""
+
+    def __init__(self) -> None:
+        self._aids: dict[str, str | float] = {}
+        self._last: DisplayReport | None = None
+        self._shown = 0
+        self._dropped = 0
+
+    def add(self, report: NotedReport) -> None:
+        """Add a report; those that are no matter of drawing are ignored."""
+        if isinstance(report, DisplayReport):
+            self._last = report
+            self._shown += report.shown
+            self._dropped += report.dropped
+        elif isinstance(report, GuidanceReport | GhostReport):
+            self._aids |= record_to_json(report, with_defaults=True)
+
+    def summary(self) -> dict[str, str | float]:
+        """Return `display` of the trial's record: the last view, all frames, and the aids."""
+        aids = {name: aid for name in ("guidance", "ghost") if (aid := self._aids.get(name))}
+        if self._last is None:
+            return aids
+        device = {"device": self._last.device} if self._last.device else {}
+        return {
+            "kind": self._last.view,
+            **device,
+            **aids,
+            "refreshHz": self._last.refresh_hz,
+            "shownFrames": self._shown,
+            "droppedFrames": self._dropped,
+        }

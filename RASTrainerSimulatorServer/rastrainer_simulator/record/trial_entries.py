@@ -18,10 +18,8 @@ from rastrainer.scenario.scenario import method_of, task_by_method
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.how_played import MovedBy
 from rastrainer_simulator.record.trial_context import (
+    DRAWING_REPORTS,
     REAL_TIME,
-    DisplayReport,
-    GhostReport,
-    GuidanceReport,
     NotedReport,
     PlayingSession,
     report_entry,
@@ -72,13 +70,7 @@ _COUNTS = ("", *dict.fromkeys(_MOVED_BY.values()))
 
 
 class TrialEntries:
-    """The entries of one trial.
-
-    Attributes:
-        trial_id: its UUID.
-        records: what its record is made of.
-        pending: entries that are not submitted to the writer yet.
-    """
+    """The entries of one trial; those that are `pending` are not submitted to the writer yet."""
 
     def __init__(self, simulation: Simulation, trial_id: str, started_utc: str, dt: float) -> None:
         """Prepare the entries of the simulation's trial; use `started` or `resumed` instead."""
@@ -153,21 +145,18 @@ class TrialEntries:
         """
         training = state.training
         entries = cls(simulation, training.trial_id, earlier[0]["utc"], dt)
-        entries.records.number = record_from_json(JournalNumber, earlier[0])
+        records = entries.records
+        records.number = record_from_json(JournalNumber, earlier[0])
         for entry in earlier:
             entries._collect(entry)
-            if entry["kind"] in _TOUCHED:
-                entries.records.date(entry["simTimeS"] - dt, entry["utc"])
-            elif entry["kind"] == EventKind.TRACE.value:
-                entries.records.date(entry["simTimeS"], entry["utc"])
-            elif entry["kind"] == "display":
-                entries.records.display.add(
-                    record_from_json(DisplayReport, entry, "A display's entry")
-                )
-            elif entry["kind"] == "guidance":
-                entries.records.display.guidance = entry["guidance"]
-            elif entry["kind"] == "ghost":
-                entries.records.display.ghost = entry["ghost"]
+            kind = entry["kind"]
+            if kind in _TOUCHED:
+                records.dates[entry["simTimeS"] - dt] = entry["utc"]
+            elif kind == EventKind.TRACE.value:
+                records.dates[entry["simTimeS"]] = entry["utc"]
+            elif kind in DRAWING_REPORTS:
+                report = record_from_json(DRAWING_REPORTS[kind], entry, f"The entry {kind}")
+                records.display.add(report)
         entries._append(
             {
                 "kind": "continued",
@@ -201,21 +190,29 @@ class TrialEntries:
         times = stamp(state.tick, state.sim_time)
         if sticks != self._sticks:
             self._sticks = sticks
-            self._append(_input_entry(times, operator_input))
+            self._append(
+                {
+                    "kind": "input",
+                    **times,
+                    "translation": operator_input.translation,
+                    "rotation": operator_input.rotation,
+                    "fine": operator_input.fine,
+                    "operator": operator_input.operator,
+                }
+            )
         for command in operator_input.commands:
             self._append(self._command_entry(times, command))
         registered = None
         for event in result.events:
             if event.kind.value in _DATED:
-                self.records.date(event.sim_time, times["utc"])
+                self.records.dates[event.sim_time] = times["utc"]
             entry = self._event_entry(times, event)
             if entry["kind"] == "registered":
                 entry["truth"] = record_to_json(simulation.truth)
                 registered = entry
             self._append(entry)
         if is_sampled:
-            self._append({**_sample_entry(times, state), "movedBy": self._moved_by})
-            self._moved_by = ""
+            self._append_sample(times, state)
         if registered is None:
             return None
         # Of the whole tick: the tip may have touched the head after the command in it.
@@ -224,12 +221,7 @@ class TrialEntries:
 
     def add_display(self, report: NotedReport, state: SimulationState) -> None:
         """Record a report of a view; the simulation does not depend on it."""
-        if isinstance(report, DisplayReport):
-            self.records.display.add(report)
-        elif isinstance(report, GuidanceReport):
-            self.records.display.guidance = report.guidance
-        elif isinstance(report, GhostReport):
-            self.records.display.ghost = report.ghost
+        self.records.display.add(report)
         self._append(report_entry(report) | stamp(state.tick, state.sim_time))
 
     def _append(self, entry: dict[str, Any]) -> None:
@@ -240,6 +232,20 @@ class TrialEntries:
         self._recording.add(entry)
         self.records.feeds.add(entry)
         self.records.play.add(entry)
+
+    def _append_sample(self, times: dict[str, Any], state: SimulationState) -> None:
+        entry = {
+            "kind": "sample",
+            **times,
+            "q": state.q,
+            "tipMm": [MM_PER_M * float(value) for value in state.tool_tip_to_world[:3, 3]],
+            "clearanceMm": MM_PER_M * state.clearance,
+            "depthMm": MM_PER_M * state.depth,
+        }
+        if state.tool in (Tool.DRILL, Tool.ELECTRODE):
+            entry["feedMm"] = MM_PER_M * state.feed
+        self._append({**entry, "movedBy": self._moved_by})
+        self._moved_by = ""
 
     def motion(self) -> dict[str, float]:
         return trial_motion(self._recording.trajectory())
@@ -278,27 +284,3 @@ class TrialEntries:
         if event.kind in MUST_LAST:
             entry["trajectorySha256"] = self._trajectory.hexdigest()
         return entry
-
-
-def _input_entry(times: dict[str, Any], operator_input: OperatorInput) -> dict[str, Any]:
-    return {
-        "kind": "input",
-        **times,
-        "translation": operator_input.translation,
-        "rotation": operator_input.rotation,
-        "fine": operator_input.fine,
-        "operator": operator_input.operator,
-    }
-
-
-def _sample_entry(times: dict[str, Any], state: SimulationState) -> dict[str, Any]:
-    is_fed = state.tool in (Tool.DRILL, Tool.ELECTRODE)
-    return {
-        "kind": "sample",
-        **times,
-        "q": state.q,
-        "tipMm": [MM_PER_M * float(value) for value in state.tool_tip_to_world[:3, 3]],
-        "clearanceMm": MM_PER_M * state.clearance,
-        "depthMm": MM_PER_M * state.depth,
-        **({"feedMm": MM_PER_M * state.feed} if is_fed else {}),
-    }

@@ -6,13 +6,13 @@ from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from rastrainer.commands import CommandName
 from rastrainer.journal.folder import UNNUMBERED, newest_journal, number_of
 from rastrainer.journal.journal_file import JournalReading, file_stamp, stamp
 from rastrainer.protocol import AbortReason, Phase
-from rastrainer_simulator.record.aborted_archive import attempt_entry
+from rastrainer_simulator.record.aborted_trials import ArchivedAttempt, attempt_entry
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_archive import SUFFIX, ArchivedTrial, TrialArchive
 from rastrainer_simulator.record.trial_context import REAL_TIME, NotedReport, PlayingSession
@@ -39,11 +39,24 @@ class Written:
     is_awaited: bool
 
 
-class _OpenTrial(NamedTuple):
-    """The trial that is recorded: its entries, and the journal that they are written to."""
+@dataclass
+class _OpenTrial:
+    """The trial that is recorded: its entries, and the journal that they are written to.
+
+    Attributes:
+        registering: the write of its registration; None before.
+        is_stuck: whether entries could not be written: they wait until the trainee resumes.
+    """
 
     entries: TrialEntries
     journal: Journal
+    registering: Future[Any] | None = None
+    is_stuck: bool = False
+
+    @property
+    def is_registered(self) -> bool:
+        future = self.registering
+        return future is not None and future.done() and future.exception() is None
 
 
 class TrialRecorder:
@@ -67,8 +80,6 @@ class TrialRecorder:
         self._dt = dt
         self._session = session
         self._open: _OpenTrial | None = None
-        self._registering: Future[Any] | None = None
-        self._is_stuck = False
         self._waiting: tuple[JournalReading, float] | None = None
         newest = newest_journal(folder)
         self._interrupted = newest
@@ -83,7 +94,7 @@ class TrialRecorder:
         self._interrupted = None
         self._waiting = reading, state.sim_time
         if state.training.phase is not Phase.PAUSED:
-            self._resume(simulation, state, self._waiting)
+            self._resume(simulation, state)
 
     def record(
         self,
@@ -97,35 +108,37 @@ class TrialRecorder:
         if training.trial_id and training.trial_id != before.training.trial_id:
             self._start(simulation, before, result)
         if self._waiting is not None and any(e.kind in MUST_LAST for e in result.events):
-            self._resume(simulation, before, self._waiting)
+            self._resume(simulation, before)
         trial = self._open
         if trial is None:
             return None
         if any(command.name == RECORDING_FAILED for command in operator_input.commands):
             self._keep_refused(trial, simulation, operator_input, result)
             return None
-        if self._is_registered():
-            return self._after_registration(operator_input, result)
+        is_lasting = any(event.kind in MUST_LAST for event in result.events)
+        if trial.is_registered:
+            # Nothing but the final registration or the score comes after the record.
+            return self._write_answer(operator_input, result) if is_lasting else None
         record = trial.entries.add(simulation, operator_input, result)
         if record is not None:
             return self._register(trial, simulation, record)
         if training.phase is Phase.IDLE:
             return self._abort(trial, before, operator_input, result)
-        if any(event.kind in MUST_LAST for event in result.events):
-            self._is_stuck = False
+        if is_lasting:
+            trial.is_stuck = False
             return self._submit(trial, is_awaited=True)
         is_due = trial.entries.pending and result.state.tick % FLUSH_TICKS == 0
-        return self._submit(trial, is_awaited=False) if is_due and not self._is_stuck else None
+        return self._submit(trial, is_awaited=False) if is_due and not trial.is_stuck else None
 
     def note_display(self, report: NotedReport, state: SimulationState) -> None:
         """Record a report of a view if a trial is open."""
-        if self._open is not None and self._registering is None:
+        if self._open is not None and self._open.registering is None:
             self._open.entries.add_display(report, state)
 
     def stop(self, state: SimulationState) -> None:
         """Write the remaining entries; a trial that is still open is marked as stopped."""
         trial = self._open
-        if trial is None or self._registering is not None:
+        if trial is None or trial.registering is not None:
             return
         trial.entries.pending.append({"kind": "stopped", **stamp(state.tick, state.sim_time)})
         self._submit(trial, is_awaited=False)
@@ -142,23 +155,15 @@ class TrialRecorder:
         )
         name = f"{file_stamp(entries.records.started_utc)}_{entries.trial_id}{SUFFIX}"
         self._open = _OpenTrial(entries, Journal(self._folder / name, simulation.trial_seed))
-        self._registering = None
-        self._is_stuck = False
 
-    def _resume(
-        self, simulation: Simulation, state: SimulationState, waiting: tuple[JournalReading, float]
-    ) -> None:
+    def _resume(self, simulation: Simulation, state: SimulationState) -> None:
         """Append to the journal of an interrupted trial from now on."""
-        reading, since = waiting
-        self._waiting = None
+        assert self._waiting is not None
+        (reading, since), self._waiting = self._waiting, None
         entries = TrialEntries.resumed(
             simulation, state, reading.entries, since, self._dt, self._session
         )
         self._open = _OpenTrial(entries, Journal.reopened(reading))
-
-    def _is_registered(self) -> bool:
-        future = self._registering
-        return future is not None and future.done() and future.exception() is None
 
     def _keep_refused(
         self,
@@ -176,9 +181,9 @@ class TrialRecorder:
             self._end(trial.journal.discard)
             # Its number is free again: a gap would look like a trial that vanished.
             self._numbered = replace(self._numbered, number=self._numbered.number - 1)
-        elif not self._is_registered():
-            self._registering = None
-            self._is_stuck = True
+        elif not trial.is_registered:
+            trial.registering = None
+            trial.is_stuck = True
             trial.entries.add(simulation, operator_input, result)
 
     def _submit(self, trial: _OpenTrial, is_awaited: bool) -> Written:
@@ -186,10 +191,10 @@ class TrialRecorder:
         return Written(future, is_awaited)
 
     def _register(
-        self, open_trial: _OpenTrial, simulation: Simulation, record: UnmeasuredRecord
+        self, trial: _OpenTrial, simulation: Simulation, record: UnmeasuredRecord
     ) -> Written:
         truth, seed = simulation.truth, simulation.trial_seed
-        journal, entries = open_trial.journal, open_trial.entries.taken()
+        journal, entries = trial.journal, trial.entries.taken()
 
         def write() -> None:
             measured = record.measured(self._archive.was_played)
@@ -198,8 +203,8 @@ class TrialRecorder:
             sealed = replace(measured, journal_sha256=journal.last_hash)
             self._archive.add(ArchivedTrial(sealed, truth, seed), journal)
 
-        self._registering = self._writer.submit(write)
-        return Written(self._registering, is_awaited=True)
+        trial.registering = self._writer.submit(write)
+        return Written(trial.registering, is_awaited=True)
 
     def _abort(
         self,
@@ -225,25 +230,19 @@ class TrialRecorder:
             try:
                 journal.write(entries, sync=True)
             finally:
-                self._archive.add_aborted(record, journal)
+                self._archive.add(ArchivedAttempt(record), journal)
 
         written = Written(self._writer.submit(write), is_awaited=False)
         self._end(trial.journal.close)
         return written
 
-    def _after_registration(
-        self, operator_input: OperatorInput, result: StepResult
-    ) -> Written | None:
-        """Write the final registration or the score: nothing else comes after the record."""
-        if not any(event.kind in MUST_LAST for event in result.events):
-            return None
-        ending = [c for c in operator_input.commands if c.name in ENDING_A_TRIAL]
-        times = stamp(result.state.tick, result.state.sim_time) | {"sender": ending[-1].sender}
-        future = self._writer.submit(
-            self._archive.answer, ending[-1].name, ending[-1].arguments, times
-        )
+    def _write_answer(self, operator_input: OperatorInput, result: StepResult) -> Written:
+        """Write the final registration or the score."""
+        ending = [c for c in operator_input.commands if c.name in ENDING_A_TRIAL][-1]
+        times = stamp(result.state.tick, result.state.sim_time) | {"sender": ending.sender}
+        future = self._writer.submit(self._archive.answer, ending.name, ending.arguments, times)
         return Written(future, is_awaited=True)
 
     def _end(self, leave: Callable[[], None]) -> None:
         self._writer.submit(leave)
-        self._open = self._registering = None
+        self._open = None

@@ -24,7 +24,7 @@ from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.how_played import PlayRecording, SeedSource
-from rastrainer.trial.record import TouchedPoint, TracePoint, TrialRecord
+from rastrainer.trial.record import TouchedPoint, TrialRecord
 from rastrainer_simulator.record.trial_context import DisplayUse, versions
 from rastrainer_simulator.state import SimulationState, TrainingState
 from rastrainer_simulator.training.head_pose import RegisteredPlan
@@ -45,12 +45,8 @@ class TrialRecords:
     """Makes the records of a trial from its state and from what is recorded with it.
 
     Attributes:
-        started_utc: when it was started, ISO 8601.
-        versions: of what it is played with.
-        display: how its views drew.
-        feeds: of drill and instrument.
-        play: how the trial is played.
         number: of the trial in its folder.
+        dates: when a point was touched or traced, by its simulated time.
     """
 
     def __init__(self, simulation: Simulation, started_utc: str) -> None:
@@ -63,89 +59,67 @@ class TrialRecords:
         self._setup = simulation.setup
         # Its seed is revealed with the truth.
         self._skin = replace(simulation.truth.skin, seed=0)
-        self._utc: dict[float, str] = {}
-
-    def date(self, sim_time: float, utc: str) -> None:
-        """Note when a point was touched or traced."""
-        self._utc[sim_time] = utc
+        self.dates: dict[float, str] = {}
 
     def aborted(self, before: SimulationState, reason: str, utc: str) -> AbortedTrial:
         """Return the record of a trial that was aborted in a state, for a reason, at a time."""
         training = before.training
         stage = training.phase if training.procedure is None else training.procedure.stage
         return AbortedTrial(
-            trial_id=training.trial_id,
-            trainee=training.trainee,
-            task=training.task,
-            mode=training.mode,
-            scenario=self._setup.scenario.name,
-            started_utc=self.started_utc,
             aborted_utc=utc,
             elapsed_s=before.elapsed,
             # A procedure that is paused is aborted in what it was paused in.
             phase=(stage if stage in PROCEDURE_PHASES else training.phase).value,
             reason=reason,
-            points=self._points(training),
-            rejected_touches=training.rejected,
-            undone_touches=training.undone,
-            versions=self.versions,
-            touch_rule=self._setup.settings.training.touch_rule.value,
-            method=training.method,
             traced=0 if training.trace is None else len(training.trace.points),
-            **asdict(self.number),
-        )
-
-    def _points(self, training: TrainingState) -> tuple[TouchedPoint, ...]:
-        return tuple(
-            TouchedPoint(
-                label=touch.label,
-                position_mm=in_millimeters(touch.position),
-                sim_time_s=touch.sim_time,
-                utc=self._utc[touch.sim_time],
-            )
-            for touch in training.touches
+            **self._in_both(training),
         )
 
     def registered(self, state: SimulationState) -> TrialRecord:
         """Return the record of a trial that has just been registered, without its motion."""
         training = state.training
-        points, trace = self._points(training), _trace(training)
-        completed = trace[-1][3] if trace else training.touches[-1].sim_time
+        traced = () if training.trace is None else training.trace.points
+        done, procedure = training.procedure, None
+        if done is not None:
+            plan = self._setup.scenario.procedure(done.name)
+            sha256 = self._setup.procedure_sha256[done.name]
+            procedure = procedure_record(done, plan, sha256, self.feeds)
         return TrialRecord(
-            trial_id=training.trial_id,
-            trainee=training.trainee,
-            task=training.task,
-            mode=training.mode,
-            scenario=self._setup.scenario.name,
-            started_utc=self.started_utc,
-            completed_utc=self._utc[completed],
+            completed_utc=self.dates[(traced or training.touches)[-1].sim_time],
             completion_time_s=training.completed_s,
-            points=points,
-            rejected_touches=training.rejected,
-            undone_touches=training.undone,
-            versions=self.versions,
-            touch_rule=self._setup.settings.training.touch_rule.value,
             display=self.display.summary(),
-            procedure=self._procedure_record(training),
-            method=training.method,
-            trace=trace,
+            procedure=procedure,
+            trace=tuple((*in_millimeters(point.position), point.sim_time) for point in traced),
             skin=self._skin,
             played=self.play.played(),
-            **asdict(self.number),
+            **self._in_both(training),
         )
 
-    def _procedure_record(self, training: TrainingState) -> ProcedureRecord | None:
-        done = training.procedure
-        if done is None:
-            return None
-        plan = self._setup.scenario.procedure(done.name)
-        sha256 = self._setup.procedure_sha256[done.name]
-        return procedure_record(done, plan, sha256, self.feeds)
-
-
-def _trace(training: TrainingState) -> tuple[TracePoint, ...]:
-    points = () if training.trace is None else training.trace.points
-    return tuple((*in_millimeters(point.position), point.sim_time) for point in points)
+    def _in_both(self, training: TrainingState) -> dict[str, Any]:
+        """Return the fields that aborted and finished trials have."""
+        return {
+            "trial_id": training.trial_id,
+            "trainee": training.trainee,
+            "task": training.task,
+            "mode": training.mode,
+            "scenario": self._setup.scenario.name,
+            "started_utc": self.started_utc,
+            "points": tuple(
+                TouchedPoint(
+                    label=touch.label,
+                    position_mm=in_millimeters(touch.position),
+                    sim_time_s=touch.sim_time,
+                    utc=self.dates[touch.sim_time],
+                )
+                for touch in training.touches
+            ),
+            "rejected_touches": training.rejected,
+            "undone_touches": training.undone,
+            "versions": self.versions,
+            "touch_rule": self._setup.settings.training.touch_rule.value,
+            "method": training.method,
+            **asdict(self.number),
+        }
 
 
 @dataclass(frozen=True)
@@ -251,14 +225,7 @@ class FeedRecording:
 def procedure_record(
     state: ProcedureState, plan: Procedure, sha256: str, feeds: FeedRecording
 ) -> ProcedureRecord:
-    """Return the record of a procedure whose last instrument was released.
-
-    Args:
-        state: of the procedure.
-        plan: as the scenario has it.
-        sha256: of its content.
-        feeds: the samples of drill and instrument.
-    """
+    """Return the record of a procedure whose last instrument was released; `sha256` of its plan."""
     assert state.ended_s is not None, "it is finished"
     pairs = enumerate(zip(state.trajectories, plan.trajectories, strict=True))
     return ProcedureRecord(
@@ -321,13 +288,7 @@ def _times(parts: Iterable[Mapping[Phase, float]]) -> dict[str, float]:
 def procedure_after(
     before: ProcedureState, entry: Mapping[str, Any], time_s: float, plan: Procedure
 ) -> ProcedureState:
-    """Return the progress of a procedure after an event of its trial.
-
-    Args:
-        before: the event.
-        entry: of the journal.
-        time_s: of the event, the trial's.
-        plan: as the scenario has it.
+    """Return the progress of a procedure after an event of its trial, at the trial's time.
 
     Raises:
         KeyError, TypeError, ValueError: the entry is not as it should be.
@@ -347,11 +308,17 @@ def procedure_after(
         before = _registered(before, entry["registration"], plan)
     stage, number = Phase(entry["procedure"]["stage"]), entry["procedure"]["trajectory"]
     if before.stage is Phase.INSERTING and stage is not Phase.INSERTING:
-        before = _released(before, entry)
+        here, depth = before.trajectories[before.trajectory], entry.get("feedMm", 0.0) / MM_PER_M
+        before = before.with_present(replace(here, instrument_depth=depth))
     after = replace(before, stage=stage, trajectory=number)
     if stage is Phase.RUNNING:
         return replace(after, registration=None, checkpoints=(), trajectories=())
-    return _locked(after, entry) if "ahead" in entry else after
+    if "ahead" in entry:
+        here = after.trajectories[number]
+        guide = GuideAxis(in_meters(entry["positionMm"]), vector(entry["direction"]))
+        locked = replace(here, alignments=here.alignments + 1, guide=guide)
+        return after.with_present(locked)
+    return after
 
 
 def _registered(
@@ -363,16 +330,3 @@ def _registered(
         raise ValueError("its registration is not rigid")
     lines = tuple(TrajectoryState(registered.line(each)) for each in plan.trajectories)
     return replace(before, registration=registration, trajectories=lines)
-
-
-def _locked(before: ProcedureState, entry: Mapping[str, Any]) -> ProcedureState:
-    tip = in_meters(entry["positionMm"])
-    here = before.trajectories[before.trajectory]
-    guide = GuideAxis(tip, vector(entry["direction"]))
-    return before.with_present(replace(here, alignments=here.alignments + 1, guide=guide))
-
-
-def _released(before: ProcedureState, entry: Mapping[str, Any]) -> ProcedureState:
-    here = before.trajectories[before.trajectory]
-    depth = entry.get("feedMm", 0.0) / MM_PER_M
-    return before.with_present(replace(here, instrument_depth=depth))

@@ -55,7 +55,14 @@ class Shadows(Enum):
 
 def light_room(renderer: vtkRenderer, shadows: Shadows = Shadows.FULL) -> None:
     """Give a renderer its surroundings, lamps and smooth edges, and shadows if wanted."""
-    _surround(renderer)
+    renderer.SetEnvironmentTexture(_environment())
+    renderer.SetEnvironmentUp(0.0, 0.0, 1.0)
+    renderer.SetEnvironmentRight(1.0, 0.0, 0.0)
+    renderer.UseImageBasedLightingOn()
+    # Few samples: the surroundings are smooth, and software rendering pays for each.
+    # These are the OpenGL renderer's; VTK's stubs promise its base class.
+    renderer.GetEnvMapPrefiltered().SetPrefilterMaxSamples(32)  # type: ignore[attr-defined]
+    renderer.GetEnvMapLookupTable().SetLUTSamples(16)  # type: ignore[attr-defined]
     for x, y in LAMP_CORNERS:
         lamp = _lamp(x * LAMP_RADIUS, y * LAMP_RADIUS)
         is_open = shadows is Shadows.NONE
@@ -66,17 +73,6 @@ def light_room(renderer: vtkRenderer, shadows: Shadows = Shadows.FULL) -> None:
         renderer.UseFXAAOn()
     else:
         renderer.SetPass(_passes(shadows))
-
-
-def _surround(renderer: vtkRenderer) -> None:
-    renderer.SetEnvironmentTexture(_environment())
-    renderer.SetEnvironmentUp(0.0, 0.0, 1.0)
-    renderer.SetEnvironmentRight(1.0, 0.0, 0.0)
-    renderer.UseImageBasedLightingOn()
-    # Few samples: the surroundings are smooth, and software rendering pays for each.
-    # These are the OpenGL renderer's; VTK's stubs promise its base class.
-    renderer.GetEnvMapPrefiltered().SetPrefilterMaxSamples(32)  # type: ignore[attr-defined]
-    renderer.GetEnvMapLookupTable().SetLUTSamples(16)  # type: ignore[attr-defined]
 
 
 def _environment(width: int = 128) -> vtkTexture:
@@ -126,18 +122,16 @@ def _passes(shadows: Shadows) -> vtkRenderPass:
     camera = vtkCameraPass()
     camera.SetDelegatePass(sequence)
     smooth = vtkOpenGLFXAAPass()
-    smooth.SetDelegatePass(_with_shaded_corners(camera) if shadows is Shadows.FULL else camera)
+    smooth.SetDelegatePass(camera)
+    if shadows is Shadows.FULL:
+        corners = vtkSSAOPass()
+        corners.SetRadius(0.10)
+        corners.SetBias(0.004)
+        corners.SetKernelSize(32)
+        corners.BlurOn()
+        corners.SetDelegatePass(camera)
+        smooth.SetDelegatePass(corners)
     return smooth
-
-
-def _with_shaded_corners(picture: vtkRenderPass) -> vtkRenderPass:
-    corners = vtkSSAOPass()
-    corners.SetRadius(0.10)
-    corners.SetBias(0.004)
-    corners.SetKernelSize(32)
-    corners.BlurOn()
-    corners.SetDelegatePass(picture)
-    return corners
 
 
 def glow(target: vtkProperty, color: tuple[float, float, float]) -> None:

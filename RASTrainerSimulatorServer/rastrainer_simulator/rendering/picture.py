@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,13 +15,12 @@ from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import (
     vtkActor,
     vtkPolyDataMapper,
-    vtkProperty,
     vtkRenderer,
     vtkRenderWindow,
     vtkWindowToImageFilter,
 )
 
-from rastrainer.errors import InputError
+from rastrainer.files.writing import write_bytes
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.protocol import Proximity
 from rastrainer.scenario.scenario import Camera, Scenario
@@ -48,44 +46,40 @@ from rastrainer_simulator.scene.scene_glb import scene_nodes
 from rastrainer_simulator.scene.surfaces import surface, vtk_matrix
 
 
-def _look_through(camera: Camera, renderer: vtkRenderer) -> None:
-    """Set a renderer's camera; the scenario's is in mm, what is rendered in meters."""
-    view = renderer.GetActiveCamera()
-    view.SetPosition(*(camera.position_mm / MM_PER_M))
-    view.SetFocalPoint(*(camera.focal_point_mm / MM_PER_M))
-    view.SetViewUp(*camera.view_up)
-    view.SetViewAngle(camera.view_angle_deg)
-    renderer.ResetCameraClippingRange()
+def frames(renderer: vtkRenderer, *shots: tuple[Camera, tuple[int, int]]) -> list[np.ndarray]:
+    """Return a renderer's pictures, made in memory, one for each camera and size (width, height).
 
-
-class OffscreenWindow:
-    """A renderer's picture in memory; its graphics resources are kept from frame to frame."""
-
-    def __init__(self, renderer: vtkRenderer):
-        self._renderer = renderer
-        with _without_display_warning():
-            self._window = vtkRenderWindow()
-        self._window.SetOffScreenRendering(True)
-        self._window.SetMultiSamples(0)
-        self._window.AddRenderer(renderer)
-
-    def frame(self, camera: Camera, size: tuple[int, int]) -> np.ndarray:
-        """Return (height, width, 3) uint8, the top row first, for `size` = (width, height)."""
-        self._window.SetSize(*size)
-        _look_through(camera, self._renderer)
-        with _without_display_warning():
-            self._window.Render()
-        shot = vtkWindowToImageFilter()
-        shot.SetInput(self._window)
-        shot.ReadFrontBufferOff()
-        shot.ShouldRerenderOff()
-        shot.Update()
-        pixels = vtk_to_numpy(shot.GetOutput().GetPointData().GetScalars())
-        return pixels.reshape(size[1], size[0], 3)[::-1].copy()
-
-    def close(self) -> None:
-        """Free the graphics resources."""
-        self._window.Finalize()
+    They are (height, width, 3) uint8, the top row first. The graphics resources are freed.
+    """
+    # VTK warns that there is no display: none is needed. Errors are still shown.
+    before = vtkLogger.GetCurrentVerbosityCutoff()
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
+    try:
+        window, pictures = vtkRenderWindow(), []
+        window.SetOffScreenRendering(True)
+        window.SetMultiSamples(0)
+        window.AddRenderer(renderer)
+        for camera, size in shots:
+            window.SetSize(*size)
+            # The scenario's cameras are in mm, what is rendered in meters.
+            view = renderer.GetActiveCamera()
+            view.SetPosition(*(camera.position_mm / MM_PER_M))
+            view.SetFocalPoint(*(camera.focal_point_mm / MM_PER_M))
+            view.SetViewUp(*camera.view_up)
+            view.SetViewAngle(camera.view_angle_deg)
+            renderer.ResetCameraClippingRange()
+            window.Render()
+            shot = vtkWindowToImageFilter()
+            shot.SetInput(window)
+            shot.ReadFrontBufferOff()
+            shot.ShouldRerenderOff()
+            shot.Update()
+            pixels = vtk_to_numpy(shot.GetOutput().GetPointData().GetScalars())
+            pictures.append(pixels.reshape(size[1], size[0], 3)[::-1].copy())
+        window.Finalize()
+        return pictures
+    finally:
+        vtkLogger.SetStderrVerbosity(before)
 
 
 def write_png(pixels: np.ndarray, path: Path) -> None:
@@ -98,23 +92,7 @@ def write_png(pixels: np.ndarray, path: Path) -> None:
     writer.SetInputData(image)
     writer.WriteToMemoryOn()
     writer.Write()
-    partial = path.with_name(path.name + ".partial")
-    try:
-        partial.write_bytes(vtk_to_numpy(writer.GetResult()).tobytes())
-        partial.replace(path)
-    except OSError as error:
-        raise InputError(f"The picture {path} cannot be written: {error.strerror}.") from error
-
-
-@contextmanager
-def _without_display_warning() -> Iterator[None]:
-    """Keep VTK from warning that there is no display: none is needed. Errors are still shown."""
-    before = vtkLogger.GetCurrentVerbosityCutoff()
-    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
-    try:
-        yield
-    finally:
-        vtkLogger.SetStderrVerbosity(before)
+    write_bytes(path, vtk_to_numpy(writer.GetResult()).tobytes())
 
 
 @dataclass(frozen=True)
@@ -139,9 +117,10 @@ class SceneMoment:
 
     def poses(self, robot: RobotModel) -> dict[str, np.ndarray]:
         """Return the pose of each moving node, (4, 4) float, m."""
-        first: dict[str, np.ndarray] = {}
-        for link in robot.links:
-            first.setdefault(link_node_name(link.joint), self.link_to_world[link.name])
+        first = {
+            link_node_name(link.joint): self.link_to_world[link.name]
+            for link in reversed(robot.links)
+        }
         head = np.array(self.head_to_world, dtype=float)
         head[:3, 3] /= MM_PER_M
         stand = np.eye(4)
@@ -156,21 +135,6 @@ class SceneMoment:
             colors[f"fiducial_{self.next_point}"] = NEXT
         colors[TIP_MARKER] = TIP_FREE if self.proximity is Proximity.FREE else TIP_NEAR
         return colors
-
-
-def _apply_material(material: Material, target: vtkProperty) -> None:
-    """Set a material on an actor's property."""
-    target.SetOpacity(material.opacity)
-    if material.glowing:
-        # Shadows need a lit material: switching its lighting off breaks their shader.
-        target.SetColor(*material.color)
-        target.SetAmbient(1.0)
-        target.SetDiffuse(0.0)
-        return
-    target.SetInterpolationToPBR()
-    target.SetColor(*material.linear_color)
-    target.SetRoughness(material.roughness)
-    target.SetMetallic(material.metallic)
 
 
 def node_actors(
@@ -197,7 +161,18 @@ def _actor(shape: Surface, material: Material, pose: np.ndarray) -> vtkActor:
     made = vtkActor()
     made.SetMapper(mapper)
     made.SetUserMatrix(vtk_matrix(pose))
-    _apply_material(material, made.GetProperty())
+    target = made.GetProperty()
+    target.SetOpacity(material.opacity)
+    if material.glowing:
+        # Shadows need a lit material: switching its lighting off breaks their shader.
+        target.SetColor(*material.color)
+        target.SetAmbient(1.0)
+        target.SetDiffuse(0.0)
+    else:
+        target.SetInterpolationToPBR()
+        target.SetColor(*material.linear_color)
+        target.SetRoughness(material.roughness)
+        target.SetMetallic(material.metallic)
     return made
 
 
@@ -226,12 +201,13 @@ def render_picture(
     for actor in node_actors(nodes, moment.poses(robot), moment.looks()):
         renderer.AddActor(actor)
     light_room(renderer, shadows)
-    window = OffscreenWindow(renderer)
-    pixels = window.frame(camera, size)
+    shots = [(camera, size)]
     if inset:
         width, height = (round(INSET_SHARE * length) for length in size)
-        lay_in_corner(pixels, window.frame(inset, (width, height)))
-    window.close()
+        shots.append((inset, (width, height)))
+    pixels, *corner = frames(renderer, *shots)
+    for picture in corner:
+        lay_in_corner(pixels, picture)
     write_png(pixels, path)
 
 
@@ -257,8 +233,6 @@ def draw_preview(path: Path, scenario: Scenario, head: HeadMesh) -> None:
         link_to_world=make_kinematics(robot).links(q),
         head_to_world=scenario.head_to_world,
         head_base=head.base,
-        touched=frozenset(),
-        proximity=Proximity.FREE,
     )
     task = scenario.tasks[0] if scenario.tasks else None
     nodes = scene_nodes(scenario, robot, head, task)

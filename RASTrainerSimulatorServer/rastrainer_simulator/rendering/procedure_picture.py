@@ -20,7 +20,7 @@ from rastrainer.scenario.scenario import Camera
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.rendering.lighting import Shadows, light_room
 from rastrainer_simulator.rendering.picture import (
-    OffscreenWindow,
+    frames,
     lay_in_corner,
     node_actors,
     write_png,
@@ -40,20 +40,6 @@ LONGEST_BAR = 0.25
 Legend = Sequence[tuple[Material, str]]
 
 
-def _write_legend(renderer: vtkRenderer, rows: Legend) -> None:
-    """Write the legend of the colors into the lower left corner of a picture before it is drawn."""
-    for number, (_material, text) in enumerate(reversed(rows)):
-        _write(renderer, text, MARGIN + SWATCH[0] + 14, MARGIN + number * ROW)
-
-
-def _paint_legend(pixels: np.ndarray, rows: Legend) -> None:
-    """Paint the lines beside the legend's words; `pixels` is (height, width, 3) uint8."""
-    for number, (material, _text) in enumerate(reversed(rows)):
-        middle = MARGIN + number * ROW + TEXT_SIZE // 2
-        color = np.round(255.0 * np.array(material.color))
-        _paint(pixels, MARGIN, middle, SWATCH[0], SWATCH[1], color)
-
-
 def bar_mm(height_mm: float) -> float:
     """Return how long the bar is in a picture of that height: 1, 2 or 5 times a power of ten."""
     longest = LONGEST_BAR * height_mm
@@ -61,20 +47,11 @@ def bar_mm(height_mm: float) -> float:
     return power * max(step for step in (1.0, 2.0, 5.0) if step * power <= longest)
 
 
-def _write_scale(renderer: vtkRenderer, height_mm: float, width: int) -> None:
-    text = _write(renderer, f"{bar_mm(height_mm):g} mm", width - MARGIN, MARGIN + THICK + 4)
-    text.GetTextProperty().SetJustificationToRight()
-
-
 def paint_scale(pixels: np.ndarray, height_mm: float) -> None:
     """Paint the bar; `pixels` is (height, width, 3) uint8, its height showing so many mm."""
     height, width, _colors = pixels.shape
-    long = _bar_px(height_mm, height)
+    long = round(bar_mm(height_mm) / height_mm * height)
     _paint(pixels, width - MARGIN - long, MARGIN, long, THICK, np.array(INK))
-
-
-def _bar_px(height_mm: float, height: int) -> int:
-    return round(bar_mm(height_mm) / height_mm * height)
 
 
 def _write(renderer: vtkRenderer, text: str, left: int, bottom: int) -> vtkTextActor:
@@ -149,11 +126,14 @@ def draw_procedure(
     """
     nodes = [Node("skin", (shaded(head.vertices / MM_PER_M, head.triangles, CLEAR_SKIN),))]
     nodes += [replace(node, is_hidden=False) for node in plan_node([procedure]).children]
-    pixels = _picture([*nodes, *_line_nodes(lines, 1.0)], _camera(lines), SIZE, LEGEND)
+    both: np.ndarray = np.array(lines)[:, :, ::-1].reshape(-1, 2, 3)
+    middle = both.mean(axis=0).sum(axis=0) / 2
+    pixels = _picture([*nodes, *_line_nodes(lines, 1.0)], _camera(middle, ANGLE_DEG), SIZE, LEGEND)
     ends = [line[1] for line in lines[0]]
     error_mm = max(LEAST_ERROR_MM, *(float(np.linalg.norm(end - ends[0])) for end in ends))
     size = (round(INSET_SHARE * SIZE[0]), round(INSET_SHARE * SIZE[1]))
-    near = _near_camera(np.mean(ends, axis=0), INSET_ERRORS * error_mm)
+    angle_deg = float(np.degrees(2.0 * np.arctan(0.5 * INSET_ERRORS * error_mm / AWAY_MM)))
+    near = _camera(np.mean(ends, axis=0), angle_deg)
     lay_in_corner(pixels, _picture(_line_nodes(lines[:1], error_mm / 8.0), near, size))
     write_png(pixels, path)
 
@@ -168,12 +148,15 @@ def _picture(
         renderer.AddActor(actor)
     light_room(renderer, Shadows.NONE)
     renderer.SetBackground(0.93, 0.94, 0.95)
-    _write_legend(renderer, legend)
-    _write_scale(renderer, height_mm, size[0])
-    window = OffscreenWindow(renderer)
-    pixels = window.frame(camera, size)
-    window.close()
-    _paint_legend(pixels, legend)
+    rows = [(MARGIN + number * ROW, *row) for number, row in enumerate(reversed(legend))]
+    for bottom, _material, text in rows:
+        _write(renderer, text, MARGIN + SWATCH[0] + 14, bottom)
+    scale = _write(renderer, f"{bar_mm(height_mm):g} mm", size[0] - MARGIN, MARGIN + THICK + 4)
+    scale.GetTextProperty().SetJustificationToRight()
+    (pixels,) = frames(renderer, (camera, size))
+    for bottom, material, _text in rows:
+        color = np.round(255.0 * np.array(material.color))
+        _paint(pixels, MARGIN, bottom + TEXT_SIZE // 2, *SWATCH, color)
     paint_scale(pixels, height_mm)
     return pixels
 
@@ -203,17 +186,7 @@ def _line_node(name: str, line: Line, material: Material, thickness: float) -> N
     return Node(name, (shaft, turned(0.0, 0.0, profile, material, pose)))
 
 
-def _camera(lines: Sequence[tuple[Line, Line, Line]]) -> Camera:
-    """Return a camera that sees all lines from the patient's right front."""
-    ends = np.array([line[1] for three in lines for line in three])
-    starts = np.array([line[0] for three in lines for line in three])
-    middle = (ends.mean(axis=0) + starts.mean(axis=0)) / 2
-    position = middle + AWAY_MM * FROM / np.linalg.norm(FROM)
-    return Camera(position, middle, np.array([0.0, 0.0, 1.0]), ANGLE_DEG)
-
-
-def _near_camera(place: np.ndarray, height_mm: float) -> Camera:
-    """Return a camera that sees a given height around a point, from the same side."""
-    angle_deg = float(np.degrees(2.0 * np.arctan(0.5 * height_mm / AWAY_MM)))
+def _camera(place: np.ndarray, angle_deg: float) -> Camera:
+    """Return a camera that looks at a point from the patient's right front."""
     position = place + AWAY_MM * FROM / np.linalg.norm(FROM)
     return Camera(position, place, np.array([0.0, 0.0, 1.0]), angle_deg)

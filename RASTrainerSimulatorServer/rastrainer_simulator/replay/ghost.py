@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -60,22 +61,6 @@ class Ghost:
         return tuple(self._moved @ placed[name] for name in (*self._links, self._tip))
 
 
-def _first_usable(
-    journals: Sequence[Path],
-    setup: SimulationSetup,
-    head_to_world: np.ndarray,
-    check: Callable[[], None],
-) -> Ghost | None:
-    """Return the ghost of the first usable journal; None if none is usable."""
-    for journal in journals:
-        try:
-            return Ghost(read_track(journal, check), setup, head_to_world)
-        except (InputError, KeyError, TypeError, ValueError, AttributeError, IndexError):
-            # Of another head, damaged, or deleted meanwhile: try the next best.
-            continue
-    return None
-
-
 _SHOWN = (Phase.RUNNING, Phase.PAUSED)
 
 
@@ -104,10 +89,16 @@ class TrialGhost:
         """Start loading the first usable journal for a trial; HeadToWorld as of a `Ghost`."""
         self.close()
         self._wanted, self._trial_id = rule, trial_id
+
+        def load(check: Callable[[], None]) -> Ghost | None:
+            for journal in journals:
+                # Of another head, damaged, or deleted meanwhile: try the next best.
+                with suppress(InputError, LookupError, TypeError, ValueError, AttributeError):
+                    return Ghost(read_track(journal, check), setup, head_to_world)
+            return None
+
         if rule is not GhostRule.OFF:
-            self._loading = JournalLoading(
-                lambda check: _first_usable(journals, setup, head_to_world, check)
-            )
+            self._loading = JournalLoading(load)
 
     def close(self) -> None:
         """Show no ghost."""

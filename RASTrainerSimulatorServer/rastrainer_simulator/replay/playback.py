@@ -13,7 +13,7 @@ from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.loop.results import Subscribers
 from rastrainer_simulator.loop.timing import LoopStatistics
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial
-from rastrainer_simulator.state import Event, SimulationState, StepResult
+from rastrainer_simulator.state import SimulationState, StepResult
 
 PERIOD_S = 1.0 / 60.0
 
@@ -22,11 +22,6 @@ class Playback:
     """Plays a recorded trial, in the event loop's thread.
 
     Attributes:
-        trial: the recorded trial.
-        setup: head and robot.
-        time_s: time in the trial.
-        is_playing: False while it is paused.
-        until_s: time at which it stops.
         speed: seconds of the trial per second.
         latest: the shown state.
         changed: called whenever any of this has changed.
@@ -45,11 +40,8 @@ class Playback:
         self.changed: Callable[[], None] = lambda: None
         self._camera: str | None = None
         self._subscribers: Subscribers[StepResult] = Subscribers()
+        self.subscribe = self._subscribers.add
         self._shown_s = -math.inf
-
-    def subscribe(self, callback: Callable[[StepResult], None]) -> Callable[[], None]:
-        """Have `callback` called with each state; returns what ends that."""
-        return self._subscribers.add(callback)
 
     def play_from(self, time_s: float, until_s: float | None = None, speed: float = 1.0) -> None:
         """Play from a time in s, up to another or the end."""
@@ -76,21 +68,12 @@ class Playback:
         """Advance by an amount of wall time, s."""
         if not self.is_playing:
             # For views that have just joined.
-            self._publish(())
+            self._subscribers.publish(StepResult(self.latest, ()))
             return
         self.time_s = min(self.time_s + seconds * self.speed, self.until_s)
         if self.time_s >= self.until_s:
             self.is_playing = False
         self._show(is_jump=False)
-
-    async def run(self) -> None:
-        """Play until it is canceled."""
-        before = time.monotonic()
-        while True:
-            await asyncio.sleep(PERIOD_S)
-            now = time.monotonic()
-            self.advance(now - before)
-            before = now
 
     def _show(self, is_jump: bool) -> None:
         events = () if is_jump else self.trial.events_between(self._shown_s, self.time_s)
@@ -98,17 +81,24 @@ class Playback:
         self.latest = self.trial.state_at(self.time_s)
         if self._camera is not None:
             self.latest = replace(self.latest, camera=self._camera)
-        self._publish(events)
+        self._subscribers.publish(StepResult(self.latest, events))
         self.changed()
 
-    def _publish(self, events: tuple[Event, ...]) -> None:
-        self._subscribers.publish(StepResult(self.latest, events))
+
+async def play_on(advance: Callable[[float], None]) -> None:
+    """Call `advance` with the s that have gone by, until it is canceled."""
+    before = time.monotonic()
+    while True:
+        await asyncio.sleep(PERIOD_S)
+        now = time.monotonic()
+        advance(now - before)
+        before = now
 
 
 class PlaybackSwitch:
     """A `StateSource` that passes on the control loop's states, or those of a playback.
 
-    The control loop runs on unchanged.
+    The control loop runs on unchanged. Subscribers are called in its or the playback's thread.
 
     Attributes:
         alter: changes a state of the control loop before it is shown, in any thread; None shows it
@@ -120,6 +110,7 @@ class PlaybackSwitch:
         self._control_loop = control_loop
         self._playback: Playback | None = None
         self._subscribers: Subscribers[StepResult] = Subscribers()
+        self.subscribe = self._subscribers.add
         self._end_playback: Callable[[], None] = lambda: None
         self._unsubscribe = control_loop.subscribe(self._take_tick)
 
@@ -140,13 +131,6 @@ class PlaybackSwitch:
     def statistics(self) -> LoopStatistics:
         """How punctual the control loop has been."""
         return self._control_loop.statistics
-
-    def subscribe(self, callback: Callable[[StepResult], None]) -> Callable[[], None]:
-        """Call `callback` with every shown state; return a function that unsubscribes.
-
-        It is called in the control loop's or the playback's thread, and must return immediately.
-        """
-        return self._subscribers.add(callback)
 
     def show(self, playback: Playback | None) -> None:
         """Show a playback from now on, or the live arm for None."""
@@ -170,17 +154,14 @@ class PlaybackSwitch:
 
 
 class ShownPlayback:
-    """A `StateSource` of the playback that is shown now, in the event loop's thread.
-
-    Attributes:
-        playback: it.
-    """
+    """A `StateSource` of the playback that is shown now, in the event loop's thread."""
 
     statistics = LoopStatistics()
 
     def __init__(self, playback: Playback) -> None:
         self.playback = playback
         self._subscribers: Subscribers[StepResult] = Subscribers()
+        self.subscribe = self._subscribers.add
         self._end = playback.subscribe(self._subscribers.publish)
 
     @property
@@ -189,25 +170,10 @@ class ShownPlayback:
 
     @property
     def setup(self) -> SimulationSetup:
-        """Head and robot of the trial."""
         return self.playback.setup
-
-    def subscribe(self, callback: Callable[[StepResult], None]) -> Callable[[], None]:
-        """Have `callback` called with each state; returns what ends that."""
-        return self._subscribers.add(callback)
 
     def show(self, playback: Playback) -> None:
         """Show another trial."""
         self._end()
         self.playback = playback
         self._end = playback.subscribe(self._subscribers.publish)
-
-    async def run(self, advanced: Callable[[float], None]) -> None:
-        """Play until it is canceled; `advanced` is called with the s that have gone by."""
-        before = time.monotonic()
-        while True:
-            await asyncio.sleep(PERIOD_S)
-            now = time.monotonic()
-            self.playback.advance(now - before)
-            advanced(now - before)
-            before = now

@@ -66,9 +66,6 @@ class RecordedTrial:
     touches, phases, contact, camera and planned target are as recorded.
 
     Attributes:
-        trainee: pseudonym.
-        task: name.
-        duration_s: how long it takes.
         worst: label of the touch with the largest error, and from when to when it was approached,
             in s; None for a trial that was not registered.
     """
@@ -128,6 +125,13 @@ class RecordedTrial:
         clearance = float(track.at(time_s, trajectory.clearance_mm)) / MM_PER_M
         depth_m = 0.0 if depth is None else float(track.at(time_s, depth)) / MM_PER_M
         tip = tuple(poses[self._tip][:3, 3].tolist())
+        training, procedure = now.training, now.training.procedure
+        is_fed = procedure is not None and procedure.tool in (Tool.DRILL, Tool.ELECTRODE)
+        elapsed = time_s
+        if training.phase is Phase.IDLE:
+            elapsed = 0.0
+        elif procedure is None and training.phase not in (Phase.RUNNING, Phase.PAUSED):
+            elapsed = training.completed_s
         return SimulationState(
             tick=self._start_tick + round(time_s / self._tick_s),
             sim_time=self._start_s + time_s,
@@ -138,30 +142,24 @@ class RecordedTrial:
             stand_to_world=self._stand_to_world,
             proximity=now.proximity,
             clearance=clearance,
-            training=now.training,
-            elapsed=_elapsed(now.training, time_s),
+            training=training,
+            elapsed=elapsed,
             motion=Motion.NONE,
             operator="",
             camera=now.camera,
             planned_target=now.planned_target,
             depth=depth_m,
-            feed=self._feed(now.training, float(track.at(time_s, track.feed_mm)) / MM_PER_M),
+            feed=float(track.at(time_s, track.feed_mm)) / MM_PER_M if is_fed else 0.0,
             # The journal has one clearance for the whole tool: a contact counts as the tip's.
             touch=touch_stage(
                 TouchMoment(time_s, tip, clearance, depth_m),
                 now.proximity,
                 "",
-                now.training,
-                self._goals.get(now.training.next_point or ""),
+                training,
+                self._goals.get(training.next_point or ""),
                 self._training_settings,
             ),
         )
-
-    @staticmethod
-    def _feed(training: TrainingState, feed: float) -> float:
-        procedure = training.procedure
-        is_fed = procedure is not None and procedure.tool in (Tool.DRILL, Tool.ELECTRODE)
-        return feed if is_fed else 0.0
 
     def events_between(self, after_s: float, until_s: float) -> tuple[Event, ...]:
         """Return what happened later than one time and no later than another."""
@@ -248,9 +246,9 @@ def _after(before: _Situation, event: RecordedEvent, labels: tuple[str, ...]) ->
     if kind == "camera":
         return replace(before, camera=entry["camera"])
     if kind == "plan":
-        position, entry_point = in_meters(entry["positionMm"]), entry["entryMm"]
-        entry_point = None if entry_point is None else in_meters(entry_point)
-        plan = PlanInWorld(entry["name"], position, entry_point, entry["reachable"])
+        begin = None if entry["entryMm"] is None else in_meters(entry["entryMm"])
+        position = in_meters(entry["positionMm"])
+        plan = PlanInWorld(entry["name"], position, begin, entry["reachable"])
         return replace(before, planned_target=plan)
     return replace(before, training=_training_after(before.training, event, labels))
 
@@ -300,14 +298,6 @@ def _trace_after(before: TraceState, event: RecordedEvent) -> TraceState:
     if entry["on"]:
         return before.begun()
     return before.undone() if "undone" in entry else before.ended()
-
-
-def _elapsed(training: TrainingState, time_s: float) -> float:
-    if training.phase is Phase.IDLE:
-        return 0.0
-    if training.procedure is not None or training.phase in (Phase.RUNNING, Phase.PAUSED):
-        return time_s
-    return training.completed_s
 
 
 def _event(event: RecordedEvent) -> Event:

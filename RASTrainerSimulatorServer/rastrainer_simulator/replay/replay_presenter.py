@@ -11,9 +11,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.feedback_event import feedback_event, feedback_of
 from rastrainer_simulator.presentation.messages import InstructorOrder
-from rastrainer_simulator.presentation.presenter import (
-    Presenter,
-)
+from rastrainer_simulator.presentation.presenter import Presenter
 from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage
 from rastrainer_simulator.replay.playback import PERIOD_S, Playback
 from rastrainer_simulator.state import SimulationState, StepResult
@@ -52,28 +50,32 @@ ACTIONS: Mapping[ControlName, PlayerAction] = {
 
 
 class Player:
-    """Carries out the viewer's actions.
-
-    Attributes:
-        playback: the trial.
-    """
+    """Carries out the viewer's actions."""
 
     def __init__(self, playback: Playback, end: Callable[[], None], blinded: str = "") -> None:
         """`end` is called when the viewer ends it; `blinded` as of `ReplayPresenter`."""
         self.playback = playback
         self._blinded = blinded
-        self._handlers: Mapping[PlayerAction, Callable[[], None]] = {
-            PlayerAction.PLAY: lambda: playback.pause(playback.is_playing),
-            PlayerAction.BACK: lambda: playback.play_from(playback.time_s - STEP_S),
-            PlayerAction.FORWARD: lambda: playback.play_from(playback.time_s + STEP_S),
-            PlayerAction.WORST: self._show_worst,
-            PlayerAction.CAMERA: self._change_camera,
-            PlayerAction.END: end,
-        }
+        self._end = end
 
     def do(self, action: PlayerAction) -> None:
         """Carry out an action."""
-        self._handlers[action]()
+        playback = self.playback
+        if action is PlayerAction.PLAY:
+            playback.pause(playback.is_playing)
+        elif action is PlayerAction.BACK:
+            playback.play_from(playback.time_s - STEP_S)
+        elif action is PlayerAction.FORWARD:
+            playback.play_from(playback.time_s + STEP_S)
+        elif action is PlayerAction.CAMERA:
+            names = tuple(playback.setup.scenario.cameras)
+            place = names.index(playback.latest.camera) if playback.latest.camera in names else -1
+            playback.use_camera(names[(place + 1) % len(names)])
+        elif action is PlayerAction.END:
+            self._end()
+        elif playback.trial.worst is not None and not self._blinded:
+            _label, begin, end = playback.trial.worst
+            playback.play_from(begin, end, SLOWLY)
 
     def screen(self, texts: Texts, hints: tuple[Hint, ...], language: str) -> Screen:
         """Return the present screen; `language` is the BCP 47 tag of the texts."""
@@ -99,19 +101,6 @@ class Player:
             language=language,
             sticks_navigate=True,
         )
-
-    def _show_worst(self) -> None:
-        worst = self.playback.trial.worst
-        if worst is not None and not self._blinded:
-            _label, begin, end = worst
-            self.playback.play_from(begin, end, SLOWLY)
-
-    def _change_camera(self) -> None:
-        names = tuple(self.playback.setup.scenario.cameras)
-        if names:
-            shown = self.playback.latest.camera
-            place = names.index(shown) if shown in names else -1
-            self.playback.use_camera(names[(place + 1) % len(names)])
 
 
 def _clock(seconds: float) -> str:
@@ -149,16 +138,11 @@ _PRESSES = {
 }
 RATE = "rate"
 """The item of the hint by which a rater who clicks leaves the replay."""
-_HINT_OF_WORST = "hint.worst"
-_OF_RATERS = {"hint.end": "hint.rate"}
-_HINTS = (
-    (("Space",), "hint.play"),
-    (("ArrowLeft", "ArrowRight"), "hint.seek"),
-    (("ArrowUp",), _HINT_OF_WORST),
-    (("KeyC",), "hint.camera"),
-    (("Escape",), "hint.end"),
-)
+_PLAY, _CAMERA = (("Space",), "hint.play"), (("KeyC",), "hint.camera")
+_SEEK = ("ArrowLeft", "ArrowRight"), "hint.seek"
+_HINTS = (_PLAY, _SEEK, (("ArrowUp",), "hint.worst"), _CAMERA, (("Escape",), "hint.end"))
 """Keys, and the text of what they do."""
+_OF_RATERS = (_PLAY, _SEEK, _CAMERA, (("Escape",), "hint.rate"))
 
 
 class ReplayPresenter(Presenter):
@@ -167,12 +151,10 @@ class ReplayPresenter(Presenter):
     def __init__(
         self, playback: Playback, language: str, end: Callable[[], None], blinded: str = ""
     ) -> None:
-        """Play a trial.
+        """Play a trial; `end` is called when the user has seen enough.
 
         Args:
-            playback: it.
             language: BCP 47 tag.
-            end: called when the user has seen enough.
             blinded: what a rater reads in place of task and trainee, who also is not led to the
                 worst touch, which only the truth reveals; "" for everybody else.
         """
@@ -191,8 +173,7 @@ class ReplayPresenter(Presenter):
         self._key_names: Mapping[str, str] = {}
         self.screen = self._make_screen()
         playback.changed = self._refresh
-        playback.subscribe(self._feel)
-        playback.subscribe(self._move_view)
+        playback.subscribe(self._follow)
 
     def pictures(self, now: SimulationState) -> Pictures:
         self._view.use(now.camera)
@@ -226,7 +207,6 @@ class ReplayPresenter(Presenter):
         self._held[view] = held
 
     def on_press(self, view: int, control: str) -> None:  # noqa: ARG002
-        """Process a button of an XR controller."""
         self._do(_PRESSES.get(control))
 
     def on_visibility(self, view: int, is_visible: bool) -> None:  # noqa: ARG002
@@ -242,24 +222,26 @@ class ReplayPresenter(Presenter):
         self._player.do(action)
         if action in (PlayerAction.WORST, PlayerAction.CAMERA):
             self._wants_worst = action is PlayerAction.WORST and not self._blinded
-        if self._wants_worst:
-            self._look_for_worst()
-
-    def _look_for_worst(self) -> None:
-        """Start looking for the best view of the worst touch."""
         playback = self._playback
-        worst = playback.trial.worst
-        if worst is None:
+        now, worst = playback.latest, playback.trial.worst
+        if worst is None or not self._wants_worst:
             return
-        now = playback.latest
         if self._search is None:
             head_to_world = now.head_to_world.copy()
             head_to_world[:3, 3] *= MM_PER_M
             self._best.look(playback.setup, playback.trial.task, head_to_world)
         self._search = self._best.search(worst[0], now.q)
 
-    def _move_view(self, result: StepResult) -> None:
-        """Go to the best view of the worst touch if that is wanted, as soon as it is known."""
+    def _follow(self, result: StepResult) -> None:
+        """Publish the events as sounds and vibration, and move the view.
+
+        It goes to the best view of the worst touch if that is wanted, as soon as it is known.
+        """
+        for event in result.events:
+            kind = feedback_event(event, result.state.touch)
+            if kind is not None:
+                self._count += 1
+                self.publish(feedback_of(kind, self._count))
         is_found = self._wants_worst and self._search is not None and self._search.done()
         view = self._search.result() if self._search is not None and is_found else None
         camera = self._playback.setup.scenario.cameras[result.state.camera]
@@ -269,15 +251,6 @@ class ReplayPresenter(Presenter):
             self._view.go(orbit_to(camera, view.eye, view.fiducial))
         self._view.advance(PERIOD_S, camera, STILL, is_arm_still=True)
 
-    def _feel(self, result: StepResult) -> None:
-        """Publish the events as feedback: sounds and vibration."""
-        for event in result.events:
-            kind = feedback_event(event, result.state.touch)
-            if kind is None:
-                continue
-            self._count += 1
-            self.publish(feedback_of(kind, self._count))
-
     def _refresh(self) -> None:
         screen = self._make_screen()
         if screen != self.screen:
@@ -285,14 +258,9 @@ class ReplayPresenter(Presenter):
             self.publish(screen)
 
     def _make_screen(self) -> Screen:
-        hints = tuple(
-            self._hint(codes, _OF_RATERS.get(key, key) if self._blinded else key)
-            for codes, key in _HINTS
-            if not (self._blinded and key == _HINT_OF_WORST)
-        )
-        return self._player.screen(self._texts, hints, self._language)
-
-    def _hint(self, codes: tuple[str, ...], key: str) -> Hint:
-        labels = (input_label(self._texts, "keyboard", code, self._key_names) for code in codes)
-        item = RATE if key == _OF_RATERS["hint.end"] else ""
-        return Hint(reduce(pair_label, labels), self._texts.say(key), item)
+        hints = []
+        for codes, key in _OF_RATERS if self._blinded else _HINTS:
+            labels = (input_label(self._texts, "keyboard", code, self._key_names) for code in codes)
+            item = RATE if key == "hint.rate" else ""
+            hints.append(Hint(reduce(pair_label, labels), self._texts.say(key), item))
+        return self._player.screen(self._texts, tuple(hints), self._language)

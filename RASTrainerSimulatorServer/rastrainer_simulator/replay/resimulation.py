@@ -6,6 +6,7 @@ import json
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 from rastrainer.errors import InputError
@@ -34,19 +35,8 @@ LONGEST_TRIAL_TICKS = 10_000_000
 SHORTEST_TICK_S, LONGEST_TICK_S = 1e-4, 0.1
 
 _NOT_SIMULATED = frozenset(
-    {
-        "header",
-        "display",
-        "view",
-        "guidance",
-        "ghost",
-        "tutorial",
-        "stopped",
-        "attempt",
-        "registration",
-        "scored",
-        "acknowledged",
-    }
+    {"header", "display", "view", "guidance", "ghost", "tutorial", "stopped", "attempt"}
+    | {"registration", "scored", "acknowledged"}
 )
 _OF_THE_CLOCK = frozenset(
     {"n", "previous", "sha256", "monotonicS", "utc", "record", "versions", "session"}
@@ -58,11 +48,9 @@ class ReplayReport:
     """The result of a replay.
 
     Attributes:
-        ticks: simulated again.
         compared: how many entries of each kind were compared.
         difference: the first difference in words; None if all is equal to the last bit.
         changed_versions: name → (recorded, present), where they differ.
-        motion: the motion metrics of the replayed trial, as its record has them.
     """
 
     trial_id: str
@@ -71,11 +59,6 @@ class ReplayReport:
     difference: str | None
     changed_versions: Mapping[str, tuple[str, str]]
     motion: Mapping[str, float]
-
-    @property
-    def is_identical(self) -> bool:
-        """Whether trajectory and touches are equal to the last bit."""
-        return self.difference is None
 
 
 def replay(
@@ -116,11 +99,14 @@ def _replay(
     simulation.restart_from(start)
     player = _Player(simulation, header, watch)
     compared: dict[str, int] = defaultdict(int)
-    for first, end in _parts(reading.entries):
+    # Each part was written by another server: a trial may be interrupted.
+    starts = [n for n, entry in enumerate(reading.entries) if entry["kind"] == "continued"]
+    for first, end in pairwise([0, *starts, len(reading.entries)]):
         part = [e for e in reading.entries[first:end] if e["kind"] not in _NOT_SIMULATED]
         again: Sequence[Mapping[str, Any]] = player.play_part(reading.entries[:first], part)
-        if end < len(reading.entries) or reading.integrity is Integrity.CUT_SHORT:
-            again = _without_what_was_cut(again, part)
+        is_cut = end < len(reading.entries) or reading.integrity is Integrity.CUT_SHORT
+        if is_cut and all(entry["tick"] == part[-1]["tick"] for entry in again[len(part) :]):
+            again = again[: len(part)]
         for entry in part:
             compared[entry["kind"]] += 1
         difference = _first_difference(part, again)
@@ -134,12 +120,6 @@ def _replay(
         changed_versions=_changed(header["versions"], player.versions),
         motion=player.motion,
     )
-
-
-def _parts(entries: Sequence[Mapping[str, Any]]) -> Iterator[tuple[int, int]]:
-    """Yield start and end of the part that each server has written: a trial may be interrupted."""
-    starts = [n for n, entry in enumerate(entries) if entry["kind"] == "continued"]
-    return zip((0, *starts), (*starts, len(entries)), strict=True)
 
 
 class _Player:
@@ -165,7 +145,17 @@ class _Player:
         """Return the computed entries of one part, without the header."""
         if earlier:
             self._resume(earlier, part[0])
-        self._play(part)
+        simulation, dt = self._simulation, self._dt
+        first = simulation.state.tick
+        last = max((entry["tick"] for entry in part), default=first)
+        for operator_input in _inputs(part, first, last, self._seed):
+            before = simulation.state
+            result = simulation.step(dt, operator_input)
+            self._watch(result)
+            if self._entries is None:
+                self._entries = TrialEntries.started(simulation, before, result, dt)
+            if self._entries.add(simulation, operator_input, result) is not None:
+                self.motion = self._entries.motion()
         if self._entries is None:
             return []
         self.versions = self._entries.records.versions
@@ -185,19 +175,6 @@ class _Player:
         self._entries = TrialEntries.resumed(
             self._simulation, self._simulation.state, earlier, since, self._dt
         )
-
-    def _play(self, part: Sequence[Mapping[str, Any]]) -> None:
-        simulation, dt = self._simulation, self._dt
-        first = simulation.state.tick
-        last = max((entry["tick"] for entry in part), default=first)
-        for operator_input in _inputs(part, first, last, self._seed):
-            before = simulation.state
-            result = simulation.step(dt, operator_input)
-            self._watch(result)
-            if self._entries is None:
-                self._entries = TrialEntries.started(simulation, before, result, dt)
-            if self._entries.add(simulation, operator_input, result) is not None:
-                self.motion = self._entries.motion()
 
 
 def _inputs(
@@ -233,14 +210,6 @@ def _first_difference(
     if len(recorded) != len(again):
         return f"{len(recorded)} entries were recorded, now there are {len(again)}"
     return None
-
-
-def _without_what_was_cut(
-    again: Sequence[Mapping[str, Any]], recorded: Sequence[Mapping[str, Any]]
-) -> Sequence[Mapping[str, Any]]:
-    beyond = again[len(recorded) :]
-    is_last_tick = all(entry["tick"] == recorded[-1]["tick"] for entry in beyond)
-    return again[: len(recorded)] if is_last_tick else again
 
 
 def _comparable(entry: Mapping[str, Any]) -> dict[str, Any]:

@@ -132,12 +132,6 @@ class Fabrik:
     def _reach(
         self, goal: Goal, aim: Goal, theta: Angles, links: Chain, farthest: float
     ) -> Reached:
-        start = Start(theta, *self._wrist_and_elbow(theta, links), farthest)
-        most = self.settings.max_iterations
-        reach = reach_position if goal.tool is None else reach_wrist
-        return reach(self._arm, goal, aim, start, most)
-
-    def _wrist_and_elbow(self, theta: Angles, links: Chain) -> tuple[Vector, Vector]:
         a, b = self._arm.upper, self._arm.fore
         (ux, uy, uz), (fx, fy, fz), _, _, (nx, ny, nz), _ = links
         ex, ey, ez = a * ux, a * uy, a * uz
@@ -148,7 +142,9 @@ class Fabrik:
             ex += lean * (ny * uz - nz * uy)
             ey += lean * (nz * ux - nx * uz)
             ez += lean * (nx * uy - ny * ux)
-        return wrist, (ex, ey, ez)
+        start = Start(theta, wrist, (ex, ey, ez), farthest)
+        reach = reach_position if goal.tool is None else reach_wrist
+        return reach(self._arm, goal, aim, start, self.settings.max_iterations)
 
 
 _DAMPING = 1e-6

@@ -99,16 +99,13 @@ class Goal(NamedTuple):
             square = x * x + y * y + z * z
             if square <= arm.reach * arm.reach:
                 return self
-            return self._moved(scale(self.position, arm.reach / sqrt(square)))
+            return self._replace(position=scale(self.position, arm.reach / sqrt(square)))
         wrist = self.wrist(arm)
         far = length(wrist)
         if arm.nearest <= far <= arm.farthest or far < _TINY:
             return self
         held = scale(wrist, (arm.nearest if far < arm.nearest else arm.farthest) / far)
-        return self._moved(add(held, scale(self.tool, arm.tool)))
-
-    def _moved(self, position: Vector) -> Goal:
-        return Goal(position, self.tool, self.roll)
+        return self._replace(position=add(held, scale(self.tool, arm.tool)))
 
     def errors(self, arm: CanonicalArm, theta: Angles, links: Chain) -> tuple[float, float]:
         """Return how far θ, whose chain is `links`, is from the goal: m and rad."""
@@ -174,9 +171,13 @@ def solve_rounded(
         miss = goal - tip[:3, 3]
         angle = 0.0
         if along is not None:
-            angle = _angle_between(tip[:3, :3] @ axis, along)
+            a = tip[:3, :3] @ axis
+            angle = atan2(float(np.linalg.norm(np.cross(a, along))), float(a @ along))
         if turn is not None:
-            angle = _angle_of(turn @ tip[:3, :3].T)
+            left = turn @ tip[:3, :3].T
+            skew = (left - left.T) / 2.0
+            sine = float(np.linalg.norm((skew[2, 1], skew[0, 2], skew[1, 0])))
+            angle = atan2(sine, (float(np.trace(left)) - 1.0) / 2.0)
         met = solution.converged
         off = float(np.linalg.norm(miss))
         solution = solution._replace(position_error_m=off, direction_error_rad=angle)
@@ -189,16 +190,6 @@ def solve_rounded(
             turned = turn @ tip[:3, :3].T @ turned
         solution = solve(aim, pointed, turned, solution.q)
     return solution._replace(converged=False)
-
-
-def _angle_between(a: np.ndarray, b: np.ndarray) -> float:
-    return atan2(float(np.linalg.norm(np.cross(a, b))), float(a @ b))
-
-
-def _angle_of(rotation: np.ndarray) -> float:
-    skew = (rotation - rotation.T) / 2.0
-    sine = float(np.linalg.norm((skew[2, 1], skew[0, 2], skew[1, 0])))
-    return atan2(sine, (float(np.trace(rotation)) - 1.0) / 2.0)
 
 
 # A rotation whose columns are not perpendicular unit vectors to this is no rotation.

@@ -55,14 +55,11 @@ def kinematics_name() -> str:
 
 
 def _chosen(backend: str | None) -> str:
-    chosen = backend or os.environ.get(VARIABLE) or _available()
+    usual = "numpy" if importlib.util.find_spec("pinocchio") is None else "pinocchio"
+    chosen = backend or os.environ.get(VARIABLE) or usual
     if chosen not in BACKENDS:
         raise InputError(f"{VARIABLE} is {chosen!r}; it should be one of {', '.join(BACKENDS)}.")
     return chosen
-
-
-def _available() -> str:
-    return "numpy" if importlib.util.find_spec("pinocchio") is None else "pinocchio"
 
 
 class NumpyKinematics:
@@ -76,7 +73,7 @@ class NumpyKinematics:
             skew[index, :3, :3] = np.cross(joint.axis, np.eye(3)).T
         # Rodrigues: origin · (I + sin q K + (1 − cos q) K²), so one multiplication a call.
         self._still, self._sine, self._versine = origins, origins @ skew, origins @ skew @ skew
-        self._names = model.link_names
+        self._names = [link.name for link in model.links]
         self._joint_of_link = [link.joint for link in model.links]
         self._offsets = np.array([link.offset for link in model.links])
         self._frames = np.tile(np.eye(4), (8, 1, 1))
@@ -127,7 +124,7 @@ class PinocchioKinematics:
             )
             for link in model.links
         ]
-        self._links = dict(zip(model.link_names, frames, strict=True))
+        self._links = {link.name: frame for link, frame in zip(model.links, frames, strict=True)}
         self._tip = self._links[model.tip.name]
         self._data = self._model.createData()
 

@@ -50,7 +50,11 @@ def load_meshes(model: RobotModel, kind: str = "visual") -> dict[str, list[Color
 def _load(part: MeshPart) -> trimesh.Trimesh:
     import trimesh
 
-    data, kind = _read_bytes(part), part.path.suffix[1:].lower()
+    kind = part.path.suffix[1:].lower()
+    try:
+        data = read_bytes(part.path, LARGEST_FILE)
+    except InputError as error:
+        raise InputError(f"The mesh of {part.link} cannot be used: {error}") from None
     data = checked_content(data, kind, f"The mesh {part.path}")
     try:
         # Loaded from bytes, a mesh cannot refer to further files.
@@ -81,19 +85,17 @@ def _check_shape(part: MeshPart, vertices: np.ndarray, faces: np.ndarray) -> Non
         )
 
 
-def _read_bytes(part: MeshPart) -> bytes:
-    try:
-        return read_bytes(part.path, LARGEST_FILE)
-    except InputError as error:
-        raise InputError(f"The mesh of {part.link} cannot be used: {error}") from None
-
-
 def _lie_in_base_frame(model: RobotModel, meshes: Iterable[tuple[str, trimesh.Trimesh]]) -> bool:
     """Return whether meshes lie on the outstretched robot rather than around their links' origins.
 
     A link's mesh lies about the middle between its own and the next joint.
     """
-    poses, middles = _outstretched(model), _link_middles(model)
+    poses = _outstretched(model)
+    ends = [*(joint.origin for joint in model.joints), model.tip.offset]
+    middles = {
+        link.name: (np.linalg.inv(link.offset) @ ends[link.joint])[:3, 3] / 2
+        for link in model.links
+    }
     in_link = in_base = 0.0
     for link, mesh in meshes:
         center = mesh.bounds.mean(axis=0)
@@ -109,15 +111,6 @@ def _outstretched(model: RobotModel) -> dict[str, np.ndarray]:
     for joint in model.joints:
         bases.append(bases[-1] @ joint.origin)
     return {link.name: bases[link.joint] @ link.offset for link in model.links}
-
-
-def _link_middles(model: RobotModel) -> dict[str, np.ndarray]:
-    """Return the middle (3,) between each link's origin and what follows, in the link's frame."""
-    ends = [*(joint.origin for joint in model.joints), model.tip.offset]
-    return {
-        link.name: (np.linalg.inv(link.offset) @ ends[link.joint])[:3, 3] / 2
-        for link in model.links
-    }
 
 
 MAX_NUMBERS = 20_000_000

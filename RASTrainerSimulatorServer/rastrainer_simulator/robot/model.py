@@ -46,16 +46,11 @@ class RobotModel:
 
     name: str
     joints: tuple[Joint, ...]
-    links: tuple[RobotLink, ...]
+    links: tuple[RobotLink, ...]  # parents before children
     tip: RobotLink
     home: tuple[float, ...]  # rad: elbow bent by 90°, tool straight down
     geometry: SrsGeometry
     meshes: tuple[MeshPart, ...]
-
-    @property
-    def link_names(self) -> tuple[str, ...]:
-        """Every link, parents before children."""
-        return tuple(link.name for link in self.links)
 
     @property
     def lower(self) -> np.ndarray:
@@ -99,7 +94,15 @@ def make_model(
     meshes: tuple[MeshPart, ...],
 ) -> RobotModel:
     """Return the model of seven joints in a row; raises InputError as `load_robot`."""
-    tip = _find_tip(links, tip_link)
+    behind = {link.name: link for link in links if link.joint == 7}
+    if tip_link is None:
+        tip = max(behind.values(), key=lambda link: np.linalg.norm(link.offset[:3, 3]))
+    elif tip_link in behind:
+        tip = behind[tip_link]
+    else:
+        raise InputError(
+            f"There is no tip link {tip_link}; behind the last joint are {', '.join(behind)}."
+        )
     geometry = srs_geometry(joints, tip.offset)
     return RobotModel(name, joints, links, tip, geometry.home(), geometry, meshes)
 
@@ -119,7 +122,18 @@ def _walk(robot: yourdfpy.Robot) -> tuple[tuple[Joint, ...], tuple[RobotLink, ..
                 links.append(RobotLink(found.child, link.joint, _constant(origin)))
                 continue
             _check_serial(found, link, joints)
-            joints.append(_movable(found, origin))
+            axis = np.array([1.0, 0.0, 0.0]) if found.axis is None else found.axis
+            endless = found.type == "continuous"
+            joints.append(
+                Joint(
+                    name=found.name,
+                    origin=_constant(origin),
+                    axis=_constant(axis / np.linalg.norm(axis)),
+                    lower=-_ENDLESS if endless else float(found.limit.lower or 0.0),
+                    upper=_ENDLESS if endless else float(found.limit.upper or 0.0),
+                    velocity=float(found.limit.velocity),
+                )
+            )
             links.append(RobotLink(found.child, len(joints), _constant(np.eye(4))))
     if len(joints) != 7:
         raise InputError(f"FABRIK needs seven revolute joints in a row, not {len(joints)}.")
@@ -133,30 +147,6 @@ def _check_serial(found: yourdfpy.Joint, link: RobotLink, joints: list[Joint]) -
         raise InputError(f"Joint {found.name} mimics another joint; each must move by itself.")
     if link.joint != len(joints):
         raise InputError(f"Joint {found.name} branches off: the seven joints must be in a row.")
-
-
-def _movable(found: yourdfpy.Joint, origin: np.ndarray) -> Joint:
-    axis = np.array([1.0, 0.0, 0.0]) if found.axis is None else found.axis
-    endless = found.type == "continuous"
-    return Joint(
-        name=found.name,
-        origin=_constant(origin),
-        axis=_constant(axis / np.linalg.norm(axis)),
-        lower=-_ENDLESS if endless else float(found.limit.lower or 0.0),
-        upper=_ENDLESS if endless else float(found.limit.upper or 0.0),
-        velocity=float(found.limit.velocity),
-    )
-
-
-def _find_tip(links: tuple[RobotLink, ...], name: str | None) -> RobotLink:
-    behind = {link.name: link for link in links if link.joint == 7}
-    if name is None:
-        return max(behind.values(), key=lambda link: np.linalg.norm(link.offset[:3, 3]))
-    if name not in behind:
-        raise InputError(
-            f"There is no tip link {name}; behind the last joint are {', '.join(behind)}."
-        )
-    return behind[name]
 
 
 def _constant(values: np.ndarray) -> np.ndarray:
@@ -309,7 +299,10 @@ def _own_parts(
         name = mesh.filename.partition("://")[2].partition("/")[2] or mesh.filename
         scale = np.broadcast_to(1.0 if mesh.scale is None else mesh.scale, 3)
         origin = np.eye(4) if shape.origin is None else shape.origin
-        color = _color(getattr(shape, "material", None), colors)
+        material, color = getattr(shape, "material", None), _GRAY
+        if material is not None:
+            named = colors.get(material.name, _GRAY)
+            color = named if material.color is None else _rgba(material)
         parts.append(
             MeshPart(
                 link.name,
@@ -332,12 +325,6 @@ def mesh_inside(folder: Path, path: Path, link: str) -> Path:
     if not is_inside:
         raise InputError(f"The mesh {path} of {link} must be in {folder} or below it.")
     return path
-
-
-def _color(material: yourdfpy.Material | None, colors: dict[str, Color]) -> Color:
-    if material is None:
-        return _GRAY
-    return _rgba(material) if material.color is not None else colors.get(material.name, _GRAY)
 
 
 def _rgba(material: yourdfpy.Material) -> Color:

@@ -81,7 +81,12 @@ def srs_geometry(joints: Sequence[Joint], tip_offset: np.ndarray) -> SrsGeometry
 
     Raises InputError, saying which axes do not fit, where the arm is not S-R-S.
     """
-    points, axes, tip = _lines_at_zero(joints, tip_offset)
+    pose, places, directions = np.eye(4), [], []
+    for joint in joints:
+        pose = pose @ joint.origin
+        places.append(pose[:3, 3])
+        directions.append(pose[:3, :3] @ joint.axis)
+    points, axes, tip = np.array(places), np.array(directions), pose @ tip_offset
     shoulder, elbow, wrist, misfit = _centers(points, axes, tip[:3, 3])
     upper, fore, tool = (
         float(np.linalg.norm(b - a))
@@ -91,7 +96,12 @@ def srs_geometry(joints: Sequence[Joint], tip_offset: np.ndarray) -> SrsGeometry
         raise InputError("The shoulder, elbow, wrist and tool tip must be four different points.")
     along = [(elbow - shoulder) / upper, (wrist - elbow) / fore, (tip[:3, 3] - wrist) / tool]
     base, signs, offsets = _conventions(joints, axes, along)
-    turned = _canonical_rotation(offsets)
+    turned = np.eye(3)  # The rotation of the canonical chain's end, Rz(θ1) Ry(θ2) … Rz(θ7).
+    for index, angle in enumerate(offsets):
+        c, s = math.cos(angle), math.sin(angle)
+        about_z = [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]
+        about_y = [[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]]
+        turned = turned @ np.array(about_y if index % 2 else about_z)
     return SrsGeometry(
         base=base,
         shoulder=shoulder,
@@ -105,28 +115,6 @@ def srs_geometry(joints: Sequence[Joint], tip_offset: np.ndarray) -> SrsGeometry
         tip_rotation=turned.T @ base @ tip[:3, :3],
         misfit=misfit,
     )
-
-
-def _canonical_rotation(angles: Sequence[float]) -> np.ndarray:
-    """Return the (3, 3) rotation of the canonical chain's end, Rz(θ1) Ry(θ2) … Rz(θ7)."""
-    rotation = np.eye(3)
-    for index, angle in enumerate(angles):
-        c, s = math.cos(angle), math.sin(angle)
-        about_z = [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]
-        about_y = [[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]]
-        rotation = rotation @ np.array(about_y if index % 2 else about_z)
-    return rotation
-
-
-def _lines_at_zero(
-    joints: Sequence[Joint], tip_offset: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    pose, points, axes = np.eye(4), [], []
-    for joint in joints:
-        pose = pose @ joint.origin
-        points.append(pose[:3, 3])
-        axes.append(pose[:3, :3] @ joint.axis)
-    return np.array(points), np.array(axes), pose @ tip_offset
 
 
 def _centers(

@@ -103,7 +103,6 @@ class Surface:
         vertices: (n, 3) float, m.
         normals: (n, 3) float, unit vectors.
         triangles: (m, 3) int, counterclockwise seen from outside.
-        material: of all triangles.
     """
 
     vertices: np.ndarray
@@ -117,17 +116,14 @@ class Node:
     """A part of the scene that can be moved, colored or hidden by its name.
 
     Attributes:
-        name: unique in the scene.
         surfaces: at most one of each material.
         children: what moves with it.
-        pose: (4, 4) float, to the parent's frame; None for the parent's pose.
         is_hidden: whether it is left out of a picture unless something asks for it.
     """
 
     name: str
     surfaces: tuple[Surface, ...] = ()
     children: tuple[Node, ...] = ()
-    pose: np.ndarray | None = None
     is_hidden: bool = False
 
     def walk(self) -> Iterator[Node]:
@@ -147,14 +143,11 @@ def merged(surfaces: list[Surface]) -> tuple[Surface, ...]:
     by_material: dict[Material, list[Surface]] = {}
     for surface in surfaces:
         by_material.setdefault(surface.material, []).append(surface)
-    return tuple(_joined(group) for group in by_material.values())
-
-
-def _joined(group: list[Surface]) -> Surface:
-    starts = np.cumsum([0, *(len(surface.vertices) for surface in group[:-1])])
-    return Surface(
-        np.concatenate([surface.vertices for surface in group]),
-        np.concatenate([surface.normals for surface in group]),
-        np.concatenate([s.triangles + start for s, start in zip(group, starts, strict=True)]),
-        group[0].material,
-    )
+    joined = []
+    for material, group in by_material.items():
+        starts = np.cumsum([0, *(len(surface.vertices) for surface in group[:-1])])
+        triangles = [s.triangles + start for s, start in zip(group, starts, strict=True)]
+        vertices = np.concatenate([surface.vertices for surface in group])
+        normals = np.concatenate([surface.normals for surface in group])
+        joined.append(Surface(vertices, normals, np.concatenate(triangles), material))
+    return tuple(joined)

@@ -46,16 +46,13 @@ def room_nodes() -> list[Node]:
     furnishing = [*_walls(), *_door(), *_cart(), *_cabinet()]
     for place in LAMP:
         furnishing.extend(_lamp(*place))
-    return [Node("floor", merged(_floor())), Node("room", merged(furnishing))]
-
-
-def _floor() -> list[Surface]:
     border = 0.35
     inner = (X[0] + border, X[1] - border), (Y[0] + border, Y[1] - border)
-    return [
+    floor = [
         box(X, Y, (FLOOR_HEIGHT - 0.02, FLOOR_HEIGHT - 0.001), FLOOR_BORDER),
         box(*inner, (FLOOR_HEIGHT - 0.01, FLOOR_HEIGHT), FLOOR),
     ]
+    return [Node("floor", merged(floor)), Node("room", merged(furnishing))]
 
 
 def _walls() -> list[Surface]:
@@ -216,7 +213,13 @@ def table_node(furniture: Furniture, head_base: np.ndarray) -> Node:
         rails = (height - RAIL, height + RAIL)
         made += [soft_box(legs_x, (y - RAIL, y + RAIL), rails, STEEL, 0.01) for y in legs_y]
         made += [soft_box((x - RAIL, x + RAIL), legs_y, rails, STEEL, 0.01) for x in legs_x]
-    return Node("table", merged([*made, *_under_stand(furniture, head_base)]))
+    radius = COLLAR * furniture.stand.diameter_mm / 2.0 / MM_PER_M
+    profile = [(radius, 0.0), (radius, 0.008), (radius - 0.006, 0.014)]
+    x, y, _ = head_base
+    made.append(turned(x, y, profile, STEEL))
+    mat = (x - 0.2, x + 0.2), (y - 0.22, y + 0.22), (-0.004, 0.003)
+    made.append(soft_box(*mat, MAT, 0.03, 0.001))
+    return Node("table", merged(made))
 
 
 def stand_node(furniture: Furniture, head_base: np.ndarray) -> Node:
@@ -225,13 +228,3 @@ def stand_node(furniture: Furniture, head_base: np.ndarray) -> Node:
     bottom = -float(head_base[2]) - INTO_TABLE
     profile = [(radius, bottom), (radius, -0.012), (radius - 0.004, -0.002)]
     return Node("stand", merged([turned(0.0, 0.0, profile, STEEL)]))
-
-
-def _under_stand(furniture: Furniture, head_base: np.ndarray) -> list[Surface]:
-    x, y, _ = head_base
-    radius = COLLAR * furniture.stand.diameter_mm / 2.0 / MM_PER_M
-    profile = [(radius, 0.0), (radius, 0.008), (radius - 0.006, 0.014)]
-    return [
-        turned(x, y, profile, STEEL),
-        soft_box((x - 0.2, x + 0.2), (y - 0.22, y + 0.22), (-0.004, 0.003), MAT, 0.03, 0.001),
-    ]

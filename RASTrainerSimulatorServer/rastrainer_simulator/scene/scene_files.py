@@ -23,7 +23,6 @@ from rastrainer.home_folder import home_folder
 from rastrainer.python_environment import python_command
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.ops.processes import BELOW_NORMAL, environment_without_secrets
-from rastrainer_simulator.robot.model import RobotModel
 
 
 def setup_digest(setup: SimulationSetup) -> bytes:
@@ -34,25 +33,20 @@ def setup_digest(setup: SimulationSetup) -> bytes:
     whole = hashlib.sha256(f"{rastrainer.__version__} {setup.scenario_sha256}".encode())
     for path in sorted(Path(__file__).parent.glob("*.py")):
         whole.update(_digest(path))
-    whole.update(_robot(setup.robot).encode())
-    for part in setup.robot.meshes:
-        if part.kind == "visual":
-            whole.update(_digest(part.path))
+    robot = setup.robot
+    visuals = [part for part in robot.meshes if part.kind == "visual"]
+    links = [(link.name, link.joint, link.offset.tolist()) for link in robot.links]
+    parts = [
+        (part.link, part.origin.tolist(), part.scale, part.color, part.replaced) for part in visuals
+    ]
+    whole.update(repr((robot.tip.name, links, parts)).encode())
+    for part in visuals:
+        whole.update(_digest(part.path))
     return whole.digest()
 
 
 def scene_key(digest: bytes, task: str) -> str:
     return hashlib.sha256(digest + task.encode()).hexdigest()[:32]
-
-
-def _robot(robot: RobotModel) -> str:
-    links = [(link.name, link.joint, link.offset.tolist()) for link in robot.links]
-    parts = [
-        (part.link, part.origin.tolist(), part.scale, part.color, part.replaced)
-        for part in robot.meshes
-        if part.kind == "visual"
-    ]
-    return repr((robot.tip.name, links, parts))
 
 
 def _digest(path: Path) -> bytes:
@@ -68,7 +62,13 @@ KEPT_FILES = 60
 def cache_folder() -> Path:
     """Return the user's cache folder for scenes, made if needed; a temporary one if impossible."""
     try:
-        folder = _users_caches() / "rastrainer" / "scenes"
+        if sys.platform == "win32":
+            caches = Path(os.environ.get("LOCALAPPDATA") or home_folder() / "AppData" / "Local")
+        elif sys.platform == "darwin":
+            caches = home_folder() / "Library" / "Caches"
+        else:
+            caches = Path(os.environ.get("XDG_CACHE_HOME") or home_folder() / ".cache")
+        folder = caches / "rastrainer" / "scenes"
         folder.mkdir(parents=True, exist_ok=True)
         (folder / ".writable").touch()
     except (OSError, InputError):
@@ -85,14 +85,6 @@ def forget_oldest(folder: Path) -> None:
             path.unlink(missing_ok=True)
 
 
-def _users_caches() -> Path:
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA") or home_folder() / "AppData" / "Local")
-    if sys.platform == "darwin":
-        return home_folder() / "Library" / "Caches"
-    return Path(os.environ.get("XDG_CACHE_HOME") or home_folder() / ".cache")
-
-
 NO_TASK = ""
 GZIP_LEVEL = 6
 """Higher levels take longer and save less than one percent."""
@@ -101,12 +93,7 @@ _HEADER = struct.Struct("<4sII")
 
 @dataclass(frozen=True)
 class SceneFile:
-    """A scene that is ready.
-
-    Attributes:
-        sha256: of its content, in hexadecimal digits.
-        path: of the GLB file.
-    """
+    """A scene that is ready: its GLB file, and the hash of its content in hexadecimal digits."""
 
     sha256: str
     path: Path
@@ -120,13 +107,10 @@ class SceneFiles:
         self._folder = folder
         self._robot_meshes = robot_meshes
         self._ready: dict[Path, SceneFile] = {}
-        self._by_hash: dict[str, SceneFile] = {}
+        self.by_hash: dict[str, SceneFile] = {}
+        """The scenes that have been given before."""
         self._paths: tuple[SimulationSetup, Mapping[str, Path]] | None = None
         self._one_at_a_time = asyncio.Lock()
-
-    def find(self, sha256: str) -> SceneFile | None:
-        """Return the scene of that content, if it has been given before."""
-        return self._by_hash.get(sha256)
 
     async def scene(self, setup: SimulationSetup, task: str) -> SceneFile:
         """Return the scene of a task, or the one without a task; building it takes seconds.
@@ -138,8 +122,11 @@ class SceneFiles:
         path = (await self._paths_of(setup))[task]
         if path not in self._ready:
             async with self._one_at_a_time:
-                if path not in self._ready:
-                    await self._make(setup, task, path)
+                if path not in self._ready and not await self._take_up(path):
+                    await self._build(setup, task, path)
+                    await asyncio.to_thread(forget_oldest, self._folder)
+                    if not await self._take_up(path):
+                        raise InputError(f"The scene {path} has been deleted or changed by others.")
         return self._ready[path]
 
     async def build_all(self, setup: SimulationSetup) -> None:
@@ -155,21 +142,13 @@ class SceneFiles:
             self._paths = (setup, paths)
         return self._paths[1]
 
-    async def _make(self, setup: SimulationSetup, task: str, path: Path) -> None:
-        """Use the scene if it is already in the folder, else build it."""
-        if await self._take_up(path):
-            return
-        await self._build(setup, task, path)
-        await asyncio.to_thread(forget_oldest, self._folder)
-        if not await self._take_up(path):
-            raise InputError(f"The scene {path} has been deleted or changed by others.")
-
     async def _take_up(self, path: Path) -> bool:
+        """Use the scene if it is already in the folder."""
         sha256 = await asyncio.to_thread(_sha256_of_glb, path)
         if sha256 is None:
             return False
         file = SceneFile(sha256, path)
-        self._ready[path] = self._by_hash[sha256] = file
+        self._ready[path] = self.by_hash[sha256] = file
         return True
 
     async def _build(self, setup: SimulationSetup, task: str, path: Path) -> None:
@@ -180,7 +159,17 @@ class SceneFiles:
             "task": task,
             "path": str(path),
         }
-        process = await _start()
+        try:
+            process = await asyncio.create_subprocess_exec(
+                *python_command("rastrainer_simulator.scene.scene_glb"),
+                stdin=subprocess.PIPE,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.PIPE,
+                env=environment_without_secrets(),
+                creationflags=BELOW_NORMAL,
+            )
+        except OSError as error:
+            raise InputError(f"The scene cannot be built: {error}.") from error
         try:
             _, errors = await process.communicate(json.dumps(wanted).encode())
         finally:
@@ -191,20 +180,6 @@ class SceneFiles:
         if process.returncode:
             sentence = errors.decode(errors="replace").strip() or f"status {process.returncode}"
             raise InputError(f"The scene could not be built: {sentence}")
-
-
-async def _start() -> asyncio.subprocess.Process:
-    try:
-        return await asyncio.create_subprocess_exec(
-            *python_command("rastrainer_simulator.scene.scene_glb"),
-            stdin=subprocess.PIPE,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            env=environment_without_secrets(),
-            creationflags=BELOW_NORMAL,
-        )
-    except OSError as error:
-        raise InputError(f"The scene cannot be built: {error}.") from error
 
 
 def read_scene(file: SceneFile) -> bytes | None:
@@ -235,9 +210,5 @@ def _sha256_of_glb(path: Path) -> str | None:
         content = path.read_bytes()
     except OSError:
         return None
-    if len(content) < _HEADER.size:
-        return None
-    magic, version, length = _HEADER.unpack_from(content)
-    if (magic, version, length) != (b"glTF", 2, len(content)):
-        return None
-    return hashlib.sha256(content).hexdigest()
+    is_whole = content.startswith(_HEADER.pack(b"glTF", 2, len(content)))
+    return hashlib.sha256(content).hexdigest() if is_whole else None

@@ -11,7 +11,6 @@ import contextlib
 import json
 import os
 import sys
-import uuid
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -21,6 +20,7 @@ from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
 from rastrainer.errors import InputError
+from rastrainer.files.writing import write_bytes
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.procedure.plan import Procedure, read_no_go_mesh
 from rastrainer.scenario.points import Task
@@ -28,7 +28,7 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.robot.meshes import load_meshes
-from rastrainer_simulator.robot.model import RobotLink, RobotModel
+from rastrainer_simulator.robot.model import RobotModel
 from rastrainer_simulator.scene.nodes import (
     ARROW,
     AXIS,
@@ -53,7 +53,7 @@ from rastrainer_simulator.scene.nodes import (
 )
 from rastrainer_simulator.scene.room_nodes import room_nodes, stand_node, table_node
 from rastrainer_simulator.scene.skin import Shape
-from rastrainer_simulator.scene.skin_marks import SkinMark, skin_marks
+from rastrainer_simulator.scene.skin_marks import skin_marks
 from rastrainer_simulator.scene.surfaces import shaded, turned
 
 
@@ -62,9 +62,10 @@ def robot_nodes(robot: RobotModel) -> list[Node]:
 
     What is fixed behind the flange is the tool; its node's origin is the tool's tip.
     """
-    first = _first_links(robot)
+    # The links whose poses are in the state, by the number of joints before them.
+    first = {link.joint: link for link in reversed(robot.links)}
     tip_to_flange = robot.tip.offset
-    surfaces: dict[str, list[Surface]] = {link_node_name(joint): [] for joint in first}
+    surfaces: dict[str, list[Surface]] = {link_node_name(joint): [] for joint in sorted(first)}
     surfaces[TOOL] = []
     marker: list[Surface] = []
     links = {link.name: link for link in robot.links}
@@ -85,14 +86,6 @@ def robot_nodes(robot: RobotModel) -> list[Node]:
     return [*nodes, Node(TOOL, merged(surfaces[TOOL]), (tip_marker, *_instrument_nodes()))]
 
 
-def _first_links(robot: RobotModel) -> dict[int, RobotLink]:
-    """Return the link whose pose is in the state, for each number of joints before it."""
-    first: dict[int, RobotLink] = {}
-    for link in robot.links:
-        first.setdefault(link.joint, link)
-    return first
-
-
 PLAN = "plan"
 SLEEVE_LENGTH, SLEEVE_RADIUS, MOUTH_RADIUS = 0.075, 0.0065, 0.0035
 AXIS_LENGTH, AXIS_RADIUS = 0.2, 0.00035
@@ -105,23 +98,19 @@ def _instrument_nodes() -> tuple[Node, ...]:
 
     `drill` and `electrode` are 1 m long: a view scales them along z by how far they are fed.
     """
-    sleeve = [
-        (SLEEVE_RADIUS, -SLEEVE_LENGTH),
-        (SLEEVE_RADIUS, -0.2 * SLEEVE_LENGTH),
-        (MOUTH_RADIUS, 0.0),
-    ]
-    axis = [(AXIS_RADIUS, 0.0), (AXIS_RADIUS, AXIS_LENGTH)]
-    drill = [(DRILL_RADIUS, 0.0), (DRILL_RADIUS, 1.0)]
-    electrode = [(ELECTRODE_RADIUS, 0.0), (ELECTRODE_RADIUS, 1.0)]
-    made = (
-        ("guide", sleeve, GUIDE),
-        ("axis", axis, AXIS),
-        ("drill", drill, DRILL),
-        ("electrode", electrode, ELECTRODE),
-    )
+    profiles = {
+        GUIDE: [
+            (SLEEVE_RADIUS, -SLEEVE_LENGTH),
+            (SLEEVE_RADIUS, -0.2 * SLEEVE_LENGTH),
+            (MOUTH_RADIUS, 0.0),
+        ],
+        AXIS: [(AXIS_RADIUS, 0.0), (AXIS_RADIUS, AXIS_LENGTH)],
+        DRILL: [(DRILL_RADIUS, 0.0), (DRILL_RADIUS, 1.0)],
+        ELECTRODE: [(ELECTRODE_RADIUS, 0.0), (ELECTRODE_RADIUS, 1.0)],
+    }
     return tuple(
-        Node(name, (turned(0.0, 0.0, profile, material),), is_hidden=True)
-        for name, profile, material in made
+        Node(material.name, (turned(0.0, 0.0, profile, material),), is_hidden=True)
+        for material, profile in profiles.items()
     )
 
 
@@ -130,14 +119,12 @@ def plan_node(procedures: Sequence[Procedure]) -> Node:
 
     Its children are the no-go structures of all procedures, one for each file.
     """
-    files = sorted({each.file for procedure in procedures for each in procedure.no_go})
-    return Node(PLAN, children=tuple(_no_go_node(path) for path in files))
-
-
-def _no_go_node(path: Path) -> Node:
-    mesh = read_no_go_mesh(path)
-    surface = shaded(mesh.vertices / MM_PER_M, mesh.triangles, NO_GO)
-    return Node(no_go_name(path), (surface,), is_hidden=True)
+    nodes = []
+    for path in sorted({each.file for procedure in procedures for each in procedure.no_go}):
+        mesh = read_no_go_mesh(path)
+        surface = shaded(mesh.vertices / MM_PER_M, mesh.triangles, NO_GO)
+        nodes.append(Node(no_go_name(path), (surface,), is_hidden=True))
+    return Node(PLAN, children=tuple(nodes))
 
 
 ROOT = "scene"
@@ -162,39 +149,29 @@ def to_glb(nodes: list[Node]) -> bytes:
 def _add(
     scene: trimesh.Scene, parent: str, node: Node, materials: dict[Material, PBRMaterial]
 ) -> None:
-    pose = np.eye(4) if node.pose is None else node.pose
-    single = node.surfaces[0] if len(node.surfaces) == 1 else None
-    if single is not None:
-        _add_surface(scene, parent, node.name, pose, single, materials)
-    else:
-        scene.graph.update(frame_from=parent, frame_to=node.name, matrix=pose)
-        for surface in node.surfaces:
-            name = f"{node.name}_{surface.material.name}"
-            _add_surface(scene, node.name, name, np.eye(4), surface, materials)
+    is_single = len(node.surfaces) == 1
+    if not is_single:
+        scene.graph.update(frame_from=parent, frame_to=node.name, matrix=np.eye(4))
+    for surface in node.surfaces:
+        if surface.material not in materials:
+            materials[surface.material] = _material(surface.material)
+        mesh = trimesh.Trimesh(
+            surface.vertices,
+            surface.triangles,
+            vertex_normals=surface.normals,
+            visual=TextureVisuals(material=materials[surface.material]),
+            process=False,
+        )
+        name = node.name if is_single else f"{node.name}_{surface.material.name}"
+        scene.add_geometry(
+            mesh,
+            node_name=name,
+            geom_name=name,
+            parent_node_name=parent if is_single else node.name,
+            transform=np.eye(4),
+        )
     for child in node.children:
         _add(scene, node.name, child, materials)
-
-
-def _add_surface(
-    scene: trimesh.Scene,
-    parent: str,
-    name: str,
-    pose: np.ndarray,
-    surface: Surface,
-    materials: dict[Material, PBRMaterial],
-) -> None:
-    if surface.material not in materials:
-        materials[surface.material] = _material(surface.material)
-    mesh = trimesh.Trimesh(
-        surface.vertices,
-        surface.triangles,
-        vertex_normals=surface.normals,
-        visual=TextureVisuals(material=materials[surface.material]),
-        process=False,
-    )
-    scene.add_geometry(
-        mesh, node_name=name, geom_name=name, parent_node_name=parent, transform=pose
-    )
 
 
 def _material(material: Material) -> PBRMaterial:
@@ -222,18 +199,11 @@ def head_node(mesh: HeadMesh, task: Task | None) -> Node:
     rims = Node("rims", merged([_surface(mark.rim, MARK_RIM) for mark in marks]))
     children = [Node("skin", (skin,)), *([rims] if marks else [])]
     for mark in marks:
-        children.extend(_mark_nodes(mark))
+        children.append(Node(f"fiducial_{mark.label}", (_surface(mark.dot, WAITING),)))
+        children.append(Node(f"number_{mark.label}", (_surface(mark.number, NUMBER),)))
+        if mark.arrow is not None:
+            children.append(Node(f"arrow_{mark.label}", (_surface(mark.arrow, ARROW),)))
     return Node("head", children=tuple(children))
-
-
-def _mark_nodes(mark: SkinMark) -> list[Node]:
-    nodes = [
-        Node(f"fiducial_{mark.label}", (_surface(mark.dot, WAITING),)),
-        Node(f"number_{mark.label}", (_surface(mark.number, NUMBER),)),
-    ]
-    if mark.arrow is not None:
-        nodes.append(Node(f"arrow_{mark.label}", (_surface(mark.arrow, ARROW),)))
-    return nodes
 
 
 def _surface(shape: Shape, material: Material) -> Surface:
@@ -269,23 +239,11 @@ def main() -> int:
     try:
         setup = load_setup(Path(wanted["scenario"]), robot_meshes=meshes and Path(meshes))
         chosen = setup.scenario.task(task) if task else None
-        _write(Path(wanted["path"]), scene_glb(setup.scenario, setup.robot, chosen))
+        write_bytes(wanted["path"], scene_glb(setup.scenario, setup.robot, chosen))
     except InputError as error:
         print(error, file=sys.stderr)
         return 2
     return 0
-
-
-def _write(path: Path, content: bytes) -> None:
-    """Write a file whole or not at all: others may build the same one at the same time."""
-    partial = path.with_name(f"{uuid.uuid4().hex}.partial")
-    try:
-        partial.write_bytes(content)
-        partial.replace(path)
-    except OSError as error:
-        with contextlib.suppress(OSError):
-            partial.unlink()
-        raise InputError(f"The scene {path} cannot be written: {error.strerror}.") from error
 
 
 if __name__ == "__main__":

@@ -95,21 +95,12 @@ class Skin:
 
 DOT_RADIUS = 4.0
 RIM_RADIUS = 5.2
+"""Of a fiducial's colored disk, and of the pale ring around it, which reaches a little under it."""
 NUMBER_HEIGHT = 11.0
 LONGEST_EDGE = 1.5
 
 Flat = tuple[np.ndarray, np.ndarray]
 """(n, 2) float points and (m, 3) int triangles."""
-
-
-def dot() -> Flat:
-    """Return a fiducial's colored disk."""
-    return _disk(0.0, DOT_RADIUS)
-
-
-def rim() -> Flat:
-    """Return the pale ring around a fiducial's disk, reaching a little under it."""
-    return _disk(DOT_RADIUS - 0.4, RIM_RADIUS)
 
 
 def number(label: str) -> Flat:
@@ -127,13 +118,13 @@ def number(label: str) -> Flat:
     return _counterclockwise(pieces.GetOutput())
 
 
-def _disk(inner: float, outer: float) -> Flat:
-    disk = vtkDiskSource()
-    disk.SetInnerRadius(inner)
-    disk.SetOuterRadius(outer)
-    disk.SetRadialResolution(3)
-    disk.SetCircumferentialResolution(32)
-    return _flat(disk)
+def disk(inner: float, outer: float) -> Flat:
+    source = vtkDiskSource()
+    source.SetInnerRadius(inner)
+    source.SetOuterRadius(outer)
+    source.SetRadialResolution(3)
+    source.SetCircumferentialResolution(32)
+    return _flat(source)
 
 
 def _flat(source: vtkDiskSource | vtkVectorText) -> Flat:
@@ -179,18 +170,13 @@ class Arrow:
         path: (n, 3) float, on the skin, from the fiducial on, a step apart.
         outward: (n, 3) float, the skin's normals there.
         start: length of the path at which the arrow starts.
-        end: and at which its tip is.
+        end: and at which its tip is; no more where fiducials leave no room for it.
     """
 
     path: np.ndarray
     outward: np.ndarray
     start: float
     end: float
-
-    @property
-    def is_drawn(self) -> bool:
-        """Whether there is room for it: fiducials may touch each other."""
-        return self.end > self.start
 
     def half_width(self, along: np.ndarray) -> np.ndarray:
         """Return half the arrow's width at lengths of the path (k,)."""
@@ -200,7 +186,7 @@ class Arrow:
 
     def samples(self) -> tuple[np.ndarray, np.ndarray]:
         """Return places (k, 3) along the arrow, 1 mm apart, and its half widths (k,) there."""
-        if not self.is_drawn:
+        if self.end <= self.start:
             return np.empty((0, 3)), np.empty(0)
         along = np.linspace(self.start, self.end, max(2, round(self.end - self.start) + 1))
         return _at(self.path, along), self.half_width(along)
@@ -233,8 +219,14 @@ def arrow_shape(skin: Skin, arrow: Arrow) -> Shape:
     rows = [
         skin.onto(row, normal) for row, normal in zip(middle[:, None] + sides, outward, strict=True)
     ]
-    points = np.concatenate(rows)
-    return Shape(points, _grid(len(along), len(_ACROSS)), np.repeat(outward, len(_ACROSS), axis=0))
+    # Two triangles between each two points of a row, which go from right to left.
+    columns = len(_ACROSS)
+    corner = columns * np.arange(len(along) - 1)[:, None] + np.arange(columns - 1)
+    right = corner.reshape(-1)
+    left, ahead = right + 1, right + columns
+    halves = [np.column_stack([right, ahead, left]), np.column_stack([left, ahead, ahead + 1])]
+    outward = np.repeat(outward, columns, axis=0)
+    return Shape(np.concatenate(rows), np.concatenate(halves), outward)
 
 
 def _between(
@@ -344,11 +336,3 @@ def _at(values: np.ndarray, along: np.ndarray) -> np.ndarray:
 
 def _unit(vectors: np.ndarray) -> np.ndarray:
     return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
-
-
-def _grid(rows: int, columns: int) -> np.ndarray:
-    """Return the triangles (m, 3) of rows that follow each other, each from right to left."""
-    corner = (columns * np.arange(rows - 1)[:, None] + np.arange(columns - 1)).reshape(-1)
-    left, ahead = corner + 1, corner + columns
-    halves = [np.column_stack([corner, ahead, left]), np.column_stack([left, ahead, ahead + 1])]
-    return np.concatenate(halves)

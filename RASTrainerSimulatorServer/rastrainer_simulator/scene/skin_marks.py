@@ -9,6 +9,7 @@ import numpy as np
 
 from rastrainer.head.mesh import HeadMesh
 from rastrainer_simulator.scene.skin import (
+    DOT_RADIUS,
     LENGTHS,
     RIM_RADIUS,
     Arrow,
@@ -17,9 +18,8 @@ from rastrainer_simulator.scene.skin import (
     Skin,
     arrow_shape,
     arrows,
-    dot,
+    disk,
     number,
-    rim,
 )
 
 DISTANCES = (11.5, 13.0, 15.0, 17.5, 20.5, 24.0)
@@ -40,10 +40,9 @@ _ROOM_ENOUGH = 6.0
 
 @dataclass(frozen=True)
 class Place:
-    """One possible position of a number.
+    """One possible position of a number; its middle (3,) is on the skin.
 
     Attributes:
-        middle: (3,) float, on the skin.
         covers: (k, 3) float, places all over the number's rectangle on the skin.
         clearance: to arrows and to the rims of all dots.
         cost: how much worse it is than the best place there could be, mm.
@@ -61,7 +60,7 @@ def _number_places(
     """Return the middle (3,) of each number, and whether all keep at least the least margin.
 
     `points` (n, 3) float are the fiducials; `sizes` the width and height (2,) of each number, mm.
-    If not all numbers can keep the margin, each goes where it has the most room.
+    If not all numbers can keep the margin, each goes where it has the most room, if any.
     """
     samples = [arrow.samples() for arrow in arrows]
     obstacles = np.concatenate([points, *(places for places, _ in samples)])
@@ -73,12 +72,11 @@ def _number_places(
         chosen = _chosen(choices, margin)
         if chosen is not None:
             return [place.middle for place in chosen], True
-    return [_roomiest(places, point) for places, point in zip(choices, points, strict=True)], False
-
-
-def _roomiest(places: list[Place], point: np.ndarray) -> np.ndarray:
-    """Return the middle of the roomiest position; the fiducial itself if there is none."""
-    return max(places, key=lambda place: place.clearance).middle if places else point
+    roomiest = [
+        max(places, key=lambda place: place.clearance).middle if places else point
+        for places, point in zip(choices, points, strict=True)
+    ]
+    return roomiest, False
 
 
 def _choices(
@@ -96,7 +94,11 @@ def _choices(
     near = np.linalg.norm(obstacles - point, axis=1) < 80.0
     obstacles, radii = obstacles[near], radii[near]
     least = size.min() / 2.0 + MARGINS[-1]
-    rectangle = _rectangle(size)
+    across, upward = (
+        np.linspace(-length / 2.0, length / 2.0, count)
+        for length, count in zip(size, (_COLUMNS, _ROWS), strict=True)
+    )
+    rectangle = np.stack(np.meshgrid(across, upward), axis=-1).reshape(-1, 2)
     around = np.column_stack([np.cos(ANGLES), np.sin(ANGLES)]) @ frame[:2]
     places: list[Place] = []
     for distance in DISTANCES:
@@ -115,13 +117,6 @@ def _choices(
         if sum(place.clearance >= MARGINS[0] for place in places) >= ENOUGH:
             break
     return sorted(places, key=lambda place: place.cost)
-
-
-def _rectangle(size: np.ndarray) -> np.ndarray:
-    """Return points (k, 2) all over a rectangle around the origin."""
-    across = np.linspace(-size[0] / 2.0, size[0] / 2.0, _COLUMNS)
-    upward = np.linspace(-size[1] / 2.0, size[1] / 2.0, _ROWS)
-    return np.stack(np.meshgrid(across, upward), axis=-1).reshape(-1, 2)
 
 
 def _clearance(covers: np.ndarray, obstacles: np.ndarray, radii: np.ndarray) -> float:
@@ -209,22 +204,23 @@ def skin_marks(head: HeadMesh, points: np.ndarray, labels: Sequence[str]) -> lis
     """Return the marks of fiducials at `points` (n, 3) float, RAS mm, in the order to touch."""
     skin = Skin(head)
     placed = place_marks(skin, points, labels)
-    ribbons = [
-        _lifted(arrow_shape(skin, arrow), ARROW_LIFT) if arrow.is_drawn else None
+    ribbons: list[Shape | None] = [
+        _lifted(arrow_shape(skin, arrow), ARROW_LIFT) if arrow.end > arrow.start else None
         for arrow in placed.arrows
     ]
-    marks = []
-    for index, (point, label) in enumerate(zip(points, labels, strict=True)):
-        marks.append(
-            SkinMark(
-                label,
-                _lifted(skin.lay_shape(*dot(), point), DOT_LIFT),
-                _lifted(skin.lay_shape(*rim(), point), RIM_LIFT),
-                _lifted(skin.lay_shape(*placed.numbers[index], placed.places[index]), NUMBER_LIFT),
-                ribbons[index] if index < len(ribbons) else None,
-            )
+    numbers = zip(placed.numbers, placed.places, strict=True)
+    return [
+        SkinMark(
+            label,
+            _lifted(skin.lay_shape(*disk(0.0, DOT_RADIUS), point), DOT_LIFT),
+            _lifted(skin.lay_shape(*disk(DOT_RADIUS - 0.4, RIM_RADIUS), point), RIM_LIFT),
+            _lifted(skin.lay_shape(*flat, place), NUMBER_LIFT),
+            ribbon,
         )
-    return marks
+        for point, label, (flat, place), ribbon in zip(
+            points, labels, numbers, [*ribbons, None], strict=True
+        )
+    ]
 
 
 def _lifted(shape: Shape, lift: float) -> Shape:

@@ -80,22 +80,31 @@ def _stack(
     """Return the solid through rings (n, 2) at rising heights, each counterclockwise and convex."""
     count = len(rings[0][0])
     points = [np.column_stack([ring, np.full(count, height)]) for ring, height in rings]
-    middles = [points[0].mean(axis=0), points[-1].mean(axis=0)]
-    vertices = np.concatenate([*points, middles])
+    vertices, triangles = stitched(np.array(points))
+    if pose is not None:
+        vertices = vertices @ pose[:3, :3].T + pose[:3, 3]
+    return shaded(vertices, triangles, material)
+
+
+def stitched(rings: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Join rings (levels, count, 3) float into a closed shell, a fan over either end.
+
+    Return vertices (n, 3) and triangles (m, 3).
+    """
+    levels, count, _ = rings.shape
+    vertices = np.vstack([rings.reshape(-1, 3), rings[0].mean(axis=0), rings[-1].mean(axis=0)])
     here = np.arange(count)
     following = np.roll(here, -1)
     triangles = []
-    for level in range(len(rings) - 1):
+    for level in range(levels - 1):
         below, above = level * count, (level + 1) * count
         triangles.append(np.column_stack([below + here, below + following, above + following]))
         triangles.append(np.column_stack([below + here, above + following, above + here]))
-    top = (len(rings) - 1) * count
+    top = (levels - 1) * count
     bottom_middle, top_middle = len(vertices) - 2, len(vertices) - 1
     triangles.append(np.column_stack([following, here, np.full(count, bottom_middle)]))
     triangles.append(np.column_stack([top + here, top + following, np.full(count, top_middle)]))
-    if pose is not None:
-        vertices = vertices @ pose[:3, :3].T + pose[:3, 3]
-    return shaded(vertices, np.concatenate(triangles), material)
+    return vertices, np.concatenate(triangles)
 
 
 def surface(

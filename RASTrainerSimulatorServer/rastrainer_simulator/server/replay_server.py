@@ -5,10 +5,9 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
-from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals_of
@@ -30,7 +29,7 @@ from rastrainer_simulator.presentation.presenter import Presenter
 from rastrainer_simulator.rating.rating_pages import RatingWork
 from rastrainer_simulator.rating.rating_presenter import RatingPresenter
 from rastrainer_simulator.record.trial_context import setup_of
-from rastrainer_simulator.replay.playback import Playback
+from rastrainer_simulator.replay.playback import Playback, play_on
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial
 from rastrainer_simulator.replay.replay_presenter import ReplayPresenter
 
@@ -46,7 +45,7 @@ def show(
     async def serve() -> None:
         stop = asyncio.Event()
         presenter = ReplayPresenter(playback, _preferred_language(), stop.set)
-        await _show_until(stop, playback, presenter, playback.run, port, has_window, announce)
+        await _show_until(stop, playback, presenter, playback.advance, port, has_window, announce)
 
     asyncio.run(serve())
 
@@ -55,7 +54,7 @@ async def _show_until(
     stop: asyncio.Event,
     source: StateSource,
     presenter: Presenter,
-    run: Callable[[], Coroutine[Any, Any, None]],
+    advance: Callable[[float], None],
     port: int | None,
     has_window: bool,
     announce: Callable,
@@ -66,7 +65,7 @@ async def _show_until(
         stop: is set by what ends it: the presenter, the closed window, or a signal.
         source: the states that are shown.
         presenter: what is read beside them.
-        run: plays them until it is canceled.
+        advance: plays them on by some s.
         port: where views are served; None for the usual one.
         has_window: whether a window is opened.
         announce: reports where views are served.
@@ -77,7 +76,7 @@ async def _show_until(
         views = ViewServer(source, presenter, announce)
         try:
             await views.start(port)
-            tasks.append(asyncio.create_task(run()))
+            tasks.append(asyncio.create_task(play_on(advance)))
             if has_window:
                 window = ApplicationWindow(f"http://{DEFAULT_HOST}:{views.port}", views.code.code)
                 tasks.append(asyncio.create_task(window.run(stop.set, announce)))
@@ -168,10 +167,11 @@ def serve_rating(
             presenter = RatingPresenter(work, first, load, _preferred_language(), stop.set)
             shown = presenter.shown
 
-            async def run() -> None:
-                await shown.run(presenter.advance)
+            def advance(seconds: float) -> None:
+                shown.playback.advance(seconds)
+                presenter.advance(seconds)
 
-            await _show_until(stop, shown, presenter, run, port, has_window, announce)
+            await _show_until(stop, shown, presenter, advance, port, has_window, announce)
 
         first = load(work.trial_id).result()
         asyncio.run(serve())

@@ -112,7 +112,7 @@ class SimulatorServer:
                 self._settings = preferences.applied_to(self._settings)
         self._seeds = itertools.count(options.seed)
         self._assigned = AssignedTraining()
-        self._pin = PinGuesses(InstructorPin(self._config))
+        self._pin = InstructorPin(self._config)
         # First: until the folder is ours, another simulator may add to the trial to resume.
         self._records = RecordsFolder(options.records)
         with contextlib.ExitStack() as unless_ready:

@@ -52,11 +52,8 @@ def run_jobs(
     """Yield the result of each job, in their order.
 
     A job whose process is killed is repeated by another one, unless `workers` is 1 and it is this
-    process.
-
-    Args:
-        engine: `processes`, or `dask` (package `distributed`).
-        address: Of a Dask scheduler, for more than one machine; a local cluster by default.
+    process. `engine` is `processes`, or `dask` (package `distributed`); `address` is that of a Dask
+    scheduler, for more than one machine; a local cluster by default.
     """
     workers = workers or os.cpu_count() or 1
     if engine == DASK:

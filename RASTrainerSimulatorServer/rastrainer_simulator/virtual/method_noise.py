@@ -8,7 +8,6 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 
 import numpy as np
 from numpy.random import Generator
@@ -20,77 +19,52 @@ from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.surface_checks import LEAST_POINTS
 from rastrainer.transforms import frame_along
 
-SPACING_MM = 8.0
-"""Distance between points of skin that faces the camera."""
-
-
-PUBLISHED_NOISE: Mapping[RegistrationMethod, float] = MappingProxyType(
-    {
-        RegistrationMethod.BONE_SCREWS: 0.5,
-        RegistrationMethod.FIDUCIALS: 1.5,
-        RegistrationMethod.LANDMARKS: 4.0,
-        RegistrationMethod.SURFACE: 0.5,
-        RegistrationMethod.LANDMARKS_SURFACE: 0.5,
-        RegistrationMethod.SCAN: 1.07,
-    }
-)
+PUBLISHED_NOISE: Mapping[RegistrationMethod, float] = {
+    RegistrationMethod.BONE_SCREWS: 0.5,
+    RegistrationMethod.FIDUCIALS: 1.5,
+    RegistrationMethod.LANDMARKS: 4.0,
+    RegistrationMethod.SURFACE: 0.5,
+    RegistrationMethod.LANDMARKS_SURFACE: 0.5,
+    RegistrationMethod.SCAN: 1.07,
+}
 """In mm: of a touched point, the RMS length of its error (FLE); of a traced or scanned point, the
 standard deviation across the skin or along the ray."""
 
 
-def first_hits(mesh: HeadMesh, eye: np.ndarray, ahead: np.ndarray, spacing: float) -> np.ndarray:
-    """Return where the rays of a camera first meet a surface, (n, 3) float, RAS mm.
-
-    The rays go through the points of a square grid at distance 1 before the eye; those that meet
-    nothing give no point.
-
-    Args:
-        mesh: The surface; all of it is before the eye.
-        eye: (3,) float, RAS mm, outside of it.
-        ahead: (3,) float, the direction of view.
-        spacing: Of the grid: the tangent of the angle between neighboring rays in the middle.
-    """
-    frame = frame_along(ahead / np.linalg.norm(ahead))
-    seen = (mesh.vertices - eye) @ frame.T
-    on_grid = seen[:, :2] / seen[:, 2:] / spacing
-    low, high = np.floor(on_grid.min(axis=0)), np.ceil(on_grid.max(axis=0))
-    farthest_mm = float(np.linalg.norm(seen, axis=1).max())
-    points = []
-    for place in itertools.product(*map(np.arange, low, high + 1)):
-        ray = np.array([*place, 1.0 / spacing]) @ frame
-        ray /= np.linalg.norm(ray)
-        if crossings := mesh_crossings(mesh, eye, ray, farthest_mm):
-            points.append(eye + crossings[0].distance_mm * ray)
-    return np.array(points).reshape(-1, 3)
-
-
 @dataclass(frozen=True, eq=False)
 class RangeCamera:
-    """A camera before the head.
-
-    Attributes:
-        spacing_mm: Between points on skin that faces the camera.
-    """
+    """A camera before the head; its points are `spacing_mm` apart on skin that faces it."""
 
     eye: np.ndarray
     noise_mm: float
-    spacing_mm: float = SPACING_MM
+    spacing_mm: float = 8.0
 
     def seen(self, mesh: HeadMesh) -> np.ndarray:
         """Return the points of the skin at which the rays end, (n, 3) float, RAS mm, exact.
 
-        Where ears, nose or brows hide the skin behind them, the rays end on these.
+        The rays go through a square grid at distance 1 before the eye. Where ears, nose or brows
+        hide the skin behind them, the rays end on these.
         """
         ahead = mesh.middle - self.eye
-        spacing = self.spacing_mm / float(np.linalg.norm(ahead))
-        points = first_hits(mesh.skin, self.eye, ahead, spacing)
+        away = float(np.linalg.norm(ahead))
+        spacing, frame = self.spacing_mm / away, frame_along(ahead / away)
+        skin, points = mesh.skin, []
+        seen = (skin.vertices - self.eye) @ frame.T
+        on_grid = seen[:, :2] / seen[:, 2:] / spacing
+        low, high = np.floor(on_grid.min(axis=0)), np.ceil(on_grid.max(axis=0))
+        farthest_mm = float(np.linalg.norm(seen, axis=1).max())
+        for place in itertools.product(*map(np.arange, low, high + 1)):
+            ray = np.array([*place, 1.0 / spacing]) @ frame
+            ray /= np.linalg.norm(ray)
+            if crossings := mesh_crossings(skin, self.eye, ray, farthest_mm):
+                points.append(self.eye + crossings[0].distance_mm * ray)
         if len(points) < LEAST_POINTS:
             raise InputError(
                 f"The range camera sees {len(points)} points of the head; a match needs "
                 f"{LEAST_POINTS}: place the camera in front of the face, or its points closer "
                 "together."
             )
-        return points
+        return np.array(points)
 
     def noisy(self, points: np.ndarray, random: Generator) -> np.ndarray:
         """Return points (n, 3), RAS mm, as the camera measures them."""

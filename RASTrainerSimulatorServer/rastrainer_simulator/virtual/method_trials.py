@@ -4,7 +4,7 @@ virtual ones on one head, with stated noise and skin shift.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -166,64 +166,40 @@ LEAST_FOR_INTERVAL = 4
 METHODS = tuple(PUBLISHED_NOISE)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class MethodStudy:
-    """The common settings of virtual trials.
+    """The common settings of virtual trials, and what they share; points in RAS mm.
 
     Attributes:
-        task: whose fiducials are touched.
         shift_mm: root mean square length of the skin's shift; each trial has its own.
         indentation_mm: how deep the tip presses into the skin.
+        screws: (5, 3) float, under every third fiducial.
+        normals: (n, 3) float, outward, of the skin at the fiducials and at the landmarks.
+        camera: where the close-up view is.
     """
 
     scenario: Scenario
     task: str
     shift_mm: float = 0.0
     indentation_mm: float = 0.0
-    noise: Mapping[RegistrationMethod, float] = field(default_factory=lambda: PUBLISHED_NOISE)
     starts: int = STARTS
 
-    @cached_property
-    def mesh(self) -> HeadMesh:
-        return read_head_mesh(self.scenario.head_mesh)
-
-    @cached_property
-    def targets(self) -> np.ndarray:
-        """(m, 3) float, RAS mm."""
-        return region_of(self.scenario).targets
-
-    @cached_property
-    def fiducials(self) -> np.ndarray:
-        """(15, 3) float, RAS mm."""
-        return np.asarray(self.scenario.task(self.task).fiducials, dtype=float)
-
-    @cached_property
-    def screws(self) -> np.ndarray:
-        """(5, 3) float, RAS mm: under every third fiducial."""
+    def __post_init__(self) -> None:
+        scenario = self.scenario
+        self.mesh = read_head_mesh(scenario.head_mesh)
+        self.targets = region_of(scenario).targets
+        self.fiducials = np.asarray(scenario.task(self.task).fiducials, dtype=float)
         chosen = self.fiducials[:: len(self.fiducials) // SCREWS][:SCREWS]
-        return chosen - SCREW_DEPTH_MM * outward_normals(self.mesh, chosen)
-
-    @cached_property
-    def landmarks(self) -> np.ndarray:
-        """(l, 3) float, RAS mm; none where the scenario has too few."""
-        places = [landmark.position_ras for landmark in self.scenario.landmarks]
-        return np.array(places, dtype=float).reshape(-1, 3)
-
-    @cached_property
-    def normals(self) -> tuple[np.ndarray, np.ndarray]:
-        """Outward unit normals of the skin at fiducials and landmarks."""
-        at_fiducials, at_landmarks = (
+        self.screws = chosen - SCREW_DEPTH_MM * outward_normals(self.mesh, chosen)
+        places = [landmark.position_ras for landmark in scenario.landmarks]
+        self.landmarks = np.array(places, dtype=float).reshape(-1, 3)
+        self.normals = [
             outward_normals(self.mesh, points) if len(points) else points
             for points in (self.fiducials, self.landmarks)
-        )
-        return at_fiducials, at_landmarks
-
-    @cached_property
-    def camera(self) -> RangeCamera:
-        """The range camera, where the close-up view is."""
-        to_head = transforms.inverse(self.scenario.head_to_world)
-        eye = transforms.apply(to_head, self.scenario.cameras["close-up"].position_mm)
-        return RangeCamera(eye, self.noise[RegistrationMethod.SCAN])
+        ]
+        to_head = transforms.inverse(scenario.head_to_world)
+        eye = transforms.apply(to_head, scenario.cameras["close-up"].position_mm)
+        self.camera = RangeCamera(eye, PUBLISHED_NOISE[RegistrationMethod.SCAN])
 
     @cached_property
     def seen(self) -> np.ndarray:
@@ -288,10 +264,10 @@ class MethodStudy:
         rows = random.choice(self.reached, TRACE_POINTS)
         normals = self.mesh.vertex_normals[rows]
         drawn = shift.touched(self.mesh.vertices[rows], normals, self.mesh)
-        noise = random.normal(0.0, self.noise[method], (len(rows), 1))
+        noise = random.normal(0.0, PUBLISHED_NOISE[method], (len(rows), 1))
         return MethodPoints(method, touched, fixed, None, drawn + noise * normals + tip)
 
     def _found(
         self, points: np.ndarray, method: RegistrationMethod, random: Generator
     ) -> np.ndarray:
-        return points + random.normal(0.0, self.noise[method] / np.sqrt(3), points.shape)
+        return points + random.normal(0.0, PUBLISHED_NOISE[method] / np.sqrt(3), points.shape)

@@ -39,10 +39,8 @@ class OutcomeModel:
 
     Attributes:
         task_times_s: Median completion time of each task at the first trial in the first mode.
-        trainee_time_sd: Between trainees, of the logarithm of the time.
-        trainee_fle_sd: Between trainees, of the logarithm of the localization error.
-        interaction_sd: How differently modes affect trainees, of both logarithms.
-        trial_time_sd: Between trials of a trainee, of the logarithm of the time.
+        interaction_sd: How differently modes affect trainees; like the other deviations, of the
+            logarithms.
         learning: b; the n-th trial takes n^−b of the first one's time.
         carries_practice: Whether n counts the trials of both modes, as for the virtual trainees
             that are played; otherwise each mode starts from 1.
@@ -170,11 +168,10 @@ def _medians(model: OutcomeModel, modes: Sequence[str]) -> tuple[np.ndarray, np.
 
 def _practice(model: OutcomeModel, numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the factors of practice on time and localization error of such trials (…, tasks)."""
-    practiced = numbers
     if not model.carries_practice:
         # A trial's number within its mode.
-        practiced = numbers.argsort(axis=-1).argsort(axis=-1) + 1
-    return practiced ** -float(model.learning), practiced ** -float(model.accuracy_learning)
+        numbers = numbers.argsort(axis=-1).argsort(axis=-1) + 1
+    return numbers ** -float(model.learning), numbers ** -float(model.accuracy_learning)
 
 
 @dataclass(frozen=True)
@@ -209,21 +206,17 @@ def rejection_rates(
 ) -> tuple[RejectionRates, ...]:
     """Return the rates for two modes, tested on trainee means as the report does it.
 
-    Args:
-        orders: The modes in the order of each trainee; by default that of `modes` for all.
+    `orders` are the modes in the order of each trainee; by default that of `modes` for all.
     """
     random = np.random.default_rng(seed)
     drawn = [draw_outcomes(model, trainees, modes, random, orders) for _ in range(studies)]
     times, errors = (np.array(values) for values in zip(*drawn, strict=True))
     outcomes = (times, errors, model_scores(model, times, errors))
-    periods = [float(own.index(modes[1]) - own.index(modes[0])) for own in orders or [modes]]
     # Periods between the modes of each trainee.
-    delays = np.array(periods) if is_separable(np.array(periods)) else None
-    fits, differences = [], []
-    for values in outcomes:
-        own = np.diff(values.mean(axis=-1))[..., 0]
-        differences.append(own)
-        fits.append(fit_differences(own, delays))
+    periods = np.array([own.index(modes[1]) - own.index(modes[0]) for own in orders or [modes]])
+    delays = periods.astype(float) if is_separable(periods.astype(float)) else None
+    differences = [np.diff(values.mean(axis=-1))[..., 0] for values in outcomes]
+    fits = [fit_differences(own, delays) for own in differences]
     students = scipy.stats.t
     p_values = np.stack(
         [2 * students.sf(np.abs(fit.mean / fit.standard_error), fit.dof) for fit in fits], axis=-1

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from pathlib import Path
@@ -28,7 +28,6 @@ from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_entries import TrialEntries
-from rastrainer_simulator.record.trial_records import UnmeasuredRecord
 from rastrainer_simulator.state import (
     NEUTRAL_STICKS,
     OperatorCommand,
@@ -45,14 +44,9 @@ from rastrainer_simulator.virtual.scripted_trainee import (
     ScriptedTrainee,
     Skill,
 )
-from rastrainer_simulator.virtual.virtual_procedure import (
-    ProcedureHands,
-    ProcedureSetting,
-    carry_out,
-)
+from rastrainer_simulator.virtual.virtual_procedure import ProcedureHands, VirtualProcedure
 
 LONGEST_S = 1800.0
-NOTHING: Mapping[str, Any] = {}
 
 OnStep = Callable[[Simulation, SimulationState, OperatorInput, StepResult], Any]
 """Called with the simulation, the state before, the input and the result of each step."""
@@ -92,9 +86,7 @@ def play_virtual_trial(
     """Play one task to its registration; the simulation is left in the phase `registered`.
 
     Args:
-        simulation: free for the next trial.
         dt: the simulation's step in s.
-        on_step: is called after each step as a recorder wants it.
         trainee: pseudonym; by default derived from the seed.
         mode: goes into the record; the hands do not see it.
         trial_id: UUID; by default derived from the simulation's seed and the trial's number.
@@ -102,7 +94,7 @@ def play_virtual_trial(
     scenario = simulation.setup.scenario
     task = scenario.task(task_name)
     head_to_world = scenario.perturbed_head_to_world(seed)
-    hands = ScriptedTrainee.of(scenario, task_name, head_to_world, skill, seed)
+    hands = ScriptedTrainee(scenario, task_name, head_to_world, skill, seed)
     start = {
         "task": task_name,
         "trainee": trainee or f"virtual-{seed}",
@@ -110,7 +102,7 @@ def play_virtual_trial(
         "seed": seed,
     }
 
-    def step(action: Action | None, own: Mapping[str, Any] = NOTHING) -> StepResult:
+    def step(action: Action | None, **own: Any) -> StepResult:
         before, operator_input = simulation.state, NEUTRAL_STICKS
         if action is not None:
             name, arguments = action
@@ -123,14 +115,21 @@ def play_virtual_trial(
         return result
 
     own = {} if trial_id is None else {"trialId": trial_id}
-    state = step((CommandName.START_TASK, start), own).state
+    state = step((CommandName.START_TASK, start), **own).state
     while state.training.phase is not Phase.REGISTERED:
         if state.elapsed > LONGEST_S:
             raise UnfinishedTrialError(
                 f"The scripted trainee of seed {seed} did not finish {task_name} in "
                 f"{LONGEST_S:g} s: it is at point {state.training.next_point}."
             )
-        action = hands.decide(_observation(state))
+        seen = Observation(
+            sim_time_s=state.sim_time,
+            tip_mm=MM_PER_M * state.tool_tip_to_world[:3, 3],
+            is_in_contact=state.proximity is Proximity.CONTACT,
+            phase=state.training.phase,
+            next_point=int(state.training.next_point or 0),
+        )
+        action = hands.decide(seen)
         result = step(action)
         state = result.state
         if action is not None and action[0] == CommandName.CAPTURE and not result.answers[0].ok:
@@ -141,17 +140,6 @@ def play_virtual_trial(
         fiducials_mm=task.fiducials,
         head_to_world=head_to_world,
         completion_time_s=touches[-1].elapsed,
-    )
-
-
-def _observation(state: SimulationState) -> Observation:
-    point = state.training.next_point
-    return Observation(
-        sim_time_s=state.sim_time,
-        tip_mm=MM_PER_M * state.tool_tip_to_world[:3, 3],
-        is_in_contact=state.proximity is Proximity.CONTACT,
-        phase=state.training.phase,
-        next_point=None if point is None else int(point),
     )
 
 
@@ -193,7 +181,20 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
     simulation = _simulation(settings.scenario)
     # The trial depends on the job alone, not on the trial before.
     simulation.restart_from(StartingPoint())
-    recorder = _EntryRecorder(settings.step_s)
+    started: list[TrialEntries] = []
+
+    def record_step(
+        simulation: Simulation,
+        before: SimulationState,
+        operator_input: OperatorInput,
+        result: StepResult,
+    ) -> None:
+        if not started:
+            started.append(TrialEntries.started(simulation, before, result, settings.step_s))
+        registered = started[0].add(simulation, operator_input, result)
+        if registered is not None:
+            registered.measured()
+
     try:
         trial = play_virtual_trial(
             simulation,
@@ -201,7 +202,7 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
             job.seed,
             job.skill,
             settings.step_s,
-            recorder,
+            record_step,
             job.trainee,
             Mode(job.mode),
             job.trial_id,
@@ -210,10 +211,8 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
         # The next trial needs a simulation without an open trial.
         _simulation.cache_clear()
         return PlayedTrial(job, None)
-    assert recorder.entries is not None
-    assert recorder.record is not None  # The trial was registered.
-    recorder.record.measured()
-    entries = _dated(recorder.entries.taken(), job.started)
+    entries = started[0].pending
+    _date(entries, job.started)
     registered = next(entry for entry in entries if entry["kind"] == "registered")
     record = record_from_json(TrialRecord, registered["record"])
     if settings.records is not None:
@@ -236,37 +235,20 @@ def _procedure(
     """Return what the job's hands did after the registration."""
     procedure, skull = scenario.procedure(job.procedure), scenario.skull_mesh
     assert skull is not None, "a scenario with procedures has a skull"
-    setting = ProcedureSetting(
-        procedure, _skull(skull), procedure.sha256(skull), np.asarray(head_to_world)
-    )
-    matrix = tuple(float(value) for value in analysis.rigid.matrix.ravel())
-    used = UsedRegistration(matrix, analysis.rigid.fre_mm, analysis.expected_tre.expected_mm)
-    random = np.random.default_rng([job.seed, PROCEDURE_STREAM])
-    hands = ProcedureHands.of(job.skill)
-    return carry_out(setting, used, analysis.record.completion_time_s, hands, random)
+    matrix = tuple(analysis.rigid.matrix.ravel().tolist())
+    return VirtualProcedure(
+        procedure,
+        _skull(skull),
+        procedure.sha256(skull),
+        head_to_world,
+        UsedRegistration(matrix, analysis.rigid.fre_mm, analysis.expected_tre.expected_mm),
+        analysis.record.completion_time_s,
+        ProcedureHands.of(job.skill),
+        np.random.default_rng([job.seed, PROCEDURE_STREAM]),
+    ).carried_out()
 
 
-class _EntryRecorder:
-    """Collects the journal's entries of the played trial."""
-
-    def __init__(self, step_s: float) -> None:
-        self._step_s = step_s
-        self.entries: TrialEntries | None = None
-        self.record: UnmeasuredRecord | None = None
-
-    def __call__(
-        self,
-        simulation: Simulation,
-        before: SimulationState,
-        operator_input: OperatorInput,
-        result: StepResult,
-    ) -> None:
-        if self.entries is None:
-            self.entries = TrialEntries.started(simulation, before, result, self._step_s)
-        self.record = self.entries.add(simulation, operator_input, result) or self.record
-
-
-def _dated(entries: list[dict[str, Any]], started: datetime) -> list[dict[str, Any]]:
+def _date(entries: Sequence[dict[str, Any]], started: datetime) -> None:
     """Date entries from the trial's start, in simulated time."""
     zero = entries[0]["simTimeS"]
 
@@ -283,10 +265,9 @@ def _dated(entries: list[dict[str, Any]], started: datetime) -> list[dict[str, A
                 point["utc"] = utc(point["simTimeS"])
             record["startedUtc"] = utc(zero)
             record["completedUtc"] = record["points"][-1]["utc"]
-    return entries
 
 
-def _write_journal(folder: Path, entries: list[dict[str, Any]], started: datetime) -> None:
+def _write_journal(folder: Path, entries: Sequence[dict[str, Any]], started: datetime) -> None:
     name = f"{file_stamp(iso(started))}_{entries[0]['trialId']}{SUFFIX}"
     # Complete or missing, even if this process is killed; the journal of a trial that was not
     # stored is replaced by an equal one.

@@ -7,7 +7,7 @@ lets it play over OpenIGTLink; tests and cohort simulations step it beside a sim
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -71,42 +71,31 @@ class Observation:
 
     Attributes:
         is_in_contact: whether the tool is shown to touch the head.
-        next_point: number of the fiducial to touch, from 1; None if there is none.
+        next_point: number of the fiducial to touch, from 1; 0 if there is none.
     """
 
     sim_time_s: float
     tip_mm: np.ndarray
     is_in_contact: bool
     phase: Phase
-    next_point: int | None
+    next_point: int
 
 
 class ScriptedTrainee:
-    """Plays one trial; `decide` is called with each observation and answers with what to send.
-
-    Args:
-        fiducials_mm: (n, 3) float, the fiducials as seen in the room, World, mm.
-        normals: (n, 3) float, the skin's outward unit normals there, World.
-        head_center_mm: (3,) float, around which the hand travels, World, mm.
-        vertex_mm: (3,) float, the highest point of the head, World, mm.
-    """
+    """Plays one trial; `decide` is called with each observation and answers with what to send."""
 
     def __init__(
-        self,
-        fiducials_mm: np.ndarray,
-        normals: np.ndarray,
-        head_center_mm: np.ndarray,
-        vertex_mm: np.ndarray,
-        skill: Skill,
-        seed: int,
+        self, scenario: Scenario, task_name: str, head_to_world: np.ndarray, skill: Skill, seed: int
     ) -> None:
-        self._fiducials = np.asarray(fiducials_mm, dtype=float)
-        self._normals = np.asarray(normals, dtype=float)
-        self._center = np.asarray(head_center_mm, dtype=float)
-        self._vertex = np.asarray(vertex_mm, dtype=float)
+        """Play a task; HeadToWorld is (4, 4) float, mm."""
+        # As seen in the room, World, mm: (n, 3), (n, 3), the center of the head and its top.
+        self._fiducials = transforms.apply(head_to_world, scenario.task(task_name).fiducials)
+        self._normals = fiducial_normals(scenario, task_name) @ head_to_world[:3, :3].T
+        self._center = transforms.apply(head_to_world, scenario.target_position)
+        self._vertex = transforms.apply(head_to_world, computed_once(scenario, _highest))
         self._skill = skill
         self._random = np.random.default_rng(seed)
-        self._slip_at = self._skill.slip_at
+        self._slip_at = skill.slip_at and int(np.random.default_rng([seed, 1]).integers(2, 15))
         self._planned_for: int | None = None
         self._touched: int | None = None
         self._is_refused = False
@@ -117,20 +106,6 @@ class ScriptedTrainee:
         self._tremor = np.zeros(3)
         self._outward_at_aim = np.zeros(3)
 
-    @classmethod
-    def of(
-        cls, scenario: Scenario, task_name: str, head_to_world: np.ndarray, skill: Skill, seed: int
-    ) -> ScriptedTrainee:
-        """Return a trainee for a task; HeadToWorld is (4, 4) float, mm."""
-        return cls(
-            transforms.apply(head_to_world, scenario.task(task_name).fiducials),
-            fiducial_normals(scenario, task_name) @ head_to_world[:3, :3].T,
-            transforms.apply(head_to_world, scenario.target_position[None])[0],
-            transforms.apply(head_to_world, computed_once(scenario, _highest))[0],
-            seeded_skill(skill, seed),
-            seed,
-        )
-
     def decide(self, observation: Observation) -> Action | None:
         """Return the command to send now, or None to wait; at most one every 50 ms."""
         if observation.sim_time_s < self._acts_from_s:
@@ -139,12 +114,18 @@ class ScriptedTrainee:
         if observation.phase not in (Phase.RUNNING, Phase.COMPLETE):
             return None
         if self._is_undoing_touch:
-            return self._undo(observation)
+            # As soon as the slip is seen to have been recorded.
+            if observation.next_point == self._touched:
+                return None
+            self._is_undoing_touch = False
+            self._touched = None
+            self._acts_from_s = observation.sim_time_s + self._skill.reaction_s
+            return CommandName.UNDO, {}
         if observation.phase is Phase.COMPLETE:
             return CommandName.REGISTER, {}
         if observation.next_point == self._touched:
             return None
-        if observation.next_point is not None and observation.next_point != self._planned_for:
+        if observation.next_point and observation.next_point != self._planned_for:
             self._plan(observation, observation.next_point)
             return None
         return self._approach(observation)
@@ -155,15 +136,6 @@ class ScriptedTrainee:
         self._is_refused = True
         self._is_undoing_touch = False
 
-    def _undo(self, observation: Observation) -> Action | None:
-        """Undo the slip as soon as it is seen to have been recorded."""
-        if observation.next_point == self._touched:
-            return None
-        self._is_undoing_touch = False
-        self._touched = None
-        self._acts_from_s = observation.sim_time_s + self._skill.reaction_s
-        return CommandName.UNDO, {}
-
     def _plan(self, observation: Observation, point: int) -> None:
         """Lift off, travel around the head, come down along the skin's outward direction.
 
@@ -172,7 +144,10 @@ class ScriptedTrainee:
         """
         fiducial = self._fiducials[point - 1]
         outward = self._normals[point - 1]
-        aim = fiducial + self._tangential_error(outward, slips=point == self._slip_at)
+        error = self._random.normal(self._skill.aim_bias_mm, self._skill.aim_sd_mm, 3)
+        if point == self._slip_at:
+            error = error + 4.0 * self._random.choice([-1.0, 1.0], 3) / np.sqrt(3.0)
+        aim = fiducial + error - outward * float(error @ outward)
         lifted = observation.tip_mm + LIFT_MM * self._outward(observation.tip_mm)
         above = fiducial + LIFT_MM * outward
         past = above + self._skill.overshoot * (above - lifted)
@@ -185,7 +160,12 @@ class ScriptedTrainee:
 
     def _approach(self, observation: Observation) -> Action | None:
         if not self._path:
-            return self._touch()
+            self._touched = self._planned_for
+            self._is_undoing_touch = self._touched == self._slip_at
+            if self._is_undoing_touch:
+                self._slip_at = None
+            self._planned_for = None
+            return CommandName.CAPTURE, {}
         is_aim = len(self._path) == 1
         if is_aim and np.isinf(self._gives_up_at_s):
             # However long the path was.
@@ -208,7 +188,10 @@ class ScriptedTrainee:
         velocity = self._velocity(remaining, self._skill.speed_mm_s * (0.5 if is_aim else 1.0))
         # In contact the hand stops pushing: it only corrects along the skin.
         eases_off = is_aim and observation.is_in_contact
-        return _jog(self._along_skin(velocity) if eases_off else velocity)
+        sent = self._along_skin(velocity) if eases_off else velocity
+        limited = np.clip(sent, -SPEED_LIMIT_MM_S, SPEED_LIMIT_MM_S)
+        rounded = [round(float(component), 3) for component in limited]
+        return CommandName.JOG, {"velocityMmS": rounded, "durationS": JOG_DURATION_S}
 
     def _along_skin(self, displacement: np.ndarray) -> np.ndarray:
         return displacement - self._outward_at_aim * float(displacement @ self._outward_at_aim)
@@ -221,23 +204,9 @@ class ScriptedTrainee:
         self._tremor = 0.6 * self._tremor + 0.8 * noise
         return velocity + self._tremor
 
-    def _touch(self) -> Action:
-        self._touched = self._planned_for
-        self._is_undoing_touch = self._touched == self._slip_at
-        if self._is_undoing_touch:
-            self._slip_at = None
-        self._planned_for = None
-        return CommandName.CAPTURE, {}
-
     def _outward(self, position: np.ndarray) -> np.ndarray:
         away = position - self._center
         return away / max(float(np.linalg.norm(away)), 1e-9)
-
-    def _tangential_error(self, outward: np.ndarray, slips: bool) -> np.ndarray:
-        error = self._random.normal(self._skill.aim_bias_mm, self._skill.aim_sd_mm, 3)
-        if slips:
-            error = error + 4.0 * self._random.choice([-1.0, 1.0], 3) / np.sqrt(3.0)
-        return error - outward * float(error @ outward)
 
     def _way(self, start: np.ndarray, end: np.ndarray, from_above: bool) -> list[np.ndarray]:
         """Waypoints around the head; over its vertex if asked for, or instead of under the head."""
@@ -264,21 +233,5 @@ class ScriptedTrainee:
 
 
 def _highest(head: HeadMesh) -> np.ndarray:
-    """Return the vertex of the head, (1, 3) float, RAS mm."""
-    return head.vertices[head.vertices[:, 2].argmax()][None].copy()
-
-
-def _jog(velocity: np.ndarray) -> Action:
-    limited = np.clip(velocity, -SPEED_LIMIT_MM_S, SPEED_LIMIT_MM_S)
-    return CommandName.JOG, {
-        "velocityMmS": [round(float(component), 3) for component in limited],
-        "durationS": JOG_DURATION_S,
-    }
-
-
-def seeded_skill(skill: Skill, seed: int) -> Skill:
-    """Return the skill with `slip_at`, if any, at a fiducial drawn from the seed."""
-    if skill.slip_at is None:
-        return skill
-    point = int(np.random.default_rng([seed, 1]).integers(2, 15))
-    return replace(skill, slip_at=point)
+    """Return the vertex of the head, (3,) float, RAS mm."""
+    return head.vertices[head.vertices[:, 2].argmax()].copy()

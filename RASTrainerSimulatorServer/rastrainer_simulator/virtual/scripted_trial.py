@@ -62,7 +62,7 @@ def play_trial(
     registration; it is carried out by others.
     """
     head_to_world = scenario.perturbed_head_to_world(seed)
-    trainee = ScriptedTrainee.of(scenario, task_name, head_to_world, skill or Skill(), seed)
+    trainee = ScriptedTrainee(scenario, task_name, head_to_world, skill or Skill(), seed)
     start = {"task": task_name, "trainee": trainee_id, "mode": Mode.DESKTOP.value, "seed": seed}
     if procedure:
         start["procedure"] = procedure
@@ -76,11 +76,11 @@ def play_trial(
         if action is None:
             continue
         name, arguments = action
-        reply = client.send_command(name, arguments, ANSWER_TIMEOUT_S)
-        if name == CommandName.CAPTURE and not reply.ok:
-            trainee.touch_refused()
-        elif not reply.ok:
-            raise TrialStoppedError(f"{name} was refused: {reply.error}")
+        if name == CommandName.CAPTURE:
+            if not client.send_command(name, arguments, ANSWER_TIMEOUT_S).ok:
+                trainee.touch_refused()
+        else:
+            send(client, name, arguments)
         if name == CommandName.REGISTER:
             return ScriptedTrialResult(trial_id, view.state)
     raise TrialStoppedError(
@@ -93,35 +93,34 @@ class _View:
     """The scripted trainee's view of the running trial."""
 
     def __init__(self, client: Client, trial_id: str, on_progress: Callable) -> None:
-        self._client = client
-        self._trial_id = trial_id
-        self._on_progress = on_progress
+        self._client, self._trial_id, self._on_progress = client, trial_id, on_progress
         self._sequence = -1
         self.state: dict[str, Any] = {}
 
     def next_observation(self) -> Observation:
         """Wait for the next pose of the tip and return it with the latest state."""
-        tip = self._client.wait_for(DeviceName.TOOL_TIP_TO_WORLD, self._is_next, ANSWER_TIMEOUT_S)
+        tip = self._client.wait_for(
+            DeviceName.TOOL_TIP_TO_WORLD,
+            lambda message: int(message.metadata["seq"]) > self._sequence,
+            ANSWER_TIMEOUT_S,
+        )
         self._sequence = int(tip.metadata["seq"])
-        state = _state(self._client.wait_for(DeviceName.SIM_STATE, self._is_ours))
+        state = _state(
+            self._client.wait_for(
+                DeviceName.SIM_STATE, lambda message: _state(message)["trialId"] == self._trial_id
+            )
+        )
         assert isinstance(tip.content, Transform)
         if state != self.state:
             self.state = state
             self._on_progress(state)
-        point = state["nextPoint"]
         return Observation(
             sim_time_s=float(tip.metadata["simTimeS"]),
             tip_mm=np.array(tip.content.matrix)[:3, 3],
             is_in_contact=state["proximity"] == Proximity.CONTACT.value,
             phase=Phase(state["phase"]),
-            next_point=None if point is None else int(point),
+            next_point=int(state["nextPoint"] or 0),
         )
-
-    def _is_next(self, message: Message) -> bool:
-        return int(message.metadata["seq"]) > self._sequence
-
-    def _is_ours(self, message: Message) -> bool:
-        return _state(message)["trialId"] == self._trial_id
 
 
 def _state(message: Message) -> dict[str, Any]:
@@ -198,7 +197,18 @@ def _place(client: Client, trajectory: ProcedureTrajectory, number: int, inner_m
 
 def _feed(client: Client, tool: str, to_mm: float, fastest_mm_s: float) -> None:
     """Feed the tool in the guide to a depth, the last bit slowly."""
-    depth = _depth(client, tool, -1.0)
+
+    def depth_beyond(after_mm: float) -> float:
+        """Wait until the tool is deeper than that, and return its depth."""
+        state = _wait(
+            client,
+            lambda state: (
+                state["procedure"]["tool"] == tool and state["procedure"]["feedMm"] > after_mm
+            ),
+        )
+        return float(state["procedure"]["feedMm"])
+
+    depth = depth_beyond(-1.0)
     for _ in range(MAX_FEEDS):
         left = to_mm - depth
         if left <= NEAR_MM:
@@ -207,17 +217,8 @@ def _feed(client: Client, tool: str, to_mm: float, fastest_mm_s: float) -> None:
         way = left - SLOW_FROM_MM if left > 2.0 * SLOW_FROM_MM else left
         duration = min(way / velocity, LONGEST_FEED_S)
         send(client, CommandName.FEED, {"velocityMmS": velocity, "durationS": duration})
-        depth = _depth(client, tool, depth + 0.95 * velocity * duration)
+        depth = depth_beyond(depth + 0.95 * velocity * duration)
     raise TrialStoppedError(f"The {tool} stopped at {depth:.1f} mm, before {to_mm:.1f} mm.")
-
-
-def _depth(client: Client, tool: str, after: float) -> float:
-    """Return how deep a tool is, once it is deeper than `after` (mm)."""
-
-    def is_deeper(state: Mapping[str, Any]) -> bool:
-        return state["procedure"]["tool"] == tool and state["procedure"]["feedMm"] > after
-
-    return float(_wait(client, is_deeper)["procedure"]["feedMm"])
 
 
 def _wait(client: Client, is_wanted: Callable[[Mapping[str, Any]], bool]) -> Mapping[str, Any]:

@@ -14,7 +14,7 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.procedure.geometry import bone_ahead
-from rastrainer.procedure.plan import Procedure, ProcedureTrajectory
+from rastrainer.procedure.plan import Checkpoint, Procedure, ProcedureTrajectory
 from rastrainer.procedure.record import (
     DEPTH_LIMIT_MM,
     PlacedInstrument,
@@ -32,6 +32,7 @@ from rastrainer.trial.procedure_outcome import (
     STAND_OFF_MM,
     VERIFYING_S,
 )
+from rastrainer_simulator.vectors import vector
 from rastrainer_simulator.virtual.scripted_trainee import Skill
 
 MISSED_BONE_MM = 20.0
@@ -75,116 +76,93 @@ class ProcedureHands:
         )
 
 
-@dataclass(frozen=True)
-class ProcedureSetting:
-    """Where a procedure is carried out."""
+@dataclass(frozen=True, eq=False)
+class VirtualProcedure:
+    """A procedure on a skull, whose SHA-256 is known, after a registration.
+
+    Attributes:
+        head_to_world: (4, 4) float, mm, the true pose.
+        touching_s: How long the touches took.
+    """
 
     procedure: Procedure
     skull: HeadMesh
     sha256: str
     head_to_world: np.ndarray
+    used: UsedRegistration
+    touching_s: float
+    hands: ProcedureHands
+    random: np.random.Generator
 
-
-def carry_out(
-    setting: ProcedureSetting,
-    used: UsedRegistration,
-    touching_s: float,
-    hands: ProcedureHands,
-    random: np.random.Generator,
-) -> ProcedureRecord:
-    """Return the record of a procedure."""
-    instruments = tuple(
-        _placed(each, setting, used, hands, random) for each in setting.procedure.trajectories
-    )
-    verifying_s = VERIFYING_S / hands.pace * _spread(random)
-    each_s = sum(sum(one.times_s.values()) for one in instruments)
-    return ProcedureRecord(
-        procedure=setting.procedure.name,
-        kind=setting.procedure.kind,
-        sha256=setting.sha256,
-        duration_s=touching_s + verifying_s + each_s,
-        attempts=(RecordedAttempt((), used, _checked(setting, used, touching_s, hands, random)),),
-        instruments=instruments,
-        phase_times_s={Phase.RUNNING.value: touching_s, Phase.VERIFYING.value: verifying_s}
-        | {
-            phase.value: sum(one.times_s[phase.value] for one in instruments)
-            for phase in (Phase.ALIGNING, Phase.DRILLING, Phase.INSERTING)
-        },
-    )
-
-
-def _placed(
-    plan: ProcedureTrajectory,
-    setting: ProcedureSetting,
-    used: UsedRegistration,
-    hands: ProcedureHands,
-    random: np.random.Generator,
-) -> PlacedInstrument:
-    to_world = transforms.inverse(used.world_to_head)
-    entry, target = (
-        transforms.apply(to_world, point) for point in (plan.entry_ras, plan.target_ras)
-    )
-    line = (target - entry) / np.linalg.norm(target - entry)
-    across = transforms.frame_along(line)[:2]
-    tilt = np.tan(np.radians(hands.angle_sd_deg * random.normal(size=2)))
-    direction = line + tilt @ across
-    direction /= np.linalg.norm(direction)
-    tip = entry + hands.entry_sd_mm * random.normal(size=2) @ across - STAND_OFF_MM * direction
-    to_head = transforms.inverse(setting.head_to_world)
-    bone = bone_ahead(
-        setting.skull,
-        transforms.apply(to_head, tip),
-        to_head[:3, :3] @ direction,
-        DEPTH_LIMIT_MM,
-    )
-    stop = STAND_OFF_MM + MISSED_BONE_MM
-    if bone is not None and bone.inner_mm is not None:
-        stop = bone.inner_mm
-    depth = STAND_OFF_MM + plan.length_mm + hands.depth_sd_mm * float(random.normal())
-    inserting_s = (STAND_OFF_MM + plan.length_mm) / INSERTION_MM_S + HANDLING_S
-    times = {
-        Phase.ALIGNING.value: ALIGNING_S,
-        Phase.DRILLING.value: DRILLING_S,
-        Phase.INSERTING.value: inserting_s,
-    }
-    return PlacedInstrument(
-        trajectory=plan.name,
-        entry_ras=_triple(plan.entry_ras),
-        target_ras=_triple(plan.target_ras),
-        diameter_mm=plan.diameter_mm,
-        guide_tip_mm=_triple(tip),
-        guide_direction=_triple(direction),
-        alignments=1,
-        drill_depth_mm=stop + float(random.exponential(hands.plunge_mm)),
-        instrument_depth_mm=depth,
-        times_s={name: s / hands.pace * _spread(random) for name, s in times.items()},
-    )
-
-
-def _checked(
-    setting: ProcedureSetting,
-    used: UsedRegistration,
-    touching_s: float,
-    hands: ProcedureHands,
-    random: np.random.Generator,
-) -> tuple[TouchedCheckpoint, ...]:
-    """Return the touches of the first checkpoints, a few seconds apart."""
-    touched = []
-    for number, checkpoint in enumerate(setting.procedure.checkpoints[:MAX_CHECKPOINTS], start=1):
-        place = transforms.apply(setting.head_to_world, checkpoint.position_ras)
-        place = place + hands.check_sd_mm * random.normal(size=3)
-        error = np.linalg.norm(
-            transforms.apply(used.world_to_head, place) - checkpoint.position_ras
+    def carried_out(self) -> ProcedureRecord:
+        """Return the record of what the hands did; it draws from `random`."""
+        instruments = tuple(map(self._placed, self.procedure.trajectories))
+        verifying_s = VERIFYING_S / self.hands.pace * self._spread()
+        each_s = sum(sum(one.times_s.values()) for one in instruments)
+        checkpoints = tuple(
+            self._checked(number, checkpoint)
+            for number, checkpoint in enumerate(self.procedure.checkpoints[:MAX_CHECKPOINTS], 1)
         )
-        time_s = touching_s + 4.0 * number
-        touched.append(TouchedCheckpoint(checkpoint.name, _triple(place), float(error), time_s))
-    return tuple(touched)
+        phases = (Phase.ALIGNING.value, Phase.DRILLING.value, Phase.INSERTING.value)
+        return ProcedureRecord(
+            procedure=self.procedure.name,
+            kind=self.procedure.kind,
+            sha256=self.sha256,
+            duration_s=self.touching_s + verifying_s + each_s,
+            attempts=(RecordedAttempt((), self.used, checkpoints),),
+            instruments=instruments,
+            phase_times_s={
+                Phase.RUNNING.value: self.touching_s,
+                Phase.VERIFYING.value: verifying_s,
+                **{phase: sum(one.times_s[phase] for one in instruments) for phase in phases},
+            },
+        )
 
+    def _placed(self, plan: ProcedureTrajectory) -> PlacedInstrument:
+        hands, random = self.hands, self.random
+        to_world = transforms.inverse(self.used.world_to_head)
+        entry, target = (
+            transforms.apply(to_world, point) for point in (plan.entry_ras, plan.target_ras)
+        )
+        line = (target - entry) / np.linalg.norm(target - entry)
+        across = transforms.frame_along(line)[:2]
+        tilt = np.tan(np.radians(hands.angle_sd_deg * random.normal(size=2)))
+        direction = line + tilt @ across
+        direction /= np.linalg.norm(direction)
+        tip = entry + hands.entry_sd_mm * random.normal(size=2) @ across - STAND_OFF_MM * direction
+        to_head = transforms.inverse(self.head_to_world)
+        start, along = transforms.apply(to_head, tip), to_head[:3, :3] @ direction
+        bone = bone_ahead(self.skull, start, along, DEPTH_LIMIT_MM)
+        stop = STAND_OFF_MM + MISSED_BONE_MM
+        if bone is not None and bone.inner_mm is not None:
+            stop = bone.inner_mm
+        depth = STAND_OFF_MM + plan.length_mm + hands.depth_sd_mm * float(random.normal())
+        times = {
+            Phase.ALIGNING.value: ALIGNING_S,
+            Phase.DRILLING.value: DRILLING_S,
+            Phase.INSERTING.value: (STAND_OFF_MM + plan.length_mm) / INSERTION_MM_S + HANDLING_S,
+        }
+        return PlacedInstrument(
+            trajectory=plan.name,
+            entry_ras=vector(plan.entry_ras),
+            target_ras=vector(plan.target_ras),
+            diameter_mm=plan.diameter_mm,
+            guide_tip_mm=vector(tip),
+            guide_direction=vector(direction),
+            alignments=1,
+            drill_depth_mm=stop + float(random.exponential(hands.plunge_mm)),
+            instrument_depth_mm=depth,
+            times_s={name: s / hands.pace * self._spread() for name, s in times.items()},
+        )
 
-def _spread(random: np.random.Generator) -> float:
-    return float(np.exp(TIME_SD * random.normal()))
+    def _checked(self, number: int, checkpoint: Checkpoint) -> TouchedCheckpoint:
+        """Return the touch of one of the first checkpoints, a few seconds after the last one."""
+        place = transforms.apply(self.head_to_world, checkpoint.position_ras)
+        place = place + self.hands.check_sd_mm * self.random.normal(size=3)
+        shown = transforms.apply(self.used.world_to_head, place)
+        error = float(np.linalg.norm(shown - checkpoint.position_ras))
+        time_s = self.touching_s + 4.0 * number
+        return TouchedCheckpoint(checkpoint.name, vector(place), error, time_s)
 
-
-def _triple(values: np.ndarray) -> tuple[float, float, float]:
-    x, y, z = (float(value) for value in values)
-    return x, y, z
+    def _spread(self) -> float:
+        return float(np.exp(TIME_SD * self.random.normal()))

@@ -36,14 +36,14 @@ def run_on_workers(
 ) -> Iterator[Any]:
     """Yield the result of each job, in their order; the processes end with the iterator.
 
-    Args:
-        function: Can be pickled. What it raises is raised here.
+    `function` can be pickled; what it raises is raised here.
     """
     pool = _Pool(function, workers, name_of)
     try:
         yield from pool.results(jobs)
     finally:
-        pool.close()
+        for worker in pool.workers:
+            worker.end()
 
 
 @dataclass
@@ -88,7 +88,7 @@ class _Pool:
         self, function: Callable[[Any], Any], workers: int, name_of: Callable[[Any], str]
     ) -> None:
         self._function, self._most, self._name_of = function, workers, name_of
-        self._workers: list[_Worker] = []
+        self.workers: list[_Worker] = []
         self._again: deque[_Task] = deque()
         self._done: dict[int, tuple[Any, Exception | None]] = {}
 
@@ -96,13 +96,15 @@ class _Pool:
         tasks = (_Task(place, job) for place, job in enumerate(jobs))
         turn = given = 0
         while True:
-            while self._has_room() and (self._again or given < turn + AHEAD * self._most):
+            count = sum(worker.task is not None for worker in self.workers)
+            while count < self._most and (self._again or given < turn + AHEAD * self._most):
                 task = self._again.popleft() if self._again else next(tasks, None)
                 if task is None:
                     break
                 given = max(given, task.place + 1)
                 self._idle_worker().send(task)
-            busy = [(worker, task) for worker in self._workers if (task := worker.task) is not None]
+                count += 1
+            busy = [(worker, task) for worker in self.workers if (task := worker.task) is not None]
             if not busy:
                 return
             ready = wait([worker.connection for worker, _ in busy])
@@ -117,33 +119,23 @@ class _Pool:
                 yield result
                 turn += 1
 
-    def close(self) -> None:
-        for worker in self._workers:
-            worker.end()
-        self._workers.clear()
-
-    def _has_room(self) -> bool:
-        return sum(worker.task is not None for worker in self._workers) < self._most
-
     def _idle_worker(self) -> _Worker:
-        for worker in self._workers:
+        for worker in self.workers:
             if worker.task is None:
                 return worker
-        self._workers.append(_Worker(self._function))
-        return self._workers[-1]
+        self.workers.append(_Worker(self._function))
+        return self.workers[-1]
 
     def _receive(self, worker: _Worker, task: _Task) -> None:
         try:
-            outcome = worker.connection.recv()
+            self._done[task.place] = worker.connection.recv()
+            worker.task = None
         except (EOFError, OSError):
             self._replace(worker, task)
-            return
-        self._done[task.place] = outcome
-        worker.task = None
 
     def _replace(self, worker: _Worker, task: _Task) -> None:
         """Repeat the job of a process that died with another one."""
-        self._workers.remove(worker)
+        self.workers.remove(worker)
         # It closed its end: it is dead or about to die.
         worker.process.join()
         exit_code = worker.end()
@@ -171,19 +163,19 @@ def _work(connection: Connection, function: Callable[[Any], Any]) -> None:
     """Do jobs until the other end is closed, also by the death of its process."""
     # Ctrl-C reaches all processes of a terminal; the main process ends the others.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    outcome: tuple[Any, Exception | None]
     with contextlib.suppress(EOFError, OSError):
         while True:
-            connection.send(_outcome(function, connection.recv()))
-
-
-def _outcome(function: Callable[[Any], Any], job: Any) -> tuple[Any, Exception | None]:
-    try:
-        return function(job), None
-    except RASTrainerError as error:
-        return None, error
-    except Exception:
-        # Not every exception can be pickled, but its traceback can.
-        return None, RuntimeError(f"A worker process failed:\n{traceback.format_exc()}")
+            job = connection.recv()
+            try:
+                outcome = function(job), None
+            except RASTrainerError as error:
+                outcome = None, error
+            except Exception:
+                # Not every exception can be pickled, but its traceback can.
+                text = f"A worker process failed:\n{traceback.format_exc()}"
+                outcome = None, RuntimeError(text)
+            connection.send(outcome)
 
 
 @contextlib.contextmanager

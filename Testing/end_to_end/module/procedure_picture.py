@@ -25,8 +25,7 @@ from rastrainer.trial.procedure_outcome import (
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.virtual.virtual_procedure import (
     ProcedureHands,
-    ProcedureSetting,
-    carry_out,
+    VirtualProcedure,
 )
 from Testing.pictures import keep_picture
 from Testing.slicer.host.host import Host
@@ -47,9 +46,11 @@ def carried_out() -> tuple[ProcedureOutcome, list[TrueLine]]:
     fit = register(touches, fiducials)
     used = UsedRegistration(tuple(map(float, fit.matrix.ravel())), fit.fre_mm, 0.6)
     meshes = read_procedure_meshes(procedure, skull)
-    setting = ProcedureSetting(procedure, meshes.skull, procedure.sha256(skull), truth)
     hands = replace(ProcedureHands(), angle_sd_deg=0.8, depth_sd_mm=1.0)
-    done = carry_out(setting, used, TOUCHING_S, hands, random)
+    sha256 = procedure.sha256(skull)
+    done = VirtualProcedure(
+        procedure, meshes.skull, sha256, truth, used, TOUCHING_S, hands, random
+    ).carried_out()
     analysis = analyze_procedure(done, procedure, meshes, truth)
     reference = reference_duration_s(TOUCHING_S, procedure)
     score = score_procedure(ProcedureMeasures.of(analysis, procedure), reference)

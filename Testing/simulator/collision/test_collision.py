@@ -257,11 +257,10 @@ def test_a_head_that_has_moved_is_measured_again(head, head_to_world, collision)
     assert collision.check(links) == before
 
 
-def test_the_worst_part_is_named(head, collision):
+def test_above_the_head_the_tip_is_the_nearest_part(head, collision):
     x, y, z = CENTER
     over = (x, y, z + np.ptp(head[0][:, 2]) / 2.0 + 0.03)
     above = collision.check(KINEMATICS.links(posture(over, (0.0, 0.0, -1.0))))
-    assert above.worst == "tip"
     assert above.tool_m == above.tip_m
     assert above.shaft is None
     assert above.shaft_m == above.tip_m

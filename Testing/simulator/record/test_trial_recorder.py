@@ -11,7 +11,12 @@ from rastrainer.commands import CommandName, check_arguments
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.record.trial_context import DisplayReport, DisplayUse
+from rastrainer_simulator.record.trial_context import (
+    DisplayReport,
+    DisplayUse,
+    GhostReport,
+    GuidanceReport,
+)
 from rastrainer_simulator.record.trial_entries import TrialEntries
 from rastrainer_simulator.state import Event, EventKind, OperatorCommand, OperatorInput
 
@@ -75,9 +80,9 @@ def test_a_contact_in_the_register_tick_counts_in_the_record_as_in_the_journal(a
 def test_the_record_names_the_last_view_all_frames_and_the_aids():
     use = DisplayUse()
     assert use.summary() == {}
-    use.guidance = "arrow"
+    use.add(GuidanceReport("arrow"))
     assert use.summary() == {"guidance": "arrow"}
-    use.ghost = "expert"
+    use.add(GhostReport("expert"))
     use.add(DisplayReport("page", "Chrome/120", 60.0, 55, 5))
     use.add(DisplayReport("headset", "Quest 3", 90.0, 88, 2))
     assert use.summary() == {

@@ -143,7 +143,7 @@ def test_an_inset_shows_a_second_view_in_a_white_frame(picture, head_to_world):
 
 
 def test_an_unwritable_picture_is_refused_in_one_sentence(tmp_path):
-    with pytest.raises(InputError, match=r"robot\.png cannot be written: No such file"):
+    with pytest.raises(InputError, match=r"robot\.png cannot be written: no such file"):
         write_png(np.zeros((2, 2, 3), np.uint8), tmp_path / "nowhere" / "robot.png")
 
 

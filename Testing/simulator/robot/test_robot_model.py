@@ -31,7 +31,11 @@ def test_the_limits_are_those_of_the_data_sheet(robot):
 
 def test_the_links_have_the_names_of_the_paper(robot):
     links = tuple(f"iiwa_link_{number}" for number in range(8))
-    assert robot.link_names == (*links, "iiwa_link_tool", "iiwa_tool_tip_ee")
+    assert tuple(link.name for link in robot.links) == (
+        *links,
+        "iiwa_link_tool",
+        "iiwa_tool_tip_ee",
+    )
     assert robot.tip.name == "iiwa_tool_tip_ee"
 
 

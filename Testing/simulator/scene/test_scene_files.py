@@ -48,8 +48,7 @@ def test_a_scene_built_once_is_available_the_next_time(built, setup):
     folder, file = built
     files = SceneFiles(folder)
     assert asyncio.run(files.scene(setup, "")) == file
-    assert files.find(file.sha256) == file
-    assert files.find("0" * 64) is None
+    assert files.by_hash == {file.sha256: file}
 
 
 def test_a_broken_file_in_the_cache_is_rebuilt(built, setup, monkeypatch):

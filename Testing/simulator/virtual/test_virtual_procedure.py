@@ -20,8 +20,7 @@ from rastrainer_simulator.virtual.play import PlaySettings
 from rastrainer_simulator.virtual.scripted_trainee import Skill
 from rastrainer_simulator.virtual.virtual_procedure import (
     ProcedureHands,
-    ProcedureSetting,
-    carry_out,
+    VirtualProcedure,
 )
 
 SCENARIO = load_scenario(asset_path("scenarios", "colin27"))
@@ -37,10 +36,12 @@ def meshes():
 
 def analyzed(meshes, hands, seed=1):
     """Errors of SEEG by a registration that moves the plan by 1 mm."""
-    setting = ProcedureSetting(SEEG, meshes.skull, "0" * 64, TRUTH)
     matrix = transforms.inverse(TRUTH @ OFF)
     used = UsedRegistration(tuple(float(value) for value in matrix.ravel()), 0.5, 0.4)
-    done = carry_out(setting, used, 100.0, hands, np.random.default_rng(seed))
+    random = np.random.default_rng(seed)
+    done = VirtualProcedure(
+        SEEG, meshes.skull, "0" * 64, TRUTH, used, 100.0, hands, random
+    ).carried_out()
     assert record_from_json(ProcedureRecord, record_to_json(done)) == done
     return done, analyze_procedure(done, SEEG, meshes, TRUTH)
 

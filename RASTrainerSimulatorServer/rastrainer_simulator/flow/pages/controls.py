@@ -135,11 +135,10 @@ class BindingsPage(SessionPage):
             self._device = stepped(tuple(InputDevice), device, direction)
 
         def step_preset(direction: int) -> None:
-            presets = presets_of(device)
+            presets = LAYOUTS[device]
             names = tuple(presets)
             name = names[0] if preset is None else stepped(names, preset, direction)
-            changed = {device.value: presets[name]}
-            session.rebind(dataclasses.replace(session.controls.bindings, **changed))
+            session.rebind(session.controls.bindings.with_table(device, presets[name]))
 
         def step_group(direction: int) -> None:
             self._group = stepped(tuple(GROUPS), self._group, direction)

@@ -186,7 +186,7 @@ class ViewServer:
         return page_answer(self._page, "index.html")
 
     async def _send_scene(self, request: web.Request) -> web.Response:
-        file = self._scenes.find(request.match_info["sha256"])
+        file = self._scenes.by_hash.get(request.match_info["sha256"])
         if file is None:
             raise web.HTTPNotFound
         headers = {"Cache-Control": FOREVER, "Vary": "Accept-Encoding"}
