@@ -53,7 +53,7 @@ def _views(head: HeadMesh, before: HeadMesh) -> list[np.ndarray]:
         Camera(before.middle + reach * view / np.linalg.norm(view), before.middle, up, _ANGLE_DEG)
         for view in VIEWS
     )
-    return frames(renderer, *((camera, (SIDE, SIDE)) for camera in cameras))
+    return list(frames(renderer, ((camera, (SIDE, SIDE)) for camera in cameras)))
 
 
 def _middle(volume: HeadVolume, head: HeadMesh) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Generator, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -46,20 +46,23 @@ from rastrainer_simulator.scene.scene_glb import scene_nodes
 from rastrainer_simulator.scene.surfaces import surface, vtk_matrix
 
 
-def frames(renderer: vtkRenderer, *shots: tuple[Camera, tuple[int, int]]) -> list[np.ndarray]:
-    """Return a renderer's pictures, made in memory, one for each camera and size (width, height).
+def frames(
+    renderer: vtkRenderer, shots: Iterable[tuple[Camera, tuple[int, int]]]
+) -> Generator[np.ndarray]:
+    """Yield a renderer's pictures, made in memory, one for each camera and size (width, height).
 
-    They are (height, width, 3) uint8, the top row first. The graphics resources are freed.
+    They are (height, width, 3) uint8, the top row first. `shots` may change what is rendered
+    before each of them. The graphics resources are freed after the last one.
     """
+    window = vtkRenderWindow()
+    window.SetOffScreenRendering(True)
+    window.SetMultiSamples(0)
+    window.AddRenderer(renderer)
     # VTK warns that there is no display: none is needed. Errors are still shown.
     before = vtkLogger.GetCurrentVerbosityCutoff()
-    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
     try:
-        window, pictures = vtkRenderWindow(), []
-        window.SetOffScreenRendering(True)
-        window.SetMultiSamples(0)
-        window.AddRenderer(renderer)
         for camera, size in shots:
+            vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
             window.SetSize(*size)
             # The scenario's cameras are in mm, what is rendered in meters.
             view = renderer.GetActiveCamera()
@@ -74,12 +77,12 @@ def frames(renderer: vtkRenderer, *shots: tuple[Camera, tuple[int, int]]) -> lis
             shot.ReadFrontBufferOff()
             shot.ShouldRerenderOff()
             shot.Update()
+            vtkLogger.SetStderrVerbosity(before)
             pixels = vtk_to_numpy(shot.GetOutput().GetPointData().GetScalars())
-            pictures.append(pixels.reshape(size[1], size[0], 3)[::-1].copy())
-        window.Finalize()
-        return pictures
+            yield pixels.reshape(size[1], size[0], 3)[::-1].copy()
     finally:
         vtkLogger.SetStderrVerbosity(before)
+        window.Finalize()
 
 
 def write_png(pixels: np.ndarray, path: Path) -> None:
@@ -205,7 +208,7 @@ def render_picture(
     if inset:
         width, height = (round(INSET_SHARE * length) for length in size)
         shots.append((inset, (width, height)))
-    pixels, *corner = frames(renderer, *shots)
+    pixels, *corner = frames(renderer, shots)
     for picture in corner:
         lay_in_corner(pixels, picture)
     write_png(pixels, path)

@@ -153,7 +153,7 @@ def _picture(
         _write(renderer, text, MARGIN + SWATCH[0] + 14, bottom)
     scale = _write(renderer, f"{bar_mm(height_mm):g} mm", size[0] - MARGIN, MARGIN + THICK + 4)
     scale.GetTextProperty().SetJustificationToRight()
-    (pixels,) = frames(renderer, (camera, size))
+    (pixels,) = frames(renderer, [(camera, size)])
     for bottom, material, _text in rows:
         color = np.round(255.0 * np.array(material.color))
         _paint(pixels, MARGIN, bottom + TEXT_SIZE // 2, *SWATCH, color)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -16,8 +16,8 @@ from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.rendering.lighting import Shadows, light_room
 from rastrainer_simulator.rendering.picture import (
     INSET_SHARE,
-    OffscreenWindow,
     SceneMoment,
+    frames,
     lay_in_corner,
     node_actors,
 )
@@ -60,22 +60,24 @@ def write_film(
     if not encoder.isOpened():
         raise InputError(f"The film {path} cannot be written: is its folder there and writable?")
     scene = _FilmedScene(trial, setup)
-    frames = max(1, round(trial.duration_s / speed * RATE_HZ))
+    count = max(1, round(trial.duration_s / speed * RATE_HZ))
+    states = [trial.state_at(number * speed / RATE_HZ) for number in range(count)]
+    shown = frames(scene.renderer, scene.shots(states))
     try:
-        for frame in range(frames):
-            state = trial.state_at(frame * speed / RATE_HZ)
-            pixels = scene.frame(state, 1.0 / RATE_HZ)
+        for number, state in enumerate(states):
+            pixels = next(shown)
+            lay_in_corner(pixels, next(shown))
             text = f"{len(state.training.touches)}/{scene.count}   {_clock(state.completion_time)}"
             for color, width in (((20, 20, 20), 6), ((255, 255, 255), 2)):
                 cv2.putText(
                     pixels, text, (32, 58), cv2.FONT_HERSHEY_DUPLEX, 1.2, color, width, cv2.LINE_AA
                 )
             encoder.write(pixels[..., ::-1])
-            progress((frame + 1) / frames)
+            progress((number + 1) / count)
         encoder.release()
         partial.replace(path)
     finally:
-        scene.close()
+        shown.close()
         encoder.release()
         partial.unlink(missing_ok=True)
 
@@ -104,40 +106,35 @@ class _FilmedScene:
         self._next_point: str | None = None
         self._looks: dict[str, Material] = {}
         self._actors: dict[str, list[vtkActor]] = {}
-        self._renderer = vtkRenderer()
-        light_room(self._renderer, Shadows.NONE)
-        self._window = OffscreenWindow(self._renderer)
+        self.renderer = vtkRenderer()
+        light_room(self.renderer, Shadows.NONE)
 
-    def frame(self, state: SimulationState, passed_s: float) -> np.ndarray:
-        """Return the picture of a state, (height, width, 3) uint8; the view moves on by a time."""
-        training = state.training
-        moment = SceneMoment(
-            self._kinematics.links(state.q),
-            self._head_to_world,
-            self._head_base,
-            frozenset(touch.label for touch in training.touches),
-            training.next_point,
-            state.proximity,
-        )
-        self._move_parts(moment)
-        camera = self._follow(training.next_point, state.q, passed_s)
-        pixels = self._window.frame(camera, SIZE)
-        width, height = (round(INSET_SHARE * length) for length in SIZE)
-        lay_in_corner(pixels, self._window.frame(self._scenario.cameras[FAR], (width, height)))
-        return pixels
-
-    def close(self) -> None:
-        self._window.close()
+    def shots(self, states: Sequence[SimulationState]) -> Iterator[tuple[Camera, tuple[int, int]]]:
+        """Show each state in turn; yield its camera and the corner's, each with its size."""
+        inset = tuple(round(INSET_SHARE * length) for length in SIZE)
+        for state in states:
+            training = state.training
+            moment = SceneMoment(
+                self._kinematics.links(state.q),
+                self._head_to_world,
+                self._head_base,
+                frozenset(touch.label for touch in training.touches),
+                training.next_point,
+                state.proximity,
+            )
+            self._move_parts(moment)
+            yield self._follow(training.next_point, state.q, 1.0 / RATE_HZ), SIZE
+            yield self._scenario.cameras[FAR], (inset[0], inset[1])
 
     def _move_parts(self, moment: SceneMoment) -> None:
         poses, looks = moment.poses(self._robot), moment.looks()
         if looks != self._looks:
             self._looks = looks
-            self._renderer.RemoveAllViewProps()
+            self.renderer.RemoveAllViewProps()
             for node in self._nodes:
                 self._actors[node.name] = node_actors([node], poses, looks)
                 for actor in self._actors[node.name]:
-                    self._renderer.AddActor(actor)
+                    self.renderer.AddActor(actor)
         for name, pose in poses.items():
             for actor in self._actors.get(name, ()):
                 actor.SetUserMatrix(vtk_matrix(pose))

@@ -9,7 +9,7 @@ from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind, stepped
 from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS, preset_name
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS, LAYOUTS, preset_name
 from rastrainer_simulator.input.inputs import (
     IN_MENUS,
     OF_VIEW,
