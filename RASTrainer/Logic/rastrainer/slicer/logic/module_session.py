@@ -12,7 +12,7 @@ from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario, playable_methods
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.connection import ConnectorKit
-from rastrainer.slicer.link.link import REST_S, SOON_S, CallSoon, Link, neverSoon
+from rastrainer.slicer.link.link import REST_S, SOON_S, CallSoon, Link
 from rastrainer.slicer.logic.delivery_queue import AbortedTrialLogic
 from rastrainer.slicer.logic.landmark_logic import LandmarkLogic
 from rastrainer.slicer.logic.module_paths import ModulePaths
@@ -102,7 +102,7 @@ class ModuleSession:
         places: ModulePaths,
         findKit: Callable[[], ConnectorKit | None],
         settings: Settings | None = None,
-        callSoon: CallSoon = neverSoon,
+        callSoon: CallSoon = lambda _work: None,
     ) -> None:
         """Open a session.
 
