@@ -133,9 +133,28 @@ class _Header:
 def read_nrrd(path: Path) -> tuple[np.ndarray, np.ndarray]:
     """Return the voxels (i, j, k), uint8 or int16, and the matrix (4, 4) float, index to RAS mm."""
     content = read_bytes(path, MAX_FILE_BYTES)
-    header, start = _read_header(path, content)
+    head = content[:_MAX_HEADER_BYTES].replace(b"\r\n", b"\n")
+    text, separator, _ = head.partition(b"\n\n")
+    magic, _, rest = text.decode("latin-1").partition("\n")
+    if not _MAGIC.fullmatch(magic):
+        raise _wrong(path, "start as NRRD files do")
+    if not separator:
+        raise _wrong(path, f"have a header of at most {_MAX_HEADER_BYTES // 1024} KiB")
+    fields = _fields(path, rest)
+    blank_line = re.search(rb"\r?\n\r?\n", content[:_MAX_HEADER_BYTES])
+    assert blank_line is not None  # The separator was found above.
+    header, start = _header(path, fields), blank_line.end()
     count = math.prod(header.shape) * header.dtype.itemsize
-    values = np.frombuffer(_unpacked(path, content[start:], count), header.dtype)
+    stream = zlib.decompressobj(wbits=31)
+    try:
+        voxels = stream.decompress(content[start:], count + 1)
+    except zlib.error:
+        raise _wrong(path, "hold voxels that gzip can unpack: it is damaged") from None
+    if len(voxels) > count:
+        raise _wrong(path, "hold no more voxels than its header says")
+    if len(voxels) < count or not stream.eof:
+        raise _wrong(path, "hold as many voxels as its header says: it is cut short")
+    values = np.frombuffer(voxels, header.dtype)
     native = values.astype(header.dtype.newbyteorder("="), copy=False)
     return native.reshape(header.shape, order="F"), header.ijk_to_ras
 
@@ -167,21 +186,6 @@ def write_nrrd(path: Path, values: np.ndarray, ijk_to_ras: np.ndarray) -> None:
     with gzip.GzipFile("", "wb", 9, packed, mtime=0) as file:
         file.write(values.astype(values.dtype.newbyteorder("<")).tobytes(order="F"))
     write_bytes(path, "\n".join(lines).encode("ascii") + b"\n\n" + packed.getvalue())
-
-
-def _read_header(path: Path, content: bytes) -> tuple[_Header, int]:
-    """Return the header of a file and the offset of its voxels."""
-    head = content[:_MAX_HEADER_BYTES].replace(b"\r\n", b"\n")
-    text, separator, _ = head.partition(b"\n\n")
-    magic, _, rest = text.decode("latin-1").partition("\n")
-    if not _MAGIC.fullmatch(magic):
-        raise _wrong(path, "start as NRRD files do")
-    if not separator:
-        raise _wrong(path, f"have a header of at most {_MAX_HEADER_BYTES // 1024} KiB")
-    fields = _fields(path, rest)
-    blank_line = re.search(rb"\r?\n\r?\n", content[:_MAX_HEADER_BYTES])
-    assert blank_line is not None  # The separator was found above.
-    return _header(path, fields), blank_line.end()
 
 
 def _fields(path: Path, text: str) -> dict[str, str]:
@@ -259,20 +263,6 @@ def _vectors(path: Path, fields: dict[str, str], name: str, count: int) -> np.nd
         numbers = f"{3 * count} numbers within ±{MAX_ORIGIN_MM:g}"
         raise _wrong(path, f"have the field “{name}” with {numbers}")
     return vectors
-
-
-def _unpacked(path: Path, packed: bytes, count: int) -> bytes:
-    """Return exactly `count` bytes; more or fewer are refused."""
-    stream = zlib.decompressobj(wbits=31)
-    try:
-        content = stream.decompress(packed, count + 1)
-    except zlib.error:
-        raise _wrong(path, "hold voxels that gzip can unpack: it is damaged") from None
-    if len(content) > count:
-        raise _wrong(path, "hold no more voxels than its header says")
-    if len(content) < count or not stream.eof:
-        raise _wrong(path, "hold as many voxels as its header says: it is cut short")
-    return content
 
 
 def _vector(values: np.ndarray) -> str:

@@ -45,6 +45,7 @@ class Client:
 
     Attributes:
         latest: the last message of each device, by name.
+        is_open: the connection is open, as far as this side knows.
     """
 
     def __init__(
@@ -72,7 +73,7 @@ class Client:
         self._news = threading.Condition()
         self._numbers = itertools.count(1)
         self._waiting: dict[int, Future[Reply]] = {}
-        self._is_open = True
+        self.is_open = True
         self.latest: dict[str, Message] = {}
         self._thread = threading.Thread(target=self._receive, name="igtl-client", daemon=True)
         self._thread.start()
@@ -82,11 +83,6 @@ class Client:
 
     def __exit__(self, *_exception: object) -> None:
         self.close()
-
-    @property
-    def is_open(self) -> bool:
-        """Whether the connection is open, as far as this side knows."""
-        return self._is_open
 
     def close(self) -> None:
         """Close the connection and wait for the receiving thread."""
@@ -123,7 +119,7 @@ class Client:
         try:
             body = json.dumps(dict(arguments or {}), allow_nan=False)
             self.send(Message(DeviceName.COMMAND, Command(number, name, body)))
-            if not self._is_open and not answer.done():
+            if not self.is_open and not answer.done():
                 raise LinkError("The connection is lost.")
             return answer.result(timeout)
         except NoResult:
@@ -147,10 +143,10 @@ class Client:
             return device in self.latest and accept(self.latest[device])
 
         with self._news:
-            self._news.wait_for(lambda: has_arrived() or not self._is_open, timeout)
+            self._news.wait_for(lambda: has_arrived() or not self.is_open, timeout)
             if has_arrived():
                 return self.latest[device]
-            if not self._is_open:
+            if not self.is_open:
                 raise LinkError("The connection is lost.")
             raise LinkError(f"No matching message from {device} within {timeout:g} s.")
 
@@ -167,7 +163,7 @@ class Client:
         finally:
             self._socket.close()
             with self._news:
-                self._is_open = False
+                self.is_open = False
                 self._news.notify_all()
             for answer in list(self._waiting.values()):
                 answer.set_exception(LinkError("The connection is lost."))
@@ -175,22 +171,18 @@ class Client:
     def _accept(self, message: Message) -> None:
         if type(message.content) is CommandReply:
             answer = self._waiting.pop(message.content.command_id, None)
-            if answer is not None:
-                _resolve(answer, message.content, message.metadata)
+            if answer is None:
+                return
+            is_success = message.metadata.get(STATUS_KEY) == SUCCESS
+            error = message.metadata.get(ERROR_KEY, "")
+            try:
+                data = decode_answer_object(message.content.body)
+                answer.set_result(Reply(is_success, error, data))
+            except InputError:
+                answer.set_exception(LinkError("An answer's body must be a JSON object."))
             return
         with self._news:
             self.latest[message.device] = message
             self._news.notify_all()
         if self._on_message is not None:
             self._on_message(message)
-
-
-def _resolve(answer: Future[Reply], content: CommandReply, metadata: Mapping[str, str]) -> None:
-    """Pass the answer to the waiting thread; its body is untrusted and checked."""
-    try:
-        data = decode_answer_object(content.body)
-    except InputError:
-        answer.set_exception(LinkError("An answer's body must be a JSON object."))
-        return
-    is_success = metadata.get(STATUS_KEY) == SUCCESS
-    answer.set_result(Reply(is_success, metadata.get(ERROR_KEY, ""), data))

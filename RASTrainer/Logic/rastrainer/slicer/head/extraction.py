@@ -55,7 +55,9 @@ def findTissue(values: np.ndarray, threshold: float | None, noise: float) -> Tis
     air = CT_AIR if isCt else min(0.0, float(np.quantile(values[::2, ::2, ::2], AIR_QUANTILE)))
     smooth = ndimage.gaussian_filter(np.maximum(values, air) - air, noise, mode="nearest")
     if threshold is None:
-        found = CT_SKIN - CT_AIR if isCt else mask.otsuThreshold(_withoutTail(smooth))
+        high = TAIL_FACTOR * float(np.quantile(smooth[::2, ::2, ::2], TAIL_QUANTILE))
+        bounded = np.minimum(smooth, high) if high > 0 else smooth
+        found = CT_SKIN - CT_AIR if isCt else mask.otsuThreshold(bounded)
     else:
         found = threshold - air
     if threshold is None and found <= 0:
@@ -67,11 +69,6 @@ def findTissue(values: np.ndarray, threshold: float | None, noise: float) -> Tis
     head = mask.largestBody(mask.withoutCavities(level > 0))
     level = np.where(head | (level <= 0), level, -1.0).astype(np.float32)
     return Tissue(level, found + air, isCt)
-
-
-def _withoutTail(values: np.ndarray) -> np.ndarray:
-    high = TAIL_FACTOR * float(np.quantile(values[::2, ::2, ::2], TAIL_QUANTILE))
-    return np.minimum(values, high) if 0 < high < values.max() else values
 
 
 TREND_LENGTH = 5
@@ -171,7 +168,9 @@ def findHead(volume: Volume, settings: HeadSettings, progress: Progress) -> Head
 def skinOf(head: HeadBody, settings: HeadSettings, progress: Progress) -> HeadMesh:
     """Return the skin as one closed surface of genus 0 with a flat base."""
     progress("Making the surface", 0.8)
-    skin = surface.surfaceOf(_agreeing(head.level, head.body), head.origin, SPACING_MM)
+    # Changed only where it disagrees with the body.
+    level = np.where(head.body, np.maximum(head.level, 0.05), np.minimum(head.level, -0.05))
+    skin = surface.surfaceOf(level, head.origin, SPACING_MM)
     skin, wanted = surface.smoothed(skin), settings.triangles
     for _ in range(MAX_DECIMATIONS):
         mesh = surface.meshOf(surface.decimated(skin, wanted, head.baseMm))
@@ -183,7 +182,15 @@ def skinOf(head: HeadBody, settings: HeadSettings, progress: Progress) -> HeadMe
             break
         # Another number of triangles also avoids what decimation has torn.
         wanted -= max(0, over) + BASE_RESERVE
-    _check(mesh)
+    if not _isSound(mesh):
+        raise InputError(
+            "No head was found: its surface could not be closed; try another threshold or base."
+        )
+    if len(mesh.triangles) > MAX_TRIANGLES:
+        raise InputError(
+            f"The head's surface has {len(mesh.triangles)} triangles, more than {MAX_TRIANGLES}; "
+            "aim at fewer."
+        )
     progress("Done", 1.0)
     return mesh
 
@@ -206,36 +213,14 @@ def _body(inside: np.ndarray, settings: HeadSettings, progress: Progress) -> np.
     deep = mask.depthInside(hull, depth) > depth
     wanted = mask.withoutCavities(inside | deep)
     progress("Closing tunnels", 0.55)
-    ball = _ballLike(wanted, settings)
-    progress("Closing tunnels", 0.7)
-    return mask.carved(ball, wanted)
-
-
-def _ballLike(wanted: np.ndarray, settings: HeadSettings) -> np.ndarray:
     for radius in settings.openingMm * np.array([0.5, 1.0, 2.0, 4.0]):
         body = mask.withoutCavities(mask.closedByBall(wanted, radius / SPACING_MM))
         contour = surface.meshOf(surface.surfaceOf(np.where(body, 1.0, -1.0), np.zeros(3), 1.0))
         if contour.euler_characteristic == 2:
-            return body
+            progress("Closing tunnels", 0.7)
+            return mask.carved(body, wanted)
     raise InputError("No head was found: the shape above the threshold has too many tunnels.")
-
-
-def _agreeing(level: np.ndarray, body: np.ndarray) -> np.ndarray:
-    """Return the level set, changed only where it disagrees with the body."""
-    return np.where(body, np.maximum(level, 0.05), np.minimum(level, -0.05))
 
 
 def _isSound(mesh: HeadMesh) -> bool:
     return mesh.is_closed and mesh.euler_characteristic == 2
-
-
-def _check(mesh: HeadMesh) -> None:
-    if not _isSound(mesh):
-        raise InputError(
-            "No head was found: its surface could not be closed; try another threshold or base."
-        )
-    if len(mesh.triangles) > MAX_TRIANGLES:
-        raise InputError(
-            f"The head's surface has {len(mesh.triangles)} triangles, more than {MAX_TRIANGLES}; "
-            "aim at fewer."
-        )

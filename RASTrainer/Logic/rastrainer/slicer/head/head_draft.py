@@ -56,12 +56,16 @@ def makeDraft(
         headMade: given the draft without its skull and the warnings, before the skull is made.
         hasVolume: whether the images are to be part of the draft.
     """
-    volume, settings, warnings = _usable(volume, settings or HeadSettings())
-    found, mesh, more = _findSkin(
+    volume, found, mesh, warnings = _findSkin(
         volume, settings, lambda step, share: progress(step, 0.8 * share), segment
     )
-    warnings += more
-    draft = HeadDraft(mesh, _headMethod(found, segment is not None))
+    kind = "CT" if found.isCt else "MRI"
+    how = f"threshold {found.threshold:.5g}" if segment is None else "segment edited by hand"
+    method = (
+        f"Surface of the skin from {kind} by rastrainer, {how}, cavities filled, cut flat at "
+        f"{found.baseMm:.1f} mm (S)."
+    )
+    draft = HeadDraft(mesh, method)
     if hasVolume:
         progress("Preparing the images", 0.8)
         images, method = imageOf(volume, found)
@@ -69,7 +73,11 @@ def makeDraft(
     headMade(draft, warnings)
     if hasSkull:
         progress("Making the skull", 0.85)
-        method = f"{draft.method} {_skullMethod(found)}"
+        shell = f"a shell from {SCALP_MM:g} to {SCALP_MM + BONE_MM:g} mm below the skin"
+        method = f"Skull: an approximation, {shell}; MRI shows no bone."
+        if found.isCt:
+            method = "Skull: bone of the CT."
+        method = f"{draft.method} {method}"
         skull = skullOf(volume, found)
         draft = replace(draft, method=method, skull=skull, is_skull_approximate=not found.isCt)
     progress("Done", 1.0)
@@ -83,51 +91,26 @@ def findSkin(
     segment: SegmentImage | None = None,
 ) -> tuple[HeadBody, HeadMesh, list[str]]:
     """Return a head as voxels and as a surface, and warnings; otherwise as `makeDraft`."""
-    volume, settings, warnings = _usable(volume, settings or HeadSettings())
-    found, mesh, more = _findSkin(volume, settings, progress, segment)
-    return found, mesh, warnings + more
-
-
-def _usable(volume: Volume, settings: HeadSettings) -> tuple[Volume, HeadSettings, list[str]]:
-    """Return a copy of a volume with measured values alone, settings for these, and warnings."""
-    volume = asFloat(volume)
-    warnings = [*volume.warnings, *checkVolume(volume)]
-    volume, offset, more = cleaned(volume)
-    if settings.threshold is not None:
-        settings = replace(settings, threshold=settings.threshold + offset)
-    return volume, settings, warnings + more
+    return _findSkin(volume, settings, progress, segment)[1:]
 
 
 def _findSkin(
-    volume: Volume, settings: HeadSettings, progress: Progress, segment: SegmentImage | None
-) -> tuple[HeadBody, HeadMesh, list[str]]:
+    volume: Volume, settings: HeadSettings | None, progress: Progress, segment: SegmentImage | None
+) -> tuple[Volume, HeadBody, HeadMesh, list[str]]:
+    """Return a copy of the volume with measured values alone, and what `findSkin` does."""
+    volume, settings = asFloat(volume), settings or HeadSettings()
+    warnings = [*volume.warnings, *checkVolume(volume)]
+    volume, offset, more = cleaned(volume)
     if segment is not None:
-        settings = forSegment(settings)
-    searched = volume if segment is None else volumeOfSegment(segment)
-    found = findHead(searched, settings, progress)
-    if segment is not None:
+        found = findHead(volumeOfSegment(segment), forSegment(settings), progress)
         found = replace(found, isCt=isHounsfield(volume.values))
+    else:
+        if settings.threshold is not None:
+            settings = replace(settings, threshold=settings.threshold + offset)
+        found = findHead(volume, settings, progress)
     mesh = skinOf(found, settings, progress)
     checkHead(mesh)
-    return found, mesh, skullWarnings(volume, found)
-
-
-def _headMethod(found: HeadBody, isSegment: bool) -> str:
-    kind = "CT" if found.isCt else "MRI"
-    how = "segment edited by hand" if isSegment else f"threshold {found.threshold:.5g}"
-    return (
-        f"Surface of the skin from {kind} by rastrainer, {how}, cavities filled, cut flat at "
-        f"{found.baseMm:.1f} mm (S)."
-    )
-
-
-def _skullMethod(found: HeadBody) -> str:
-    if found.isCt:
-        return "Skull: bone of the CT."
-    return (
-        f"Skull: an approximation, a shell from {SCALP_MM:g} to {SCALP_MM + BONE_MM:g} mm below "
-        "the skin; MRI shows no bone."
-    )
+    return volume, found, mesh, warnings + more + skullWarnings(volume, found)
 
 
 FEWEST_VOXELS = 16

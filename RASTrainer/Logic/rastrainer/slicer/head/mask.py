@@ -167,46 +167,25 @@ def carved(body: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     keep[:, :, 0] = True
     voxels = bytearray(padded.tobytes())
     candidates = padded & ~keep
-    distance = _squaredDistances(keep, candidates)
-    border = candidates & ndimage.binary_dilation(~padded)
-    _removeSimple(voxels, candidates.ravel(), distance.ravel(), border, _steps(padded.shape))
-    result = np.frombuffer(voxels, dtype=bool).reshape(padded.shape)
-    return result[1:-1, 1:-1, 1:-1].copy()
-
-
-def _squaredDistances(keep: np.ndarray, candidates: np.ndarray) -> np.ndarray:
-    """Return squared distances to what is kept, exact for all but the most distant candidates."""
     for reach in _REACHES:
         squared = squaredDistances(keep, reach)
         if squared[candidates].max(initial=0) <= reach**2:
             break
-    return squared
-
-
-def _steps(shape: tuple[int, ...]) -> list[int]:
-    """Return how far each of the 26 neighbors is in the flat array."""
-    strides = (shape[1] * shape[2], shape[2], 1)
-    return [sum(a * b for a, b in zip(offset, strides, strict=True)) for offset in _OFFSETS]
-
-
-def _removeSimple(
-    voxels: bytearray,
-    candidates: np.ndarray,
-    distance: np.ndarray,
-    border: np.ndarray,
-    steps: list[int],
-) -> None:
-    waiting = set(np.flatnonzero(border).tolist())
+    isCandidate, distance = candidates.ravel(), squared.ravel()
+    strides = (padded.shape[1] * padded.shape[2], padded.shape[2], 1)
+    steps = [sum(a * b for a, b in zip(offset, strides, strict=True)) for offset in _OFFSETS]
+    waiting = set(np.flatnonzero(candidates & ndimage.binary_dilation(~padded)).tolist())
     queue = [(-int(distance[index]), index) for index in waiting]
     heapq.heapify(queue)
     while queue:
         _, index = heapq.heappop(queue)
         waiting.discard(index)
         around = [index + step for step in steps]
-        if not isSimple(sum(1 << bit for bit, other in enumerate(around) if voxels[other])):
-            continue
-        voxels[index] = 0
-        for other in around:
-            if voxels[other] and candidates[other] and other not in waiting:
-                waiting.add(other)
-                heapq.heappush(queue, (-int(distance[other]), other))
+        if isSimple(sum(1 << bit for bit, other in enumerate(around) if voxels[other])):
+            voxels[index] = 0
+            for other in around:
+                if voxels[other] and isCandidate[other] and other not in waiting:
+                    waiting.add(other)
+                    heapq.heappush(queue, (-int(distance[other]), other))
+    result = np.frombuffer(voxels, dtype=bool).reshape(padded.shape)
+    return result[1:-1, 1:-1, 1:-1].copy()

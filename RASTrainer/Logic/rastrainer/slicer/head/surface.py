@@ -64,17 +64,14 @@ def decimated(surface: vtk.vtkPolyData, triangleCount: int, aboveMm: float) -> v
     decimation = vtk.vtkQuadricDecimation()
     decimation.SetInputData(surface)
     decimation.SetTargetReduction(1.0 - triangleCount / countAbove)
-    return _withoutFins(_output(decimation))
-
-
-def _withoutFins(surface: vtk.vtkPolyData) -> vtk.vtkPolyData:
-    """Remove triangles that hang on an edge which two others share: decimation may leave some."""
-    openSides = (meshOf(surface).side_uses == 1).sum(axis=1)
-    surface.BuildCells()
+    thin = _output(decimation)
+    # Decimation may leave fins: triangles that hang on an edge which two others share.
+    openSides = (meshOf(thin).side_uses == 1).sum(axis=1)
+    thin.BuildCells()
     for fin in np.flatnonzero(openSides == 2):
-        surface.DeleteCell(fin)
-    surface.RemoveDeletedCells()
-    return surface
+        thin.DeleteCell(fin)
+    thin.RemoveDeletedCells()
+    return thin
 
 
 def cutFlat(mesh: HeadMesh, heightMm: float) -> HeadMesh:

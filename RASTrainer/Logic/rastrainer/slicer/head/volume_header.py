@@ -79,7 +79,13 @@ def checkHeader(path: Path) -> None:
     if begin[:4] in (struct.pack("<i", _NIFTI_2), struct.pack(">i", _NIFTI_2)):
         raise _unusable(path, "is NIfTI-2", "save it as NIfTI-1 or NRRD")
     if begin.startswith(b"NRRD"):
-        _checkNrrd(path, begin)
+        fields = _nrrd(begin)
+        sizes = [int(size) for size in fields.get("sizes", "").split() if size.isdecimal()]
+        kinds = fields.get("kinds", "").lower()
+        if len(sizes) == 4 and any(kind in kinds for kind in ("color", "vector", "complex")):
+            several = f"has {fields['sizes']} values, several in a voxel"
+            raise _unusable(path, several, "use one with gray values")
+        _checkSizes(path, tuple(sizes))
     nifti = _nifti(begin)
     if nifti is not None:
         _checkNifti(path, nifti)
@@ -199,17 +205,6 @@ def _nrrd(begin: bytes) -> dict[str, str]:
         for name, separator, value in lines
         if separator and not name.startswith("#") and not value.startswith("=")
     }
-
-
-def _checkNrrd(path: Path, begin: bytes) -> None:
-    fields = _nrrd(begin)
-    sizes = [int(size) for size in fields.get("sizes", "").split() if size.isdecimal()]
-    kinds = fields.get("kinds", "").lower()
-    if len(sizes) == 4 and any(kind in kinds for kind in ("color", "vector", "complex")):
-        raise _unusable(
-            path, f"has {fields['sizes']} values, several in a voxel", "use one with gray values"
-        )
-    _checkSizes(path, tuple(sizes))
 
 
 def _checkSizes(path: Path, sizes: tuple[int, ...]) -> None:
