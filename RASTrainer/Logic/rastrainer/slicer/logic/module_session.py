@@ -287,7 +287,7 @@ class ModuleSession:
         """Forget references into the old scene; a running trial is shown again."""
         self.work.forgetScene()
         self.layout.forgetScene()
-        self.plan.points.forget()
+        self.plan.points.changes.clear()
         self.landmarks.points.forget()
         self.replay.forgetScene()
         self.slices.forgetScene()

@@ -6,9 +6,8 @@ it is saved with the scene.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import vtk
@@ -36,7 +35,7 @@ from rastrainer.slicer.scene.nodes import (
 )
 from rastrainer.slicer.scene.plan_points import ENDS, LINE, LIST, TARGET_COLOR, placedRows
 from rastrainer.slicer.scene.scenario_nodes import meshPolyData
-from rastrainer.slicer.scene.tables import Column, showTable
+from rastrainer.slicer.scene.tables import showTable
 from rastrainer.slicer.translation import _
 
 MODEL, SEGMENTATION = "vtkMRMLModelNode", "vtkMRMLSegmentationNode"
@@ -65,15 +64,17 @@ def raiseLine(scene: Any, line: Any) -> None:
 def newPlanLine(scene: Any) -> Any:
     """Return a line of the plan that lacks its entry or target, for the next clicks."""
     unfinished = [line for line in planLines(scene) if len(placedRows(line)) < ENDS]
-    return unfinished[0] if unfinished else _addLine(scene, scene.GenerateUniqueName(_("Line")))
+    return (
+        unfinished[0]
+        if unfinished
+        else _newLine(scene, Role.PLAN_LINE, scene.GenerateUniqueName(_("Line")))
+    )
 
 
-@dataclass(frozen=True)
-class RemovedLine:
+class RemovedLine(NamedTuple):
     """A line that was removed from the plan.
 
     Attributes:
-        name: of the line.
         ends: (n, 3) float, RAS mm; n is 2 unless it was not placed completely.
         instrument: diameter and safety distance, mm.
         place: position among the lines of the plan, from 0.
@@ -96,7 +97,7 @@ def removeLine(scene: Any, line: Any) -> RemovedLine:
 def restoreLine(scene: Any, removed: RemovedLine) -> None:
     """Restore a removed line at its position among the others."""
     lines = planLines(scene)
-    line = _addLine(scene, removed.name)
+    line = _newLine(scene, Role.PLAN_LINE, removed.name)
     setInstrument(line, *removed.instrument)
     setPoints(line, (_("Entry"), _("Target"))[: len(removed.ends)], removed.ends)
     lines.insert(removed.place, line)
@@ -111,7 +112,6 @@ def instrumentOf(line: Any) -> tuple[float, float]:
 
 
 def setInstrument(line: Any, diameterMm: float, safetyMm: float) -> None:
-    """Note diameter and safety distance of a line's instrument, mm."""
     line.SetAttribute(DIAMETER_ATTRIBUTE, f"{diameterMm:g}")
     line.SetAttribute(SAFETY_ATTRIBUTE, f"{safetyMm:g}")
 
@@ -142,7 +142,7 @@ def showPlan(
         if node.GetAttribute(ROLE_ATTRIBUTE) == Role.NO_GO:
             scene.RemoveNode(node)
     for trajectory in trajectories:
-        line = _addLine(scene, trajectory.name)
+        line = _newLine(scene, Role.PLAN_LINE, trajectory.name)
         setInstrument(line, trajectory.diameter_mm, trajectory.safety_mm)
         setPoints(
             line, (_("Entry"), _("Target")), np.array([trajectory.entry_ras, trajectory.target_ras])
@@ -162,7 +162,6 @@ def showPlan(
 
 
 def checkpointList(scene: Any) -> Any:
-    """Return the list of the plan's checkpoints, an empty one where there is none yet."""
     return findOrAddNode(scene, LIST, Role.CHECKPOINTS, _("Checkpoints"))
 
 
@@ -172,26 +171,11 @@ def noGoNodes(scene: Any) -> list[Any]:
 
 
 def isNoGo(node: Any) -> bool:
-    """Return whether a model or segmentation is a no-go structure."""
     return node.GetAttribute(NO_GO_ATTRIBUTE) == "yes"
 
 
 def setNoGo(node: Any, isNoGoNow: bool) -> None:
-    """Make a model or segmentation a no-go structure, or none."""
-    if isNoGoNow:
-        node.SetAttribute(NO_GO_ATTRIBUTE, "yes")
-    else:
-        node.RemoveAttribute(NO_GO_ATTRIBUTE)
-
-
-def _addLine(scene: Any, name: str) -> Any:
-    line = scene.AddNewNodeByClass(LINE, name)
-    line.SetAttribute(ROLE_ATTRIBUTE, Role.PLAN_LINE)
-    line.CreateDefaultDisplayNodes()
-    line.GetDisplayNode().SetSelectedColor(TARGET_COLOR)
-    line.GetDisplayNode().SetOccludedVisibility(True)
-    setInstrument(line, USUAL_DIAMETER_MM, USUAL_SAFETY_MM)
-    return line
+    node.SetAttribute(NO_GO_ATTRIBUTE, "yes" if isNoGoNow else None)
 
 
 def _noteOrder(lines: list[Any]) -> None:
@@ -217,10 +201,14 @@ def showPlannedLines(scene: Any, procedure: Procedure | None) -> None:
 
     What was shown of an earlier procedure's errors goes. With None, nothing stays.
     """
-    forgetProcedureErrors(scene)
+    for role in (Role.REGISTERED_LINE, Role.TRUE_LINE):
+        _showLines(scene, role, "{}", {})
+    for role in (Role.ERRORS_BY_REGISTRATION, Role.ERRORS_BY_HAND):
+        removeNode(scene, MODEL, role)
+    removeNode(scene, "vtkMRMLTableNode", Role.PROCEDURE_ERRORS)
     planned = [] if procedure is None else procedure.trajectories
-    ends = [np.array([each.entry_ras, each.target_ras]) for each in planned]
-    _showLines(scene, Role.PLANNED_LINE, "{}", [each.name for each in planned], ends)
+    lines = {each.name: (each.entry_ras, each.target_ras) for each in planned}
+    _showLines(scene, Role.PLANNED_LINE, "{}", lines)
 
 
 def showProcedureErrors(scene: Any, analysis: ProcedureAnalysis) -> Any:
@@ -231,61 +219,52 @@ def showProcedureErrors(scene: Any, analysis: ProcedureAnalysis) -> Any:
     point to where the registration put it, and from there on to what was reached; they are true to
     scale. All of it is in RAS mm.
     """
-    each = analysis.trajectories
-    names = [errors.trajectory.name for errors in each]
-    planned = [np.array([e.trajectory.entry_ras, e.trajectory.target_ras]) for e in each]
-    shown = [np.array([e.shown_entry, e.shown_target]) for e in each]
-    placed = [np.array([e.axis_start, e.tip]) for e in each]
-    _showLines(scene, Role.PLANNED_LINE, "{}", names, planned)
-    _showLines(scene, Role.REGISTERED_LINE, _("{}, registered"), names, shown)
-    _showLines(scene, Role.TRUE_LINE, _("{}, true"), names, placed)
-    _showArrows(scene, each)
-    return _showTable(scene, each)
-
-
-def forgetProcedureErrors(scene: Any) -> None:
-    """Remove what was shown of a procedure once its truth was known."""
-    for role in (Role.REGISTERED_LINE, Role.TRUE_LINE):
-        for node in nodesOf(scene, LINE, role):
-            scene.RemoveNode(node)
-    for role in (Role.ERRORS_BY_REGISTRATION, Role.ERRORS_BY_HAND):
-        removeNode(scene, MODEL, role)
-    removeNode(scene, "vtkMRMLTableNode", Role.PROCEDURE_ERRORS)
+    each = {errors.trajectory.name: errors for errors in analysis.trajectories}
+    planned = {n: (e.trajectory.entry_ras, e.trajectory.target_ras) for n, e in each.items()}
+    shown = {name: (errors.shown_entry, errors.shown_target) for name, errors in each.items()}
+    placed = {name: (errors.axis_start, errors.tip) for name, errors in each.items()}
+    _showLines(scene, Role.PLANNED_LINE, "{}", planned)
+    _showLines(scene, Role.REGISTERED_LINE, _("{}, registered"), shown)
+    _showLines(scene, Role.TRUE_LINE, _("{}, true"), placed)
+    _showArrows(scene, analysis.trajectories)
+    return _showTable(scene, analysis.trajectories)
 
 
 _COLORS = {
+    Role.PLAN_LINE: TARGET_COLOR,
     Role.PLANNED_LINE: PLANNED_COLOR,
     Role.REGISTERED_LINE: REGISTERED_COLOR,
     Role.TRUE_LINE: PLACED_COLOR,
 }
 
 
-def _showLines(
-    scene: Any, role: str, title: str, names: Sequence[str], ends: Sequence[np.ndarray]
-) -> None:
-    """Show lines of a role, one for each name; ends are (2, 3) float, RAS mm."""
+def _showLines(scene: Any, role: str, title: str, lines: Mapping[str, Any]) -> None:
+    """Show lines of a role, in place of others; ends are (2, 3) float, RAS mm, by name."""
     nodes = nodesOf(scene, LINE, role)
-    for node in nodes[len(names) :]:
+    for node in nodes[len(lines) :]:
         scene.RemoveNode(node)
-    for row, name in enumerate(names):
+    for row, (name, ends) in enumerate(lines.items()):
         node = nodes[row] if row < len(nodes) else _newLine(scene, role)
         if node.GetName() != title.format(name):
             node.SetName(title.format(name))
         node.SetAttribute(TRAJECTORY_ATTRIBUTE, name)
         # Only the planned lines show a label, at their entries.
-        setPoints(node, (name, ""), ends[row])
+        setPoints(node, (name, ""), np.array(ends))
 
 
-def _newLine(scene: Any, role: str) -> Any:
-    node = scene.AddNewNodeByClass(LINE)
+def _newLine(scene: Any, role: str, name: str = "") -> Any:
+    node = scene.AddNewNodeByClass(LINE, name)
     node.SetAttribute(ROLE_ATTRIBUTE, role)
     node.CreateDefaultDisplayNodes()
-    node.SetLocked(True)
     display = node.GetDisplayNode()
     display.SetSelectedColor(_COLORS[role])
+    display.SetOccludedVisibility(True)
+    if role == Role.PLAN_LINE:
+        setInstrument(node, USUAL_DIAMETER_MM, USUAL_SAFETY_MM)
+        return node
+    node.SetLocked(True)
     display.SetPropertiesLabelVisibility(False)
     display.SetPointLabelsVisibility(role == Role.PLANNED_LINE)
-    display.SetOccludedVisibility(True)
     display.SetGlyphScale(1.0)
     display.SetTextScale(2.5)
     return node
@@ -314,39 +293,29 @@ def _showArrows(scene: Any, each: Sequence[TrajectoryErrors]) -> None:
 
 
 def _showTable(scene: Any, each: Sequence[TrajectoryErrors]) -> Any:
-    def parts(title: str, splits: Sequence[SplitError]) -> list[Column]:
-        return [
-            Column(f"{title} (mm)", [split.length_mm for split in splits]),
-            Column(f"{title}, by registration (mm)", [s.registration_mm for s in splits]),
-            Column(f"{title}, by hand or robot (mm)", [split.hand_mm for split in splits]),
-        ]
+    def parts(title: str, splits: Sequence[SplitError]) -> dict[str, list[float]]:
+        return {
+            f"{title} (mm)": [split.length_mm for split in splits],
+            f"{title}, by registration (mm)": [split.registration_mm for split in splits],
+            f"{title}, by hand or robot (mm)": [split.hand_mm for split in splits],
+        }
 
     depths = [errors.depth for errors in each]
-    return showTable(
-        scene,
-        Role.PROCEDURE_ERRORS,
-        "Procedure errors",
-        [
-            Column("trajectory", [errors.trajectory.name for errors in each], isText=True),
-            Column(
-                "aligned by",
-                ["robot" if errors.instrument.self_aligned else "hand" for errors in each],
-                isText=True,
-            ),
-            *parts("entry point error", [errors.entry for errors in each]),
-            *parts("target point error", [errors.target for errors in each]),
-            Column("radial error (mm)", [errors.radial.length_mm for errors in each]),
-            Column("depth error (mm)", [whole for whole, _shown, _hand in depths]),
-            Column("depth error, by registration (mm)", [shown for _whole, shown, _hand in depths]),
-            Column("depth error, by hand (mm)", [hand for _whole, _shown, hand in depths]),
-            Column("angular deviation (°)", [errors.angle_deg for errors in each]),
-            Column("angle by registration (°)", [errors.registration_angle_deg for errors in each]),
-            Column("angle by hand or robot (°)", [errors.hand_angle_deg for errors in each]),
-            Column("plunge depth (mm)", [errors.plunge_mm for errors in each]),
-            Column(
-                "distance kept (mm)",
-                [min(errors.kept_mm.values(), default=None) for errors in each],
-            ),
-            Column("alignments", [float(errors.instrument.alignments) for errors in each]),
-        ],
-    )
+    isRobot = [errors.instrument.self_aligned for errors in each]
+    columns: dict[str, Sequence[Any]] = {
+        "trajectory": [errors.trajectory.name for errors in each],
+        "aligned by": ["robot" if robot else "hand" for robot in isRobot],
+        **parts("entry point error", [errors.entry for errors in each]),
+        **parts("target point error", [errors.target for errors in each]),
+        "radial error (mm)": [errors.radial.length_mm for errors in each],
+        "depth error (mm)": [whole for whole, _shown, _hand in depths],
+        "depth error, by registration (mm)": [shown for _whole, shown, _hand in depths],
+        "depth error, by hand (mm)": [hand for _whole, _shown, hand in depths],
+        "angular deviation (°)": [errors.angle_deg for errors in each],
+        "angle by registration (°)": [errors.registration_angle_deg for errors in each],
+        "angle by hand or robot (°)": [errors.hand_angle_deg for errors in each],
+        "plunge depth (mm)": [errors.plunge_mm for errors in each],
+        "distance kept (mm)": [min(e.kept_mm.values(), default=None) for e in each],
+        "alignments": [float(errors.instrument.alignments) for errors in each],
+    }
+    return showTable(scene, Role.PROCEDURE_ERRORS, "Procedure errors", columns)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -83,26 +84,25 @@ class FileLoader:
             if requested != self._requested.get(content.role, ()):
                 self._requested[content.role] = requested
                 if requested:
-                    self._read(content, requested)
-
-    def _read(self, content: FileContent, requested: tuple[str, ...]) -> None:
-        self._work.do(
-            lambda: content.read(Path(requested[-1])),
-            lambda found: self._take(content, requested, found),
-            lambda error: self._refuse(content, requested, error),
-        )
+                    self._work.do(
+                        partial(content.read, Path(requested[-1])),
+                        partial(self._take, content, requested),
+                        partial(self._refuse, content, requested),
+                    )
 
     def _take(self, content: FileContent, requested: tuple[str, ...], found: Any) -> None:
         node = self._awaiting(content, requested)
         if node is not None:
             node.RemoveAttribute(FILE_ATTRIBUTE)
             content.fill(node, found)
-            self._work.later(lambda: self._emitShown(content, node.GetID()))
+            nodeId = node.GetID()
 
-    def _emitShown(self, content: FileContent, nodeId: str) -> None:
-        node = findNode(self._scene, content.className, content.role)
-        if node is not None and node.GetID() == nodeId:
-            self.shown.emit(node)
+            def emitShown() -> None:
+                node = findNode(self._scene, content.className, content.role)
+                if node is not None and node.GetID() == nodeId:
+                    self.shown.emit(node)
+
+            self._work.later(emitShown)
 
     def _refuse(self, content: FileContent, requested: tuple[str, ...], error: Exception) -> None:
         node = self._awaiting(content, requested)

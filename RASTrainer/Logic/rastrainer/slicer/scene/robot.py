@@ -42,7 +42,7 @@ def addLink(scene: Any, number: int, mesh: LinkMesh) -> None:
     scene.AddNode(display)
     node = slicer.vtkMRMLModelNode()
     node.SetName(f"Robot link {number}")
-    node.SetAttribute(ROLE_ATTRIBUTE, _role(number))
+    node.SetAttribute(ROLE_ATTRIBUTE, f"{Role.ROBOT} link {number}")
     # It is rebuilt from the module's files, so a saved scene need not contain it.
     node.SetSaveWithScene(False)
     node.SetSelectable(False)
@@ -78,8 +78,4 @@ def setRobotVisible(scene: Any, visible: bool) -> None:
 
 def robotNode(scene: Any, number: int) -> Any | None:
     """Return the model of a link, 0 to 7, or None; the tool belongs to link 7."""
-    return findNode(scene, "vtkMRMLModelNode", _role(number))
-
-
-def _role(number: int) -> str:
-    return f"{Role.ROBOT} link {number}"
+    return findNode(scene, "vtkMRMLModelNode", f"{Role.ROBOT} link {number}")

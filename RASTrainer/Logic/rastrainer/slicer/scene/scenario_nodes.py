@@ -17,7 +17,6 @@ import vtk
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.volume import read_nrrd
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario, task_by_method
 from rastrainer.slicer.background_work import BackgroundWork, CallLater, callNow
 from rastrainer.slicer.scene.nodes import (
@@ -87,7 +86,14 @@ def showTask(
     )
     name, digest = taskKey(scenario.name, task.name), sha256(task.fiducials.tobytes()).hexdigest()
     if not isShown(node, TASK_ATTRIBUTE, name, digest):
-        _fillFiducials(node, task)
+        display = node.GetDisplayNode()
+        with changedOnce(node), changedOnce(display):
+            node.SetName(f"{task.title} fiducials")
+            setPoints(node, task.labels, task.fiducials)
+            node.SetLocked(True)
+            display.SetSelectedColor(FIDUCIAL_COLOR)
+            display.SetGlyphScale(2.0)
+            display.SetTextScale(3.5)
         noteShown(node, TASK_ATTRIBUTE, name, digest)
     return node
 
@@ -95,17 +101,6 @@ def showTask(
 def taskKey(scenarioName: str, taskName: str) -> str:
     """Return what `TASK_ATTRIBUTE` says of a list of points that belongs to a task."""
     return f"{scenarioName}/{taskName}"
-
-
-def _fillFiducials(node: Any, task: Task) -> None:
-    display = node.GetDisplayNode()
-    with changedOnce(node), changedOnce(display):
-        node.SetName(f"{task.title} fiducials")
-        setPoints(node, task.labels, task.fiducials)
-        node.SetLocked(True)
-        display.SetSelectedColor(FIDUCIAL_COLOR)
-        display.SetGlyphScale(2.0)
-        display.SetTextScale(3.5)
 
 
 def _showHead(scene: Any, scenario: Scenario) -> None:
@@ -217,12 +212,9 @@ def scenarioLoader(scene: Any, work: BackgroundWork) -> FileLoader:
         ),
     )
     loader = FileLoader(scene, work, contents)
-
-    def showIfImages(node: Any) -> None:
-        if node.IsA(VOLUME):
-            showAsBackground(scene, node, work.later)
-
-    loader.shown.connect(showIfImages)
+    loader.shown.connect(
+        lambda node: node.IsA(VOLUME) and showAsBackground(scene, node, work.later)
+    )
     return loader
 
 
