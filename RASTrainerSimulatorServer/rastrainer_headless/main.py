@@ -27,6 +27,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import slicer
+
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.json_records import record_to_json
@@ -42,7 +44,7 @@ from rastrainer.slicer.logic.procedure_logic import ProcedureLogic
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.slicer.scene.error_colors import magnification
-from rastrainer.slicer.scene.nodes import labelsOf, localPoints
+from rastrainer.slicer.scene.nodes import labelsOf
 from rastrainer.slicer.scene.scenario_nodes import scenarioLoader, showScenario
 from rastrainer.study.database.study import STUDY_FILE, Study
 from rastrainer.trial.analysis import TrialAnalysis
@@ -138,7 +140,7 @@ class HeadlessHost:
         )
 
     def _printPoints(self, node: Any) -> None:
-        labels, positions = labelsOf(node), localPoints(node)
+        labels, positions = labelsOf(node), slicer.util.arrayFromMarkupsControlPoints(node)
         for row in range(self._touches, len(labels)):
             printEvent(
                 "point", label=labels[row], count=row + 1, positionMm=positions[row].tolist()

@@ -20,7 +20,7 @@ from rastrainer.slicer.link.link_status import (
     ProbeResult,
 )
 from rastrainer.slicer.link.probe import Probe
-from rastrainer.slicer.scene.nodes import findIncomingNode
+from rastrainer.slicer.scene.nodes import ORIGINAL_NAME
 from rastrainer.slicer.signal import Signal
 
 
@@ -235,9 +235,12 @@ class SimulatorConnection:
         now = self._clock()
         self.seen.silenceS += min(now - self._lastLook, LONGEST_LOOK_S)
         self._lastLook = now
-        node = findIncomingNode(connector, DeviceName.SIM_SERVER)
-        if node is not None and node.GetMTime() != self._heartbeatTime:
-            self._heartbeatTime = node.GetMTime()
-            self.seen.hasHeartbeat = True
-            self.seen.silenceS = 0.0
-            self.seen.peerVersion = node.GetSubCode()
+        for index in range(connector.GetNumberOfIncomingMRMLNodes()):
+            node = connector.GetIncomingMRMLNode(index)
+            if node is None or node.GetAttribute(ORIGINAL_NAME) != DeviceName.SIM_SERVER:
+                continue
+            if node.GetMTime() != self._heartbeatTime:
+                self._heartbeatTime = node.GetMTime()
+                self.seen.hasHeartbeat = True
+                self.seen.silenceS = 0.0
+                self.seen.peerVersion = node.GetSubCode()

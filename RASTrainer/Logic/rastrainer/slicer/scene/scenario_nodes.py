@@ -212,9 +212,12 @@ def scenarioLoader(scene: Any, work: BackgroundWork) -> FileLoader:
         ),
     )
     loader = FileLoader(scene, work, contents)
-    loader.shown.connect(
-        lambda node: node.IsA(VOLUME) and showAsBackground(scene, node, work.later)
-    )
+
+    def showIfImages(node: Any) -> None:
+        if node.IsA(VOLUME):
+            showAsBackground(scene, node, work.later)
+
+    loader.shown.connect(showIfImages)
     return loader
 
 

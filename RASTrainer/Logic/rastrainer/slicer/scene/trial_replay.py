@@ -69,7 +69,11 @@ def showReplay(
     """
     trajectory = track.trajectory
     rows = _rows(trajectory.times_s)
-    poses = chain.toolToWorld(track.q[rows]) if chain.moving == track.q.shape[1] else None
+    poses = (
+        chain.toolToWorld(track.q[rows])
+        if chain.axes.any(axis=1).sum() == track.q.shape[1]
+        else None
+    )
     tips = trajectory.tip_mm[rows]
     if poses is None or np.abs(poses[:, :3, 3] - tips).max() > SAME_ROBOT_MM:
         raise InputError("The trial was recorded with another robot than the one that is here.")
