@@ -23,7 +23,8 @@ import math
 import os
 import sys
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -33,12 +34,9 @@ from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.json_records import record_to_json
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
-from rastrainer.registration.registration import Registration
-from rastrainer.registration.target_error import TargetError
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.link.link_status import LinkStatus
 from rastrainer.slicer.logic.delivery_queue import AbortedTrialLogic
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
@@ -55,6 +53,9 @@ from rastrainer_headless.residual_picture import writeResidualPicture
 from rastrainer_headless.scene import HeadlessScene
 
 PERIOD_S = 0.005
+SCENE = "trial.mrb"
+PICTURE = "residuals.png"
+RESULTS = "results.jsonl"
 
 
 class TrialsMissingError(RASTrainerError):
@@ -93,7 +94,7 @@ class HeadlessHost:
             lambda trial: printEvent("aborted", trialId=trial.trial_id, reason=trial.reason)
         )
         self._procedure = ProcedureLogic(self.application.scene, self.link, cache.find, self._work)
-        self.link.statusChanged.connect(self._printStatus)
+        self.link.statusChanged.connect(lambda status: printEvent("status", **asdict(status)))
         self.link.pointsChanged.connect(self._printPoints)
         self._presenter.trialScored.connect(self._printTrial)
         for problems in (
@@ -134,11 +135,6 @@ class HeadlessHost:
         self._work.close()
         self.link.disconnect()
 
-    def _printStatus(self, status: LinkStatus) -> None:
-        printEvent(
-            "status", state=status.state.value, sentence=status.sentence, remedy=status.remedy
-        )
-
     def _printPoints(self, node: Any) -> None:
         labels, positions = labelsOf(node), slicer.util.arrayFromMarkupsControlPoints(node)
         for row in range(self._touches, len(labels)):
@@ -151,7 +147,14 @@ class HeadlessHost:
 
     def _printTrial(self, analysis: TrialAnalysis) -> None:
         results = results_json(analysis)
-        appendResults(self._output, results)
+        path = self._output / RESULTS
+        try:
+            with path.open("a", encoding="utf-8", newline="\n") as file:
+                file.write(json.dumps(results, allow_nan=False) + "\n")
+                file.flush()
+                os.fsync(file.fileno())
+        except OSError as error:
+            raise InputError(f"The file {path} cannot be written: {error.strerror}.") from None
         self.latest = analysis
         self.scored += 1
         printEvent("trial", results=results)
@@ -169,12 +172,21 @@ def printEvent(event: str, **values: Any) -> None:
 def results_json(analysis: TrialAnalysis) -> dict[str, Any]:
     """Return the numbers of a trial as a JSON object."""
     score, procedure, published = analysis.score, analysis.procedure, analysis.published_score
+    fits = {}
+    for kind, fit in analysis.fits.items():
+        error = analysis.target_errors[kind]
+        fits[kind] = {
+            "freMm": fit.fre_mm,
+            "matrix": fit.matrix.ravel().tolist(),
+            "residualsMm": fit.residuals_mm.tolist(),
+            "targetRas": list(error.target_mm),
+            "expectedTreMm": error.expected_mm,
+            "treIntervalMm": list(error.interval_mm),
+            "warnings": [record_to_json(warning) for warning in fit.warnings],
+        }
     return {
         "record": record_to_json(analysis.record, with_defaults=True),
-        "fits": {
-            kind: _fit_json(fit, analysis.target_errors[kind])
-            for kind, fit in analysis.fits.items()
-        },
+        "fits": fits,
         "targetName": analysis.target_name,
         "truth": None if analysis.truth is None else record_to_json(analysis.truth),
         "score": None if score is None else record_to_json(score, with_defaults=True),
@@ -189,35 +201,6 @@ def results_json(analysis: TrialAnalysis) -> dict[str, Any]:
         if published is None
         else {**record_to_json(published), "warning": CTPS_WARNING},
     }
-
-
-def _fit_json(fit: Registration, error: TargetError) -> dict[str, Any]:
-    return {
-        "freMm": fit.fre_mm,
-        "matrix": fit.matrix.ravel().tolist(),
-        "residualsMm": fit.residuals_mm.tolist(),
-        "targetRas": list(error.target_mm),
-        "expectedTreMm": error.expected_mm,
-        "treIntervalMm": list(error.interval_mm),
-        "warnings": [record_to_json(warning) for warning in fit.warnings],
-    }
-
-
-SCENE = "trial.mrb"
-PICTURE = "residuals.png"
-RESULTS = "results.jsonl"
-
-
-def appendResults(folder: Path, results: Mapping[str, Any]) -> None:
-    """Add a trial's `results_json` to the file of results, as one line that is on the disk then."""
-    path = folder / RESULTS
-    try:
-        with path.open("a", encoding="utf-8", newline="\n") as file:
-            file.write(json.dumps(results, allow_nan=False) + "\n")
-            file.flush()
-            os.fsync(file.fileno())
-    except OSError as error:
-        raise InputError(f"The file {path} cannot be written: {error.strerror}.") from None
 
 
 def writeOutput(

@@ -40,7 +40,16 @@ def readVolume(path: Path, orientation: str | None = None) -> Volume:
     if not path.is_file():
         raise InputError(f"{path} does not exist; give a volume such as a .nii.gz or .nrrd file.")
     checkHeader(path)
-    if _isCutNifti(path):
+    # A `.nii` or `.nii.gz` file may end too early.
+    opened = gzip.open if path.suffix == ".gz" else open
+    try:
+        with opened(path, "rb") as file:
+            isCut = file.seek(0, os.SEEK_END) < leastSize(path)
+    except (EOFError, zlib.error):
+        isCut = True
+    except OSError:
+        isCut = False
+    if isCut:
         raise InputError(f"{path} is cut short; copy the file again.")
     missing = missingOrientation(path)
     if missing and orientation is None:
@@ -57,18 +66,6 @@ def readVolume(path: Path, orientation: str | None = None) -> Volume:
         raise InputError(f"{path} could not be read as a volume such as NIfTI or NRRD.")
     volume = volumeFromNode(node)
     return volume if orientation is None else _oriented(volume, orientation)
-
-
-def _isCutNifti(path: Path) -> bool:
-    """Return whether a `.nii` or `.nii.gz` file ends too early; False for any other file."""
-    opened = gzip.open if path.suffix == ".gz" else open
-    try:
-        with opened(path, "rb") as file:
-            return file.seek(0, os.SEEK_END) < leastSize(path)
-    except (EOFError, zlib.error):
-        return True
-    except OSError:
-        return False
 
 
 def _oriented(volume: Volume, orientation: str) -> Volume:
