@@ -59,7 +59,7 @@ class PeerSockets:
         changed: Callable[[bool], None],
     ) -> None:
         self._host = host
-        self._port = port
+        self.port = port
         self._received = received
         self._changed = changed
         self._peers: dict[int, socket.socket] = {}
@@ -75,14 +75,9 @@ class PeerSockets:
         self._thread.start()
 
     @property
-    def port(self) -> int:
-        """The port in use; differs from the given one where that was 0."""
-        return self._listener.getsockname()[1] if self._listener else self._port
-
-    @port.setter
-    def port(self, port: int) -> None:
-        """Let a client connect there the next time."""
-        self._port = port
+    def portInUse(self) -> int:
+        """The port; differs from the given one where that was 0."""
+        return self._listener.getsockname()[1] if self._listener else self.port
 
     def send(self, data: bytes) -> bool:
         """Send to every peer; blocks while one does not read, as Slicer's does.
@@ -114,9 +109,11 @@ class PeerSockets:
 
     def _keepConnected(self) -> None:
         while not self._stopped.is_set():
-            peer = self._connect() if self._listener is None else _accept(self._listener)
-            if peer is not None:
-                self._add(peer)
+            with contextlib.suppress(OSError):
+                if self._listener is not None:
+                    self._add(self._listener.accept()[0])
+                elif not self._peers:
+                    self._add(socket.create_connection((self._host, self.port), timeout=1.0))
             with self._lock:
                 isConnected = bool(self._peers)
             if isConnected != self._isConnected:
@@ -124,18 +121,8 @@ class PeerSockets:
                 self._changed(isConnected)
             self._stopped.wait(RETRY_PERIOD_S)
 
-    def _connect(self) -> socket.socket | None:
-        with self._lock:
-            if self._peers:
-                return None
-        try:
-            peer = socket.create_connection((self._host, self._port), timeout=1.0)
-        except OSError:
-            return None
-        peer.settimeout(None)
-        return peer
-
     def _add(self, peer: socket.socket) -> None:
+        peer.settimeout(None)
         peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         number = self._nextPeer
         self._nextPeer += 1
@@ -181,10 +168,3 @@ def _shut(peer: socket.socket) -> None:
     with contextlib.suppress(OSError):  # The other side may have been faster.
         peer.shutdown(socket.SHUT_RDWR)
     peer.close()
-
-
-def _accept(listener: socket.socket) -> socket.socket | None:
-    try:
-        return listener.accept()[0]
-    except OSError:
-        return None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
@@ -247,8 +247,8 @@ def chooseTwoViews(outward: np.ndarray) -> np.ndarray:
     )
     facing = grid @ outward.T
 
-    def worth(pair: tuple[int, int]) -> tuple[float, float]:
-        seen = np.maximum(facing[pair[0]], facing[pair[1]])
+    def worth(pair: Iterable[int]) -> tuple[float, float]:
+        seen = facing[list(pair)].max(axis=0)
         return round(float(seen.min()), 2), float(seen.sum())
 
     return grid[list(max(combinations(range(len(grid)), 2), key=worth))]
