@@ -106,12 +106,7 @@ class HeadlessHost:
             problems.connect(lambda sentence: printEvent("problem", sentence=sentence))
 
     def run(self, count: int, timeoutS: float) -> TrialAnalysis:
-        """Wait until a number of trials are scored, and return the last one.
-
-        Raises:
-            TrialsMissingError: they did not come in time.
-            InputError: a trial's numbers cannot be written into the output folder.
-        """
+        """Wait until a number of trials are scored, and return the last one."""
         end = time.monotonic() + timeoutS
         while self.scored < count or self.latest is None:
             if time.monotonic() > end:

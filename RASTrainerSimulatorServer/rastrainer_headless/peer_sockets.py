@@ -80,11 +80,7 @@ class PeerSockets:
         return self._listener.getsockname()[1] if self._listener else self.port
 
     def send(self, data: bytes) -> bool:
-        """Send to every peer; blocks while one does not read, as Slicer's does.
-
-        Returns:
-            Whether there was a peer and all of them took it.
-        """
+        """Send to every peer, blocking while one does not read; return whether all took it."""
         with self._lock:
             peers = list(self._peers.values())
         try:

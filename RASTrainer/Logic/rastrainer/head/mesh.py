@@ -287,10 +287,9 @@ def outward_normals(mesh: HeadMesh, points: np.ndarray) -> np.ndarray:
 
 
 def hides(mesh: HeadMesh, eye: np.ndarray, point: np.ndarray, slack_mm: float = 1.0) -> bool:
-    """Return whether the surface is between `eye` and `point`, both (3,).
+    """Return whether the surface is between `eye` and `point`, both (3,), but for `slack_mm`.
 
-    The last `slack_mm` are ignored, because the point is on the surface. (Ray and triangle by
-    Möller and Trumbore 1997.)
+    The point is on the surface. (Ray and triangle by Möller and Trumbore 1997.)
     """
     start = np.asarray(eye, dtype=float)
     along = point - start

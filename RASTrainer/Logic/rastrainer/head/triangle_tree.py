@@ -39,7 +39,6 @@ class TriangleSides:
         return cls(np.column_stack([a, to_b, to_c, *products]))
 
     def taken(self, rows: np.ndarray) -> TriangleSides:
-        """Return some of the triangles, (p,) int."""
         return TriangleSides(self.rows.take(rows, axis=0))
 
     def at(self, v: np.ndarray, w: np.ndarray) -> np.ndarray:
@@ -74,10 +73,8 @@ class TriangleSides:
 def least_of_each(squares: np.ndarray, starts: np.ndarray, who: np.ndarray) -> np.ndarray:
     """Return the first pair of each point whose square is least, (n,) int.
 
-    Args:
-        squares: (p,) float, of pairs of point and triangle.
-        starts: (n,) int, the first pair of each point; every point has one or more.
-        who: (p,) int, ascending, the point of each pair.
+    Pairs are sorted by point: `who` (p,) is the point of each, `starts` (n,) the first pair of
+    each.
     """
     least = np.minimum.reduceat(squares, starts)
     ties = np.flatnonzero(squares == least[who])
@@ -123,7 +120,6 @@ class NearestPoints:
     triangles: np.ndarray
 
     def taken(self, rows: np.ndarray) -> NearestPoints:
-        """Return the points of some rows, (k,) int."""
         return NearestPoints(self.positions[rows], self.distances[rows], self.triangles[rows])
 
 
@@ -171,15 +167,9 @@ class TriangleTree:
         return NearestPoints(positions, distances, self._order[places])
 
     def nearby(self, points: np.ndarray, squares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return pairs of point and triangle, sorted by point: all within a squared distance.
+        """Return pairs of point (p,) and triangle in `sides` (p,), sorted by point.
 
-        Args:
-            points: (n, 3) float, mm.
-            squares: (n,) float, mm², at least that to the nearest triangle.
-
-        Returns:
-            The points (p,) int, and the places (p,) int of the triangles in `sides`; some pairs
-            are farther apart, none that are near is missing.
+        None within the squared distances (n,), mm², is missing; some pairs are farther apart.
         """
         who, leaf = self._leaves_within(points, squares)
         who = np.repeat(who, LEAF)
@@ -292,9 +282,8 @@ class FollowedPoints:
     def repeat(self, slack_mm: np.ndarray) -> None:
         """Follow copies of the points, one set after the other.
 
-        Args:
-            slack_mm: (k, n) float, by how much each copy of each point is to move from here, at
-                most what it was for the point itself.
+        `slack_mm` (k, n) is by how much each copy of each point is to move from here, at most what
+        it was for the point itself.
         """
         copies, count = slack_mm.shape
         squares, _, _ = self._sides.nearest(self._anchors[self._who])
@@ -309,11 +298,9 @@ class FollowedPoints:
         self._set_pairs(self._who[pair] + count * copy, self._triangle[pair])
 
     def move(self, points: np.ndarray, slack_mm: np.ndarray) -> NearestPoints:
-        """Return the nearest points (n,) of where the points have moved.
+        """Return the nearest points of where the points (n, 3) have moved.
 
-        Args:
-            points: (n, 3) float, mm.
-            slack_mm: (n,) float, by how much each is expected to move from here.
+        `slack_mm` (n,) is by how much each is expected to move from here.
         """
         away = np.sum((points - self._anchors) ** 2, axis=1)
         lost = np.flatnonzero(away > self._slack**2)

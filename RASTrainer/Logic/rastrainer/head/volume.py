@@ -160,13 +160,7 @@ def read_nrrd(path: Path) -> tuple[np.ndarray, np.ndarray]:
 
 
 def write_nrrd(path: Path, values: np.ndarray, ijk_to_ras: np.ndarray) -> None:
-    """Write a gzip-compressed image; the same image gives the same bytes.
-
-    Args:
-        path: of the file.
-        values: (i, j, k) uint8 or int16.
-        ijk_to_ras: (4, 4) float, mm.
-    """
+    """Write (i, j, k) uint8 or int16, gzip-compressed; the same image gives the same bytes."""
     to_lps = np.diag([*_SPACES["lps"], 1.0]) @ ijk_to_ras
     directions = " ".join(_vector(to_lps[:3, axis]) for axis in range(3))
     lines = (

@@ -55,11 +55,7 @@ class Client:
         on_message: Callable[[Message], None] | None = None,
         timeout: float = PATIENCE_S,
     ):
-        """Connect within `timeout` seconds.
-
-        Raises:
-            LinkError: the connection is refused or times out.
-        """
+        """Connect within `timeout` seconds, or raise `LinkError`."""
         try:
             self._socket = socket.create_connection((host, port), timeout)
         except OSError as error:
@@ -92,12 +88,7 @@ class Client:
             self._thread.join()
 
     def send(self, message: Message) -> None:
-        """Send one message.
-
-        Raises:
-            InputError: the message is invalid.
-            LinkError: the connection is lost.
-        """
+        """Send one message; raise `LinkError` if the connection is lost."""
         data = pack(message)
         try:
             with self._sending:
@@ -108,11 +99,7 @@ class Client:
     def send_command(
         self, name: str, arguments: Mapping[str, Any] | None = None, timeout: float = PATIENCE_S
     ) -> Reply:
-        """Send a command and return its answer.
-
-        Raises:
-            LinkError: the connection is lost, or no answer within `timeout` seconds.
-        """
+        """Send a command and return its answer; raise `LinkError` if there is none in time."""
         number = next(self._numbers)
         answer: Future[Reply] = Future()
         self._waiting[number] = answer
@@ -133,11 +120,7 @@ class Client:
         accept: Callable[[Message], bool] = lambda _message: True,
         timeout: float = PATIENCE_S,
     ) -> Message:
-        """Return the latest message of `device` that `accept` accepts, waiting for it if needed.
-
-        Raises:
-            LinkError: none within `timeout` seconds, or the connection is lost.
-        """
+        """Return the latest message of `device` that `accept` accepts, waiting for it if needed."""
 
         def has_arrived() -> bool:
             return device in self.latest and accept(self.latest[device])

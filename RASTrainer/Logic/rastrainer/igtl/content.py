@@ -265,7 +265,6 @@ class Points:
     points: tuple[Point, ...]
 
     def pack(self) -> bytes:
-        """Return the content's bytes, 136 per point."""
         if len(self.points) > MAX_POINTS:
             raise InputError(f"A POINT message must have at most {MAX_POINTS} points.")
         packed = (

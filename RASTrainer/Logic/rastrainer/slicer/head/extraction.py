@@ -45,10 +45,8 @@ class Tissue:
 def findTissue(values: np.ndarray, threshold: float | None, noise: float) -> Tissue:
     """Return the head's tissue, alone.
 
-    Args:
-        values: (i, j, k) float.
-        threshold: None finds it: −475 HU of a CT, else by Otsu's method.
-        noise: standard deviation of the smoothing, in voxels.
+    Without a threshold it is −475 HU of a CT, else found by Otsu's method. `noise` is the standard
+    deviation of the smoothing, in voxels.
     """
     isCt = isHounsfield(values)
     # Normalized values of an MRI begin below 0.
@@ -134,13 +132,7 @@ LONGEST_HEAD_MM = 200.0
 
 
 def findHead(volume: Volume, settings: HeadSettings, progress: Progress) -> HeadBody:
-    """Return the head of a volume.
-
-    Args:
-        volume: T1-weighted MRI or CT of a head.
-        settings: deviations from the defaults.
-        progress: called with each step's name and the share of the work done; may raise to cancel.
-    """
+    """Return the head of a T1-weighted MRI or CT."""
     progress("Reading the volume", 0.0)
     grid = onRasGrid(volume, SPACING_MM)
     progress("Finding the skin", 0.1)
@@ -196,7 +188,6 @@ def skinOf(head: HeadBody, settings: HeadSettings, progress: Progress) -> HeadMe
 
 
 def _around(inside: np.ndarray, below: int) -> tuple[slice, slice, slice]:
-    """Return the part of the image that the head needs; what is below and much air costs time."""
     spans = []
     for axis, count in enumerate(inside.shape):
         others = tuple(other for other in range(3) if other != axis)

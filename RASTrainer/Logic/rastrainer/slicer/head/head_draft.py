@@ -45,16 +45,10 @@ def makeDraft(
     headMade: Callable[[HeadDraft, list[str]], None] = lambda _draft, _warnings: None,
     hasVolume: bool = True,
 ) -> tuple[HeadDraft, list[str]]:
-    """Return a head and warnings, one sentence each.
+    """Return a head and warnings, one sentence each, from a T1-weighted MRI or CT of a head.
 
-    Args:
-        volume: T1-weighted MRI or CT of a head.
-        settings: deviations from the defaults.
-        hasSkull: whether the skull is wanted too.
-        progress: called with each step's name and the share of the work done; may raise to cancel.
-        segment: the head; None finds it in the volume.
-        headMade: given the draft without its skull and the warnings, before the skull is made.
-        hasVolume: whether the images are to be part of the draft.
+    Without a `segment`, the head is found in the volume. `headMade` is given the draft without its
+    skull and the warnings, before the skull is made.
     """
     volume, found, mesh, warnings = _findSkin(
         volume, settings, lambda step, share: progress(step, 0.8 * share), segment
@@ -195,12 +189,8 @@ _MAX_GRAY = 255.0
 def imageOf(volume: Volume, head: HeadBody) -> tuple[HeadVolume, str]:
     """Return a head's images on a grid of 1 mm along RAS, and a sentence on how they were made.
 
-    MRI becomes uint8: from the darkest value of the volume to the brightest of the head, unless
-    its values are such numbers already. CT becomes int16, Hounsfield units.
-
-    Args:
-        volume: what the head was found in.
-        head: as `findHead` has found it.
+    MRI becomes uint8: from the darkest value of the volume to the brightest of the head, unless its
+    values are such numbers already. CT becomes int16, Hounsfield units.
     """
     near = mask.squaredDistances(head.body, KEPT_MM / SPACING_MM) <= (KEPT_MM / SPACING_MM) ** 2
     near[:, :, : max(0, int(np.floor((head.baseMm - head.origin[2]) / SPACING_MM)))] = False
@@ -220,7 +210,6 @@ def imageOf(volume: Volume, head: HeadBody) -> tuple[HeadVolume, str]:
 
 
 def _grays(values: np.ndarray, source: np.ndarray, body: np.ndarray) -> tuple[np.ndarray, str]:
-    """Return an MRI's values as uint8, and a sentence on what they mean."""
     low, high = float(source.min()), float(np.quantile(values[body], BRIGHTEST_QUANTILE))
     if low >= 0 and source.max() <= _MAX_GRAY and np.array_equal(source, np.rint(source)):
         return np.rint(values).astype(np.uint8), "Images: MRI, 1 mm, its own values, 0 to 255."

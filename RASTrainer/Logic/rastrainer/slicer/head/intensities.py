@@ -36,12 +36,9 @@ def isHounsfield(values: np.ndarray) -> bool:
 
 
 def cleaned(volume: Volume) -> tuple[Volume, float, list[str]]:
-    """Return a volume whose values are all measured ones, in Hounsfield units if it is a CT.
+    """Return a volume of measured values alone, changed in place, an offset, and warnings.
 
-    Returns:
-        volume: its values are changed in place.
-        offset: what was added to all values.
-        warnings: of what the user should check, one sentence each.
+    A CT is in Hounsfield units; the offset is what was added to all values.
     """
     values = volume.values
     _replaceFill(values)

@@ -81,8 +81,7 @@ def depthInside(mask: np.ndarray, most: float) -> np.ndarray:
 def squaredDistances(mask: np.ndarray, most: float) -> np.ndarray:
     """Return the squared distance of each voxel to the mask, uint16, exact up to `most` voxels.
 
-    Farther voxels have more than `most` squared. Axis by axis, which is much faster than
-    `ndimage.distance_transform_edt`, whose result is exact however far a voxel is.
+    Axis by axis, which is much faster than `ndimage.distance_transform_edt`.
     """
     reach = int(most)
     squared = np.where(mask, np.uint16(0), np.uint16((reach + 1) ** 2))
@@ -129,9 +128,8 @@ _BY_CORNER = [_touching(offset, 3) for offset in _OFFSETS]
 def isSimple(neighbors: int) -> bool:
     """Return whether the middle voxel of 3×3×3 may be removed without a change of topology.
 
-    Args:
-        neighbors: the 26 neighbors that are set, one bit each; the body is connected through faces,
-            its outside through faces, edges and corners.
+    `neighbors` are the 26 that are set, one bit each; the body is connected through faces, its
+    outside through faces, edges and corners.
     """
     inside = neighbors & _FACES_AND_EDGES
     outside = _ALL & ~neighbors
@@ -152,13 +150,9 @@ def _isOne(members: int, wanted: int, touching: list[int]) -> bool:
 
 
 def carved(body: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Return `body` carved toward `wanted`, with the topology of `body`.
+    """Return `body` (i, j, k) carved toward `wanted` within it, with the topology of `body`.
 
     The voxels farthest from `wanted` go first, so that membranes stay where tunnels are narrow.
-
-    Args:
-        body: (i, j, k) bool, contains `wanted`.
-        wanted: (i, j, k) bool.
     """
     # A border of one voxel lets every voxel have 26 neighbors; the neck continues below.
     sides, below = [(1, 1), (1, 1), (0, 1)], [(0, 0), (0, 0), (1, 0)]

@@ -34,7 +34,6 @@ class Volume:
 
 
 def volumeFromNode(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
-    """Return the image of a volume node where its transforms place it; see `imageOfNode`."""
     return asFloat(imageOfNode(node))
 
 
@@ -82,7 +81,6 @@ def toWorld(node: slicer.vtkMRMLTransformableNode) -> np.ndarray:
 
 
 def matrixOf(matrix: vtk.vtkMatrix4x4) -> np.ndarray:
-    """Return VTK's matrix as (4, 4) float."""
     return np.array([[matrix.GetElement(row, column) for column in range(4)] for row in range(4)])
 
 
@@ -186,11 +184,7 @@ class HeadBody:
 
     @cached_property
     def labels(self) -> tuple[np.ndarray, np.ndarray]:
-        """The body as a segment has it, and where its first voxel is.
-
-        (k, j, i) uint8, 1 inside, down to 3 mm below the base; (3,) float, RAS mm. Computed once,
-        which takes a moment.
-        """
+        """The body as a segment has it, (k, j, i) uint8, and where its first voxel is, RAS mm."""
         below = max(0, round((self.baseMm - BELOW_BASE_MM - self.origin[2]) / SPACING_MM))
         voxels = np.ascontiguousarray(self.body[:, :, below:].transpose(2, 1, 0), np.uint8)
         return voxels, self.origin + np.array([0.0, 0.0, below * SPACING_MM])

@@ -76,14 +76,7 @@ class Link(SimulatorConnection):
         clock: Callable[[], float] = time.monotonic,
         callSoon: CallSoon = lambda _work: None,
     ) -> None:
-        """Make a link that is not connected.
-
-        Args:
-            findKit: returns what makes the connector; None where it is not installed.
-            client: name of this side, sent to the simulator.
-            callSoon: calls a function in the host's next turn, so that answers and commands need
-                not wait for the next `process`; it is called from inside VTK.
-        """
+        """Make a link that is not connected; `callSoon` is called from inside VTK."""
         super().__init__(scene, findKit, self._onCommand, clock)
         self.statusChanged = Signal()
         self.opened = Signal()
@@ -128,11 +121,7 @@ class Link(SimulatorConnection):
     def testConnection(
         self, host: str, port: int, onFound: Callable[[LinkStatus], None]
     ) -> LinkStatus:
-        """Test once what answers at an address; `onFound` is called by a later `process`.
-
-        Returns:
-            The status to show meanwhile.
-        """
+        """Test once what answers at an address; `onFound` is called by a later `process`."""
         host, port = _checkedAddress(host, port)
         if self._test is not None:
             self._test[0].close()

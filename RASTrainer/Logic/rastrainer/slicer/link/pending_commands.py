@@ -76,7 +76,6 @@ class PendingCommands:
         self._sendSome()
 
     def refuse(self, onReply: OnReply, sentence: str) -> None:
-        """Have the next `poll` report why a command was not sent."""
         self._refused.append((onReply, Reply(False, sentence)))
 
     def poll(self, isOpen: bool) -> None:

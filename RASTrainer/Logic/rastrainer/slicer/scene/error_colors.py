@@ -36,7 +36,6 @@ OPACITY_ATTRIBUTE = "RASTrainer.opacity"
 
 
 def showScalars(model: Any, name: str, ends: tuple[float, float]) -> None:
-    """Color a `vtkMRMLModelNode` by point data of that name, whose colors have these ends."""
     display = model.GetDisplayNode()
     with changedOnce(display):
         display.SetActiveScalar(name, vtk.vtkAssignAttribute.POINT_DATA)
@@ -47,10 +46,9 @@ def showScalars(model: Any, name: str, ends: tuple[float, float]) -> None:
 
 
 def showLegend(node: Any, title: str, rank: int) -> Any | None:
-    """Show the legend of a colored `vtkMRMLDisplayableNode`, unless one of higher rank is shown.
+    """Show the legend of a colored node in 3D, unless one of higher rank is shown.
 
-    The slices stay free of it. Returns the legend, or None where the scene knows no legends: only
-    Slicer's module Colors brings them.
+    Returns None where the scene knows no legends: only Slicer's module Colors brings them.
     """
     if not node.GetScene().IsNodeClassRegistered(CLASS_NAME):
         return None
@@ -116,7 +114,6 @@ def colorSkin(
 
 
 def removeHeadColors(model: Any, name: str = TRE_SCALARS) -> None:
-    """Show the head in its own color again, if it is colored by this value."""
     display = model.GetDisplayNode()
     if display is not None and display.GetActiveScalarName() == name:
         display.SetScalarVisibility(False)
@@ -196,13 +193,7 @@ def residualRange(registration: Registration) -> tuple[float, float]:
 
 
 def arrowPolyData(start: np.ndarray, vector: np.ndarray, thickness: float = 1.0) -> vtk.vtkPolyData:
-    """Return an arrow whose shaft has the same thickness whatever its length.
-
-    Args:
-        start: (3,) float, mm.
-        vector: (3,) float, mm.
-        thickness: factor on shaft and tip.
-    """
+    """Return an arrow of length `vector` (3,), mm, whose `thickness` does not depend on it."""
     length = max(float(np.linalg.norm(vector)), 1e-6)
     arrow = vtk.vtkArrowSource()
     arrow.SetTipResolution(16)

@@ -152,25 +152,14 @@ def worldPoints(node: Any) -> np.ndarray:
 
 
 def usedPoints(node: Any, points: np.ndarray, labels: tuple[str, ...]) -> PointList:
-    """Return the points of a list that Slicer would use; the others are left out.
-
-    Args:
-        node: the list.
-        points: (n, 3) float, mm, in the frame to be used.
-        labels: of all points.
-    """
+    """Return those of points (n, 3), mm, and their labels that Slicer would use."""
     unused = {row: label for row, label in enumerate(labels) if not isUsed(node, row)}
     rows = [row for row in range(len(labels)) if row not in unused]
     return PointList(tuple(labels[row] for row in rows), points[rows], unused)
 
 
 def setPoints(node: Any, labels: Sequence[str], points: np.ndarray) -> None:
-    """Replace the points of a `vtkMRMLMarkupsNode`.
-
-    Args:
-        labels: one for each point.
-        points: (n, 3) float, mm, in the node's own frame.
-    """
+    """Replace the points of a `vtkMRMLMarkupsNode` by (n, 3) float, mm, in its own frame."""
     with changedOnce(node):
         node.RemoveAllControlPoints()
         slicer.util.updateMarkupsControlPointsFromArray(node, np.asarray(points, dtype=float))
@@ -242,13 +231,7 @@ def drawAsPoints(node: Any) -> None:
 def trianglesPolyData(
     points: np.ndarray, triangles: np.ndarray, normals: np.ndarray
 ) -> vtk.vtkPolyData:
-    """Return a surface.
-
-    Args:
-        points: (n, 3) float.
-        triangles: (m, 3) int, counterclockwise seen from outside.
-        normals: (n, 3) float, outward unit normals.
-    """
+    """Return a surface of points (n, 3), triangles (m, 3) int, and unit normals (n, 3)."""
     surface = vtk.vtkPolyData()
     surface.SetPoints(_vtkPoints(points))
     surface.SetPolys(_cells(triangles))

@@ -16,7 +16,6 @@ INTERACTION = "vtkMRMLInteractionNodeSingleton"
 
 
 def startPlacing(scene: Any, node: Any) -> None:
-    """Let the next clicks in the views place points of a markup."""
     selection, interaction = scene.GetNodeByID(SELECTION), scene.GetNodeByID(INTERACTION)
     selection.SetReferenceActivePlaceNodeClassName(node.GetClassName())
     selection.SetActivePlaceNodeID(node.GetID())

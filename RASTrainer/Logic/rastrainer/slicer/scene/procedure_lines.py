@@ -130,11 +130,7 @@ def showPlan(
     noGo: dict[str, HeadMesh],
     checkpoints: tuple[Checkpoint, ...],
 ) -> None:
-    """Replace the plan in the scene by another one, to be changed there.
-
-    Models that were shown for the earlier plan are removed; what the user has marked is no longer
-    marked.
-    """
+    """Replace the plan in the scene by another one, to be changed there."""
     for line in planLines(scene):
         scene.RemoveNode(line)
     for node in noGoNodes(scene):
@@ -214,10 +210,9 @@ def showPlannedLines(scene: Any, procedure: Procedure | None) -> None:
 def showProcedureErrors(scene: Any, analysis: ProcedureAnalysis) -> Any:
     """Show all lines of a procedure, arrows of its errors, and their table, which is returned.
 
-    The registered lines are where the plan, as it was shown, truly lay in the head. The true lines
-    go from the guide's tip to the instrument's. At entry and target, arrows lead from the planned
-    point to where the registration put it, and from there on to what was reached; they are true to
-    scale. All of it is in RAS mm.
+    The registered lines are where the plan, as it was shown, truly lay in the head. At entry and
+    target, arrows lead from the planned point to where the registration put it, and from there on
+    to what was reached; they are true to scale.
     """
     each = {errors.trajectory.name: errors for errors in analysis.trajectories}
     planned = {n: (e.trajectory.entry_ras, e.trajectory.target_ras) for n, e in each.items()}

@@ -48,11 +48,9 @@ class Choices:
     fle: tuple[tuple[str, float], ...] = ()
 
     def without(self, labels: tuple[str, ...]) -> Choices:
-        """Return the choices with some more pairs left out."""
         return replace(self, excluded=self.excluded | set(labels))
 
     def localized(self, label: str, fleMm: float) -> Choices:
-        """Return the choices with the localization error of a point, on top of before."""
         sizes = {**dict(self.fle), label: fleMm}
         if fleMm == USUAL_FLE_MM:
             del sizes[label]
@@ -217,8 +215,7 @@ class SkinNormals:
     def localizationError(self, registration: Registration) -> LocalizationError | None:
         """Return the localization error of touches on the skin, separately along and across it.
 
-        None where the fixed points do not all lie on the surface, or are too few: then nothing is
-        known but an error that is alike in all directions.
+        None where the fixed points do not all lie on the surface, or are too few.
         """
         self.findNormals(registration.fixed_mm)
         normals = [self._known[point.tobytes()] for point in registration.fixed_mm]

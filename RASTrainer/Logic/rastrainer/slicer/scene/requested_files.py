@@ -49,7 +49,7 @@ class FileContent:
 
 
 def isFileShown(node: Any | None, scenario: str, path: Path | None) -> bool:
-    """Return whether a node shows a scenario's file, or is going to, as it is on the disk now."""
+    """Return whether a node shows, or is going to, a scenario's file as it is on the disk."""
     if node is None or path is None:
         return False
     return isShown(node, SCENARIO_ATTRIBUTE, scenario, stampOf(path))

@@ -22,16 +22,11 @@ COLORS = "color"
 
 
 def missingLinks(scene: Any) -> list[int]:
-    """Return the numbers of the links that are not in the scene."""
     return [n for n in range(len(DeviceName.LINK_TO_WORLD)) if robotNode(scene, n) is None]
 
 
 def addLink(scene: Any, number: int, mesh: LinkMesh) -> None:
-    """Show a link of the robot.
-
-    Its model is transformed by the node that the connection fills (`Link0ToWorld` …). Without a
-    pose so far it is at the robot's base.
-    """
+    """Show a link of the robot, transformed by the node that the connection fills."""
     poseNode(scene, DeviceName.LINK_TO_WORLD[number])
     # Everything is set before the scene is told, and each view draws it once.
     display = slicer.vtkMRMLModelDisplayNode()
@@ -69,7 +64,6 @@ def placeRobot(scene: Any, worldTransform: Any | None) -> None:
 
 
 def setRobotVisible(scene: Any, visible: bool) -> None:
-    """Show or hide the robot, as far as it is in the scene."""
     for number in range(len(DeviceName.LINK_TO_WORLD)):
         node = robotNode(scene, number)
         if node is not None and node.GetDisplayNode() is not None:

@@ -30,11 +30,7 @@ def readUrdf(path: Path) -> Element:
 
 
 def attribute(element: Element, child: str, name: str) -> str:
-    """Return an attribute of an element's child.
-
-    Raises:
-        ValueError: there is no such child, or it lacks the attribute.
-    """
+    """Return an attribute of an element's child; raise ValueError if there is none."""
     found = element.find(child)
     value = None if found is None else found.get(name)
     if value is None:
@@ -43,20 +39,12 @@ def attribute(element: Element, child: str, name: str) -> str:
 
 
 def numbers(text: str) -> np.ndarray:
-    """Return numbers between blanks, (n,) float.
-
-    Raises:
-        ValueError: the text contains something else.
-    """
+    """Return numbers between blanks, (n,) float; raise ValueError for something else."""
     return np.array([float(word) for word in text.split()])
 
 
 def originOf(element: Element) -> np.ndarray:
-    """Return the pose (4, 4) float, mm, of an origin: about x by roll, y by pitch, z by yaw.
-
-    Raises:
-        ValueError: the origin is malformed.
-    """
+    """Return the pose (4, 4) float, mm, of an origin: about x by roll, y by pitch, z by yaw."""
     origin = element.find("origin")
     if origin is None:
         return np.eye(4)

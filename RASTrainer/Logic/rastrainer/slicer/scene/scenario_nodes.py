@@ -44,7 +44,6 @@ from rastrainer.slicer.translation import _
 
 
 def meshPolyData(mesh: HeadMesh) -> vtk.vtkPolyData:
-    """Return a surface with smooth normals."""
     return trianglesPolyData(mesh.vertices, mesh.triangles, mesh.vertex_normals)
 
 
@@ -160,7 +159,6 @@ def _showTrajectory(scene: Any, scenario: Scenario) -> None:
 
 
 def showAsPlanned(node: Any) -> None:
-    """Show a markups node as part of the plan, which is not moved by hand."""
     node.SetLocked(True)
     node.GetDisplayNode().SetSelectedColor(TARGET_COLOR)
 

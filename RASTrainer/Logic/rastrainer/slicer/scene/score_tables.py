@@ -43,7 +43,6 @@ class Row:
 
     @property
     def text(self) -> str:
-        """The value with its unit, as people read it."""
         if self.value is None:
             return "–"
         digits = 0 if self.unit == "" and float(self.value).is_integer() else 2
@@ -101,7 +100,6 @@ def scoreRows(trial: StoredTrial) -> list[Row]:
 
 
 def _procedureRows(procedure: StoredProcedure) -> list[Row]:
-    """Return the score of a procedure, beside that of the touches, and its errors."""
     score, analysis = procedure.score, procedure.analysis
     version = _("Version {v}") if score.acceptable else _("not acceptable; version {v}")
     split = _("registration {registration} mm, hand {hand} mm")
@@ -122,7 +120,6 @@ def _procedureRows(procedure: StoredProcedure) -> list[Row]:
 
 
 def _parts(score: TrialScore) -> list[Row]:
-    """Return a score and its parts."""
     version = _("Version {v}") if score.acceptable else _("not acceptable; version {v}")
     measures, limit_mm = score.measures, score.reference.limit_mm
     isAccurate, limit = score.is_accurate, _limit(COMMON_BIAS_LIMIT_MM, "mm")
@@ -155,12 +152,7 @@ def _limit(value: float, unit: str) -> str:
 
 
 def ctpsRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:
-    """Return the scores of the publication, none where they cannot be computed.
-
-    Args:
-        trial: with its results.
-        cohort: trials that CTPS compares with; those of the trial's own mode count.
-    """
+    """Return the published scores; CTPS compares with the cohort's trials of the same mode."""
     rigid = trial.registrations.get(RIGID)
     found = None if rigid is None else published_score(trial.record, rigid.fre_mm, cohort)
     if found is None:
@@ -172,7 +164,6 @@ def ctpsRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:
 
 
 def motionRows(trial: StoredTrial) -> list[Row]:
-    """Return the motion metrics of a trial, each with its definition."""
     return [
         Row(metric.title, trial.motion[name], metric.unit, metric.definition)
         for name, metric in MOTION_METRICS.items()
@@ -185,12 +176,8 @@ def standings(
 ) -> list[GroupComparison]:
     """Compare a trial with the trainee's own others, with everyone else's, and with a cohort.
 
-    Only trials of the same task and mode are compared, and only scores of the same method.
-
-    Args:
-        study: of the trial.
-        trial: with its results.
-        cohort: of another study, such as the published one; its times and FRE are known.
+    Only trials of the same task and mode are compared, and only scores of the same method. Of a
+    cohort, such as the published one, times and FRE are known.
     """
     record = trial.record
     outcomes = study.outcomes(record.task, record.mode)

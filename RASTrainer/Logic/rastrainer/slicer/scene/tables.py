@@ -32,11 +32,9 @@ def showTable(
     columns: Mapping[str, Sequence[Any] | np.ndarray],
     fewestRows: int = 0,
 ) -> Any:
-    """Put columns into the `vtkMRMLTableNode` of a role and return it.
+    """Put columns, texts or numbers or None, into the `vtkMRMLTableNode` of a role; return it.
 
-    Args:
-        columns: texts, or numbers where None is unknown, by their names.
-        fewestRows: rows without values follow where there are fewer.
+    Rows without values follow where there are fewer than `fewestRows`.
     """
     node = findOrAddNode(scene, "vtkMRMLTableNode", role, name)
     with changedOnce(node):
@@ -59,10 +57,7 @@ def showResiduals(
 ) -> Any:
     """Show the residual of each fiducial in a `vtkMRMLTableNode` and return it.
 
-    Args:
-        registration: whose residuals are shown.
-        leaveOneOut: (n,) float, mm, how far each touch lies from where the other pairs put it;
-            None where there are too few pairs.
+    `leaveOneOut` (n,), mm, is how far each touch lies from where the other pairs put it.
     """
     vectors = registration.residual_vectors_mm
     leftOut = [None] * len(registration.labels) if leaveOneOut is None else leaveOneOut
@@ -84,12 +79,7 @@ def showResiduals(
 def showFits(
     scene: Any, fits: Sequence[Registration], targetErrors: Sequence[TargetError | None]
 ) -> Any:
-    """Compare fits of the same points in a `vtkMRMLTableNode` and return it.
-
-    Args:
-        fits: one a row.
-        targetErrors: of each fit, what to expect at the target; None where it is not known.
-    """
+    """Compare fits of the same points, and what to expect at the target, in a table node."""
     known = [(e.expected_mm, *e.interval_mm) if e else (None, None, None) for e in targetErrors]
     return showTable(
         scene,

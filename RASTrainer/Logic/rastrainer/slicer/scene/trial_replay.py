@@ -54,18 +54,10 @@ def showReplay(
 ) -> Any:
     """Put a trial into the scene as a Sequence, replacing the previous one.
 
-    It uses separate nodes, so that a running simulator does not disturb it.
-
-    Args:
-        name: of the trial, for people.
-        track: from its journal.
-        chain: of the robot that it was recorded with.
-        worldToHead: (4, 4) float, mm, registration of the trial.
-        rest: called with the share of the work done after each slice; it may let the application
-            draw, and may raise to cancel: then nothing is left behind.
-
-    Returns:
-        The `vtkMRMLSequenceBrowserNode`, at the first sample.
+    It uses separate nodes, so that a running simulator does not disturb it. `rest` is called with
+    the share of the work done after each slice; it may let the application draw, and may raise to
+    cancel: then nothing is left behind. Returns the `vtkMRMLSequenceBrowserNode`, at the first
+    sample.
     """
     trajectory = track.trajectory
     rows = _rows(trajectory.times_s)
@@ -186,7 +178,6 @@ def findReplay(scene: Any) -> Any | None:
 
 
 def isReplayOf(scene: Any, trialId: str) -> bool:
-    """Return whether the scene contains the replay of this trial with all its nodes."""
     browser = findReplay(scene)
     parts = (
         ("vtkMRMLLinearTransformNode", _PLACE),

@@ -128,18 +128,15 @@ def showRegistration(scene: Any, registration: Registration, moving: Any, fixed:
 
 
 def rememberLists(transformNode: Any, moving: Any, fixed: Any) -> None:
-    """Store in the transform which lists of points it was computed from."""
     transformNode.SetNodeReferenceID(MOVING_REFERENCE, moving.GetID())
     transformNode.SetNodeReferenceID(FIXED_REFERENCE, fixed.GetID())
 
 
 def movingNode(transformNode: Any) -> Any | None:
-    """Return the list of touched points that the transform was made from, if it still exists."""
     return transformNode.GetNodeReference(MOVING_REFERENCE)
 
 
 def isApplied(transformNode: Any) -> bool:
-    """Return whether the touched points are shown on the head."""
     moving = movingNode(transformNode)
     return moving is not None and moving.GetTransformNodeID() == transformNode.GetID()
 
@@ -175,7 +172,6 @@ def showPlannedPlace(scene: Any, scenario: Scenario, moving: Any, fixed: Any) ->
 
 
 def isPlanned(transform: Any) -> bool:
-    """Return whether the transform is the planned pose rather than a registration."""
     return transform.GetAttribute(KIND_ATTRIBUTE) == PLANNED
 
 
