@@ -66,14 +66,8 @@ _TAGS = [
 class _Slice:
     """One slice, whose pixels are not read yet.
 
-    Attributes:
-        path: of its file.
-        frame: index within the file.
-        series: what all slices of a stack share.
-        name: of the series, for people.
-        axes: (3, 2) float, RAS mm, from a pixel to the next one in its row and in its column.
-        place: (3,) float, RAS mm, of the first pixel.
-        slope, intercept: from a pixel's number to its value.
+    `axes` (3, 2), RAS mm, lead from a pixel to the next one in its row and in its column; all
+    slices of a stack share `series`.
     """
 
     path: Path

@@ -63,14 +63,7 @@ class TrialsMissingError(RASTrainerError):
 
 
 class HeadlessHost:
-    """Replaces Slicer's application: owns the scene and calls what is due.
-
-    Attributes:
-        application: the scene and what it needs.
-        link: to the simulator.
-        latest: the trial that was scored last.
-        scored: how many trials were scored; their numbers are in the output folder, not here.
-    """
+    """Replaces Slicer's application: owns the scene and calls what is due."""
 
     def __init__(self, cache: ScenarioCache, output: Path, cohort: Path | None) -> None:
         self.application = HeadlessScene()

@@ -41,13 +41,8 @@ Received = Callable[[int, wire.Header, bytes], None]
 class PeerSockets:
     """Keeps one connection to a server, or listens for many clients, on separate threads.
 
-    Args:
-        listens: True for a server, False for a client.
-        host: where the server is; a server listens on all addresses of this machine's loopback.
-        port: TCP port.
-        received: called on a receiving thread with the peer's number and each raw message.
-        changed: called on a thread whenever it becomes known that a peer is there, or that the
-            last one has left; Slicer too finds out only every 100 ms.
+    `received` is called on a thread with the peer's number and each raw message; `changed` whenever
+    a peer is there, or the last one has left; Slicer too finds out only every 100 ms.
     """
 
     def __init__(

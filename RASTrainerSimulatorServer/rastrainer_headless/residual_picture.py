@@ -42,15 +42,7 @@ _COLORS = (
 def writeResidualPicture(
     path: Path, head: HeadMesh, registration: Registration, title: str, caption: Sequence[str]
 ) -> None:
-    """Render the head from two sides with all points on it, and write a PNG, whole or not at all.
-
-    Args:
-        path: of the picture.
-        head: the head's surface, RAS mm.
-        registration: of the points to the fiducials on that head.
-        title: one line on top.
-        caption: lines below the picture.
-    """
+    """Render the head from two sides with all points on it; write a PNG, whole or not."""
     window = vtk.vtkRenderWindow()
     window.SetOffScreenRendering(True)
     window.SetMultiSamples(8)
@@ -233,10 +225,7 @@ def chooseTwoViews(outward: np.ndarray) -> np.ndarray:
     """Return (2, 3) unit vectors, from the head toward two cameras.
 
     Of all pairs in a grid, the one in which the point that is seen worst is seen best; among
-    equals, the one that shows the points best on the whole.
-
-    Args:
-        outward: (n, 3) float, unit vectors along which the points face.
+    equals, the one that shows the points, which face along `outward` (n, 3), best on the whole.
     """
     grid = np.array(
         [
@@ -284,15 +273,10 @@ _COST_OF_OVERLAP = 10.0
 def placeLabels(
     anchors: np.ndarray, sizes: np.ndarray, obstacles: np.ndarray, gap: float
 ) -> Sequence[Side]:
-    """Return on which side of its anchor each label goes.
+    """Return on which side of its anchor (n, 2) each label of a size (n, 2) goes, in pixels.
 
-    The labels are placed one after the other, each where it covers the least.
-
-    Args:
-        anchors: (n, 2) float, pixels, to the right and up.
-        sizes: (n, 2) float, width and height of the labels, pixels.
-        obstacles: (m, 2) float, places that should stay free, pixels.
-        gap: pixels between an anchor and its label.
+    The labels are placed one after the other, each where it covers the least of others and of the
+    obstacles (m, 2).
     """
     placed: list[np.ndarray] = []
     sides: list[Side] = []

@@ -18,24 +18,16 @@ from rastrainer_headless.dicom_series import isDicom, readDicom
 
 
 def readAnyVolume(path: Path, orientation: str | None = None) -> Volume:
-    """Read an NRRD or NIfTI file, a DICOM file of many slices, or a folder with a DICOM series.
-
-    Args:
-        path: of the file or folder.
-        orientation: for a file that states none; see `readVolume`.
-    """
+    """Read an NRRD or NIfTI file, a DICOM file of many slices, or a folder of DICOM files."""
     if path.is_dir() or (path.is_file() and isDicom(path)):
         return readDicom(path)
     return readVolume(path, orientation)
 
 
 def readVolume(path: Path, orientation: str | None = None) -> Volume:
-    """Read a volume of any format that Slicer's volume reader knows, such as NRRD or NIfTI.
+    """Read a volume of any format that Slicer's volume reader knows, such as NRRD.
 
-    Args:
-        path: of the file.
-        orientation: the directions in which the file's axes run in the patient, such as LAS for
-            left, anterior, superior; None takes what the file states.
+    `orientation`, such as LAS, is for a file that states none.
     """
     if not path.is_file():
         raise InputError(f"{path} does not exist; give a volume such as a .nii.gz or .nrrd file.")

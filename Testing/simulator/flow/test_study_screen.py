@@ -256,5 +256,6 @@ def test_a_study_trial_has_the_skin_of_its_protocol(menu, guide):
     start_task(session, "task-2")
     menu.until_menu(None)
     truth = session._control_loop.truth
-    assert truth.skin.amounts == skin
+    amounts = {"shiftMm": truth.skin.shift_mm, "indentationMm": truth.skin.indentation_mm}
+    assert amounts == skin
     assert truth.skin.seed > 0

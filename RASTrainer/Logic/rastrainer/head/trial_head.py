@@ -135,11 +135,6 @@ class SkinShift:
             found = found + points - self.measured(found, mesh)
         return found
 
-    @property
-    def amounts(self) -> dict[str, float]:
-        """What everyone may know: all but the seed."""
-        return {"shiftMm": self.shift_mm, "indentationMm": self.indentation_mm}
-
 
 UNMOVED = SkinShift()
 """The skin lies as in the images."""

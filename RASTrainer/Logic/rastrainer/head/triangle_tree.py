@@ -124,14 +124,7 @@ class NearestPoints:
 
 
 class TriangleTree:
-    """The boxes of a mesh's triangles.
-
-    Args:
-        corners: (m, 3, 3) float, mm, the corners of at least one triangle.
-
-    Attributes:
-        sides: The triangles, in the tree's order; the last is repeated.
-    """
+    """The boxes of a mesh's triangles, in the order of `sides`, of which the last is repeated."""
 
     def __init__(self, corners: np.ndarray) -> None:
         levels = max(int(np.ceil(np.log2(max(len(corners) / LEAF, 1.0)))), 0)
@@ -171,7 +164,16 @@ class TriangleTree:
 
         None within the squared distances (n,), mm², is missing; some pairs are farther apart.
         """
-        who, leaf = self._leaves_within(points, squares)
+        last = len(self._boxes) - 1
+        level = min(TOP_LEVEL, last)
+        near = _is_within(self._boxes[level][None], points[:, None], squares[:, None])
+        who, leaf = np.nonzero(near)
+        while level < last:
+            level += 1
+            who = np.repeat(who, 2)
+            leaf = (leaf[:, None] * 2 + np.arange(2)).ravel()
+            kept = _is_within(self._boxes[level].take(leaf, axis=0), points[who], squares[who])
+            who, leaf = who[kept], leaf[kept]
         who = np.repeat(who, LEAF)
         triangle = (leaf[:, None] * LEAF + np.arange(LEAF)).ravel()
         boxes = self._triangle_boxes.take(triangle, axis=0)
@@ -191,22 +193,6 @@ class TriangleTree:
         tried = (box[:, None] * LEAF + np.arange(LEAF)).ravel()
         squares, _, _ = self.sides.taken(tried).nearest(np.repeat(points, LEAF, axis=0))
         return np.asarray(squares.reshape(-1, LEAF).min(axis=1))
-
-    def _leaves_within(
-        self, points: np.ndarray, squares: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Return pairs of point and lowest box within its squared distance, sorted by point."""
-        last = len(self._boxes) - 1
-        level = min(TOP_LEVEL, last)
-        near = _is_within(self._boxes[level][None], points[:, None], squares[:, None])
-        who, box = np.nonzero(near)
-        while level < last:
-            level += 1
-            who = np.repeat(who, 2)
-            box = (box[:, None] * 2 + np.arange(2)).ravel()
-            kept = _is_within(self._boxes[level].take(box, axis=0), points[who], squares[who])
-            who, box = who[kept], box[kept]
-        return who, box
 
 
 def _is_within(boxes: np.ndarray, points: np.ndarray, squares: np.ndarray) -> np.ndarray:
@@ -238,17 +224,11 @@ POOR_GUESS_MM = 2.0
 
 
 class FollowedPoints:
-    """The search for points that move by ever smaller steps; it answers as `TriangleTree.nearest`.
+    """The search for points that move by ever smaller steps; as `TriangleTree.nearest`.
 
     A point whose nearest triangle is d away finds it, after a move by at most m, among the
     triangles that were within d + 2m before. So these are kept, and are all that is tried until it
-    moves farther.
-
-    Args:
-        tree: Of the surface.
-        points: (n, 3) float, mm, where they are now.
-        slack_mm: By how much they are to move before the surface is searched again, for all or
-            for each (n,).
+    moves farther than `slack_mm`, for all or for each (n,).
     """
 
     def __init__(
@@ -262,19 +242,14 @@ class FollowedPoints:
         self._sides = tree.sides.taken(self._triangle)
         self._starts = np.zeros(count, dtype=np.int64)
         self._search(self._anchors, np.arange(count), np.full(count, slack_mm, dtype=float), None)
-        self._found = self._nearest_of(self._anchors)
-
-    @property
-    def nearest(self) -> NearestPoints:
-        return self._found[0]
+        self.nearest, self._places = self._nearest_of(self._anchors)
 
     def keep(self, rows: np.ndarray) -> None:
         """Follow only some of the points, (k,) int ascending; they are numbered anew."""
         number = np.full(len(self._anchors), -1)
         number[rows] = np.arange(len(rows))
         self._anchors, self._slack = self._anchors[rows], self._slack[rows]
-        found, places = self._found
-        self._found = found.taken(rows), places[rows]
+        self.nearest, self._places = self.nearest.taken(rows), self._places[rows]
         who = number[self._who]
         pairs = np.flatnonzero(who >= 0)
         self._set_pairs(who[pairs], self._triangle[pairs])
@@ -292,9 +267,8 @@ class FollowedPoints:
         copy, pair = np.nonzero(near)
         self._anchors = np.tile(self._anchors, (copies, 1))
         self._slack = slack_mm.ravel()
-        found, places = self._found
         rows = np.tile(np.arange(count), copies)
-        self._found = found.taken(rows), places[rows]
+        self.nearest, self._places = self.nearest.taken(rows), self._places[rows]
         self._set_pairs(self._who[pair] + count * copy, self._triangle[pair])
 
     def move(self, points: np.ndarray, slack_mm: np.ndarray) -> NearestPoints:
@@ -305,9 +279,9 @@ class FollowedPoints:
         away = np.sum((points - self._anchors) ** 2, axis=1)
         lost = np.flatnonzero(away > self._slack**2)
         if len(lost):
-            self._search(points, lost, slack_mm[lost], self._found[1][lost])
-        self._found = self._nearest_of(points)
-        return self._found[0]
+            self._search(points, lost, slack_mm[lost], self._places[lost])
+        self.nearest, self._places = self._nearest_of(points)
+        return self.nearest
 
     def _nearest_of(self, points: np.ndarray) -> tuple[NearestPoints, np.ndarray]:
         squares, v, w = self._sides.nearest(points[self._who])

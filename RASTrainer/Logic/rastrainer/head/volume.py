@@ -53,13 +53,7 @@ class VolumeFile:
 
 @dataclass(frozen=True)
 class HeadVolume:
-    """A scalar image of a head.
-
-    Attributes:
-        values: (i, j, k) uint8 or int16.
-        ijk_to_ras: (4, 4) float, voxel index to RAS mm.
-        window, level: as of `VolumeFile`.
-    """
+    """A scalar image of a head: values (i, j, k) uint8 or int16, index to RAS mm."""
 
     values: np.ndarray
     ijk_to_ras: np.ndarray
@@ -70,11 +64,6 @@ class HeadVolume:
 def read_head_volume(file: VolumeFile) -> HeadVolume:
     """Read the volume of a scenario."""
     return HeadVolume(*read_nrrd(file.file), file.window, file.level)
-
-
-def write_head_volume(path: Path, volume: HeadVolume) -> None:
-    """Write the voxels and geometry of a volume, and nothing else."""
-    write_nrrd(path, volume.values, volume.ijk_to_ras)
 
 
 def check_place(volume: HeadVolume, head: HeadMesh, path: Path) -> None:
@@ -115,21 +104,6 @@ _ELSEWHERE = ("data file", "datafile", "line skip", "lineskip", "byte skip", "by
 _VECTOR = re.compile(r"\(([^()]*)\)")
 
 
-@dataclass(frozen=True)
-class _Header:
-    """Type and geometry of the voxels.
-
-    Attributes:
-        dtype: as stored.
-        shape: number of voxels along each axis.
-        ijk_to_ras: (4, 4) float, mm.
-    """
-
-    dtype: np.dtype
-    shape: tuple[int, int, int]
-    ijk_to_ras: np.ndarray
-
-
 def read_nrrd(path: Path) -> tuple[np.ndarray, np.ndarray]:
     """Return the voxels (i, j, k), uint8 or int16, and the matrix (4, 4) float, index to RAS mm."""
     content = read_bytes(path, MAX_FILE_BYTES)
@@ -143,20 +117,20 @@ def read_nrrd(path: Path) -> tuple[np.ndarray, np.ndarray]:
     fields = _fields(path, rest)
     blank_line = re.search(rb"\r?\n\r?\n", content[:_MAX_HEADER_BYTES])
     assert blank_line is not None  # The separator was found above.
-    header, start = _header(path, fields), blank_line.end()
-    count = math.prod(header.shape) * header.dtype.itemsize
+    dtype, shape, matrix = _dtype(path, fields), _shape(path, fields), _matrix(path, fields)
+    count = math.prod(shape) * dtype.itemsize
     stream = zlib.decompressobj(wbits=31)
     try:
-        voxels = stream.decompress(content[start:], count + 1)
+        voxels = stream.decompress(content[blank_line.end() :], count + 1)
     except zlib.error:
         raise _wrong(path, "hold voxels that gzip can unpack: it is damaged") from None
     if len(voxels) > count:
         raise _wrong(path, "hold no more voxels than its header says")
     if len(voxels) < count or not stream.eof:
         raise _wrong(path, "hold as many voxels as its header says: it is cut short")
-    values = np.frombuffer(voxels, header.dtype)
-    native = values.astype(header.dtype.newbyteorder("="), copy=False)
-    return native.reshape(header.shape, order="F"), header.ijk_to_ras
+    values = np.frombuffer(voxels, dtype)
+    native = values.astype(dtype.newbyteorder("="), copy=False)
+    return native.reshape(shape, order="F"), matrix
 
 
 def write_nrrd(path: Path, values: np.ndarray, ijk_to_ras: np.ndarray) -> None:
@@ -198,7 +172,7 @@ def _fields(path: Path, text: str) -> dict[str, str]:
     return fields
 
 
-def _header(path: Path, fields: dict[str, str]) -> _Header:
+def _dtype(path: Path, fields: dict[str, str]) -> np.dtype:
     kind = fields.get("type", "").lower()
     name = next((name for name, words in _KINDS.items() if kind in words), None)
     if name is None:
@@ -208,8 +182,7 @@ def _header(path: Path, fields: dict[str, str]) -> _Header:
     endian = fields.get("endian", "little").lower()
     if endian not in ("little", "big"):
         raise _wrong(path, "be little or big endian")
-    dtype = np.dtype(name).newbyteorder("<" if endian == "little" else ">")
-    return _Header(dtype, _shape(path, fields), _matrix(path, fields))
+    return np.dtype(name).newbyteorder("<" if endian == "little" else ">")
 
 
 def _shape(path: Path, fields: dict[str, str]) -> tuple[int, int, int]:

@@ -148,7 +148,13 @@ def findHead(volume: Volume, settings: HeadSettings, progress: Progress) -> Head
             f"this range, not at {base:.0f} mm."
         )
     below = max(0, int((base - lowest) / SPACING_MM) - 1)
-    around = _around(found.level > 0, below)
+    # The part of the image that the head needs; what is below and much air costs time.
+    spans = []
+    for axis, count in enumerate(found.level.shape):
+        others = tuple(other for other in range(3) if other != axis)
+        inside = np.flatnonzero((found.level > 0).any(axis=others))
+        spans.append((max(0, inside[0] - MARGIN), min(count, inside[-1] + 1 + MARGIN)))
+    around = slice(*spans[0]), slice(*spans[1]), slice(below, spans[2][1])
     level = continued(found.level[around], MARGIN)
     progress("Filling cavities", 0.3)
     body = _body(level > 0, settings, progress)
@@ -185,15 +191,6 @@ def skinOf(head: HeadBody, settings: HeadSettings, progress: Progress) -> HeadMe
         )
     progress("Done", 1.0)
     return mesh
-
-
-def _around(inside: np.ndarray, below: int) -> tuple[slice, slice, slice]:
-    spans = []
-    for axis, count in enumerate(inside.shape):
-        others = tuple(other for other in range(3) if other != axis)
-        set_ = np.flatnonzero(inside.any(axis=others))
-        spans.append((max(0, set_[0] - MARGIN), min(count, set_[-1] + 1 + MARGIN)))
-    return slice(*spans[0]), slice(*spans[1]), slice(below, spans[2][1])
 
 
 def _body(inside: np.ndarray, settings: HeadSettings, progress: Progress) -> np.ndarray:

@@ -133,10 +133,6 @@ def checkVolume(volume: Volume) -> list[str]:
         raise InputError("The volume contains values that are not numbers (NaN or infinite).")
     if values.min() == values.max():
         raise InputError("The volume is empty: all its voxels have the same value.")
-    return _checkSpacing(volume)
-
-
-def _checkSpacing(volume: Volume) -> list[str]:
     axes = volume.ijkToRas[:3, :3]
     spacing = np.linalg.norm(axes, axis=0)
     if not np.isfinite(volume.ijkToRas).all() or spacing.min() <= 0:
@@ -204,18 +200,16 @@ def imageOf(volume: Volume, head: HeadBody) -> tuple[HeadVolume, str]:
         low, high = HOUNSFIELD
         method = f"Images: CT, 1 mm, Hounsfield units from {low:g} to {high:g}."
         return HeadVolume(units, gridToRas, CT_WINDOW, CT_LEVEL), method
-    grays, method = _grays(values, volume.values, body)
+    source = volume.values
+    low, high = float(source.min()), float(np.quantile(values[body], BRIGHTEST_QUANTILE))
+    method = f"Images: MRI, 1 mm, values from {low:.6g} to {high:.6g} as 0 to 255."
+    if low >= 0 and source.max() <= _MAX_GRAY and np.array_equal(source, np.rint(source)):
+        method = "Images: MRI, 1 mm, its own values, 0 to 255."
+    else:
+        values = np.clip((values - low) * (_MAX_GRAY / max(high - low, 1e-30)), 0.0, _MAX_GRAY)
+    grays = np.rint(values).astype(np.uint8)
     white = max(2.0, float(np.quantile(grays[body], WHITE_QUANTILE)))
     return HeadVolume(grays, gridToRas, white, white / 2.0), method
-
-
-def _grays(values: np.ndarray, source: np.ndarray, body: np.ndarray) -> tuple[np.ndarray, str]:
-    low, high = float(source.min()), float(np.quantile(values[body], BRIGHTEST_QUANTILE))
-    if low >= 0 and source.max() <= _MAX_GRAY and np.array_equal(source, np.rint(source)):
-        return np.rint(values).astype(np.uint8), "Images: MRI, 1 mm, its own values, 0 to 255."
-    scaled = np.clip((values - low) * (_MAX_GRAY / max(high - low, 1e-30)), 0.0, _MAX_GRAY)
-    method = f"Images: MRI, 1 mm, values from {low:.6g} to {high:.6g} as 0 to 255."
-    return np.rint(scaled).astype(np.uint8), method
 
 
 CT_NOISE_MM = 0.7

@@ -20,13 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Volume:
-    """A scalar image.
-
-    Attributes:
-        values: (i, j, k) float.
-        ijkToRas: (4, 4) float, maps voxel indices to patient coordinates, mm.
-        warnings: what its file leaves open, one sentence each.
-    """
+    """A scalar image (i, j, k), its place in the patient, mm, and what its file leaves open."""
 
     values: np.ndarray
     ijkToRas: np.ndarray
@@ -255,7 +249,13 @@ def readSegment(node: Any, segmentId: str) -> SegmentImage:
     toRas = toWorld(node) @ matrixOf(matrix)
     toRas[:3, 3] += toRas[:3, :3] @ first
     labels = vtk_to_numpy(array).reshape(image.GetDimensions()[::-1]).transpose(2, 1, 0)
-    return SegmentImage(Volume(labels, toRas), _baseOf(node, segmentId))
+    baseMm, tag = -np.inf, vtk.reference("")
+    if node.GetSegmentation().GetSegment(segmentId).GetTag(BASE_TAG, tag):
+        bounds = [0.0] * 6
+        node.GetSegmentation().GetBounds(bounds)
+        middle = [np.mean(bounds[:2]), np.mean(bounds[2:4]), float(tag.get()), 1.0]
+        baseMm = float((toWorld(node) @ middle)[2])
+    return SegmentImage(Volume(labels, toRas), baseMm)
 
 
 def volumeOfSegment(segment: SegmentImage) -> Volume:
@@ -289,14 +289,3 @@ def volumeOfSegment(segment: SegmentImage) -> Volume:
 
 def forSegment(settings: HeadSettings) -> HeadSettings:
     return replace(settings, threshold=_HALF, noiseMm=EDITED_NOISE_MM)
-
-
-def _baseOf(node: Any, segmentId: str) -> float:
-    """Return the height (S) of the base that was shown with a segment, −∞ where none was."""
-    tag = vtk.reference("")
-    if not node.GetSegmentation().GetSegment(segmentId).GetTag(BASE_TAG, tag):
-        return -np.inf
-    bounds = [0.0] * 6
-    node.GetSegmentation().GetBounds(bounds)
-    middle = [np.mean(bounds[:2]), np.mean(bounds[2:4]), float(tag.get()), 1.0]
-    return float((toWorld(node) @ middle)[2])

@@ -31,18 +31,10 @@ _CONTRADICTION = 0.7
 
 @dataclass(frozen=True)
 class _Nifti:
-    """The header of NIfTI-1 or Analyze 7.5 (nifti1.h).
+    """The header of NIfTI-1, or of Analyze 7.5, which knows no orientation (nifti1.h).
 
-    Attributes:
-        isAnalyze: whether it is Analyze, which knows no orientation.
-        sizes: of all dimensions.
-        kind, bits: of a voxel.
-        begins: where the voxels begin.
-        spacing: (3,) float.
-        codes: of the qform and the sform; 0 means that there is none.
-        rotation: (3,) float, b, c, d of the qform's quaternion.
-        flip: of the qform's last axis, 1 or −1.
-        sform: (3, 3) float.
+    `codes` are of qform and sform, 0 for none; `rotation` is b, c, d of the qform's quaternion,
+    `flip` of its last axis, 1 or −1.
     """
 
     isAnalyze: bool

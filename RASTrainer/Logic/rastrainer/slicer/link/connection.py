@@ -97,15 +97,6 @@ class SimulatorConnection:
         """Whether there is a TCP connection."""
         return self.seen.isOpen
 
-    @property
-    def isChanging(self) -> bool:
-        """Whether its state will soon be another, such as that of a test of who answers."""
-        if self._kit is None or not self.seen.address:
-            return False
-        if self.isOpen:
-            return not self.seen.hasHeartbeat
-        return self._probe is not None or self._clock() < self._connectsUntil
-
     def beginConnection(self, address: tuple[str, int], isListening: bool) -> None:
         """Request a connection: to the address, or from any client of its port."""
         self.endConnection()

@@ -105,9 +105,13 @@ class Link(SimulatorConnection):
 
         Nothing reports that a simulator has fallen silent, or does not answer.
         """
-        if self.isChanging or self._test is not None:
+        isWanted = bool(self.seen.address)
+        isChanging = self._probe is not None or self._clock() < self._connectsUntil
+        if self.isOpen:
+            isChanging = not self.seen.hasHeartbeat
+        if self._test is not None or (isWanted and self._kit is not None and isChanging):
             return SOON_S
-        return REST_S if self.seen.address else None
+        return REST_S if isWanted else None
 
     def connectTo(self, host: str = DEFAULT_HOST, port: int = DEFAULT_PORT) -> None:
         """Connect to a simulator, and again whenever the connection is lost."""

@@ -25,15 +25,7 @@ SENDING_S = 0.01
 
 @dataclass
 class Request:
-    """A command that is to be sent.
-
-    Attributes:
-        name: of the command.
-        content: its arguments, JSON.
-        timeoutS: how long to wait for its answer after sending it.
-        command: the connector's, once it is sent.
-        deadline: on the clock, once it is sent.
-    """
+    """A command that is to be sent: `content` is JSON; the last two are set once it is sent."""
 
     name: str
     content: str

@@ -320,7 +320,7 @@ class ModuleSession:
 
     def _showTrainees(self) -> None:
         """Let each panel show what is new in the study, in a separate turn."""
-        for listener in self.trainees.changed.listeners:
+        for listener in tuple(self.trainees.changed.listeners):
             self.work.later(listener)
 
     def _takeScored(self, analysis: TrialAnalysis) -> None:

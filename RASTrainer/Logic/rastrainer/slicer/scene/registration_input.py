@@ -135,13 +135,7 @@ def snapshot(node: Any, pointsOf: Callable[[Any], np.ndarray] = worldPoints) -> 
 
 @dataclass(frozen=True)
 class Remedy:
-    """A warning with its button.
-
-    Attributes:
-        warning: with its sentence and its points.
-        title: of the button; empty where only the points themselves can be mended.
-        choices: of the pairs once the button is pressed.
-    """
+    """A warning with its button, whose title is empty where the points must be mended."""
 
     warning: RegistrationWarning
     title: str

@@ -33,12 +33,8 @@ FILE_ATTRIBUTE = "RASTrainer.file"
 class FileContent:
     """What the node of a role shows of its file.
 
-    Attributes:
-        className: of the node.
-        role: of the node.
-        read: reads the file, in any thread; may raise `InputError`.
-        fill: puts into the node what was read.
-        problem: a sentence with `{problem}`, for the user of a file that cannot be used.
+    `read` is called in any thread, and may raise `InputError`; `fill` puts into the node what was
+    read; `problem`, with `{problem}`, is for the user of a file that cannot be used.
     """
 
     className: str

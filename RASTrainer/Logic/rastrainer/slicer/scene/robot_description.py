@@ -110,20 +110,17 @@ def readArmChain(urdf: Path) -> ArmChain:
         while link in joints:
             joint = joints.pop(link)
             origins.append(originOf(joint))
-            axes.append(_axis(joint))
+            axis = np.zeros(3)
+            if joint.get("type") == "revolute":
+                axis = numbers(attribute(joint, "axis", "xyz"))
+                axis /= np.linalg.norm(axis)
+            elif joint.get("type") != "fixed":
+                raise ValueError
+            axes.append(axis)
             link = attribute(joint, "child", "link")
     except ValueError:
         raise InputError(f"The URDF {urdf} is not a chain of revolute and fixed joints.") from None
     return ArmChain(np.array(origins), np.array(axes))
-
-
-def _axis(joint: Element) -> np.ndarray:
-    if joint.get("type") == "fixed":
-        return np.zeros(3)
-    if joint.get("type") != "revolute":
-        raise ValueError
-    axis = numbers(attribute(joint, "axis", "xyz"))
-    return axis / np.linalg.norm(axis)
 
 
 URDF = "iiwa7.urdf"

@@ -58,14 +58,7 @@ class Row:
 class GroupComparison:
     """A value beside those of a group.
 
-    Attributes:
-        title: what is compared.
-        unit: of the value.
-        value: of the trial.
-        group: of whom the others are.
-        count: how many others there are, at least one.
-        median: of the others.
-        betterThan: share of the others that the trial is better than, 0 to 1.
+    `betterThan` is the share of the others that the trial is better than, 0 to 1.
     """
 
     title: str
