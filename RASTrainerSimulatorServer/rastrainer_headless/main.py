@@ -197,29 +197,24 @@ def writeOutput(
     """Write scene and picture of the latest trial; return the paths of all files."""
     files = {"scene": folder / SCENE, "picture": folder / PICTURE, "results": folder / RESULTS}
     application.save(files["scene"])
-    _writePicture(files["picture"], scenario, latest)
-    return {name: str(path) for name, path in files.items()}
-
-
-def _writePicture(path: Path, scenario: Scenario, analysis: TrialAnalysis) -> None:
-    task = scenario.task(analysis.record.task)
-    expected = analysis.expected_tre
+    task, expected, rigid = scenario.task(latest.record.task), latest.expected_tre, latest.rigid
     low, high = expected.interval_mm
     # The recording program may not know where the head was.
-    true = "" if analysis.truth is None else f", true TRE {analysis.truth.true_tre_mm:.2f} mm"
+    true = "" if latest.truth is None else f", true TRE {latest.truth.true_tre_mm:.2f} mm"
     title = (
         f"{task.title}: rigid registration of {len(task.labels)} touched points, "
-        f"FRE {analysis.rigid.fre_mm:.2f} mm"
+        f"FRE {rigid.fre_mm:.2f} mm"
     )
     caption = [
         "Ball and number: fiducial in the MRI and its residual in mm. Arrow: toward where the "
-        f"registration puts the touch, {magnification(analysis.rigid):g} times as long.",
+        f"registration puts the touch, {magnification(rigid):g} times as long.",
         f"At the target ({scenario.target_name}): expected TRE {expected.expected_mm:.2f} mm "
         f"(95 %: {low:.2f} to {high:.2f} mm){true}. "
         "FRE does not predict TRE case by case.",
     ]
     head = read_head_mesh(scenario.head_mesh)
-    writeResidualPicture(path, head, analysis.rigid, title, caption)
+    writeResidualPicture(files["picture"], head, rigid, title, caption)
+    return {name: str(path) for name, path in files.items()}
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -12,7 +12,7 @@ import numpy as np
 import slicer
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.head.volume import Volume, volumeFromNode
+from rastrainer.slicer.head.volume import Volume, asFloat, imageOfNode
 from rastrainer.slicer.head.volume_header import checkHeader, leastSize, missingOrientation
 from rastrainer_headless.dicom_series import isDicom, readDicom
 
@@ -56,7 +56,7 @@ def readVolume(path: Path, orientation: str | None = None) -> Volume:
     storage.SetFileName(str(path))
     if not storage.ReadData(node) or node.GetImageData() is None:
         raise InputError(f"{path} could not be read as a volume such as NIfTI or NRRD.")
-    volume = volumeFromNode(node)
+    volume = asFloat(imageOfNode(node))
     return volume if orientation is None else _oriented(volume, orientation)
 
 

@@ -76,10 +76,8 @@ INVERSIONS = 8
 class SkinShift:
     """The shift of the skin in the operation, compared with the images.
 
-    Attributes:
-        shift_mm: root mean square length of the shift, over seeds; 0 for none.
-        seed: which shift; secret like the head's pose.
-        indentation_mm: how deep the tip presses into the skin.
+    `shift_mm` is the root mean square length of the shift, over seeds; the seed is secret like the
+    head's pose; `indentation_mm` is how deep the tip presses into the skin.
     """
 
     shift_mm: _Amount = 0.0

@@ -107,13 +107,7 @@ def _on_sides(
 
 @dataclass(frozen=True)
 class NearestPoints:
-    """The points of a surface nearest to n given ones; mm.
-
-    Attributes:
-        positions: (n, 3) float.
-        distances: (n,) float, to the given points.
-        triangles: (n,) int, indices of the triangles that they lie on.
-    """
+    """The points of a surface nearest to n given ones, their distances, mm, and triangles."""
 
     positions: np.ndarray
     distances: np.ndarray

@@ -137,11 +137,8 @@ class String:
 class Status:
     """The state of a device; becomes a status node in Slicer.
 
-    Attributes:
-        code: 1 is OK, other numbers are the protocol's error codes.
-        subcode: defined by the device.
-        name: of the error, at most 20 ASCII characters.
-        message: for people.
+    Code 1 is OK, others are the protocol's error codes; the device defines the subcode; the name of
+    the error has at most 20 ASCII characters.
     """
 
     TYPE: ClassVar[str] = "STATUS"
@@ -233,13 +230,9 @@ MAX_POINTS = 1_000
 class Point:
     """One labeled point.
 
-    Attributes:
-        label: shown beside the point, at most 64 ASCII characters.
-        position: `(3,) float`, mm.
-        color: red, green, blue and alpha from 0 to 255; alpha 0 would hide the point in Slicer.
-        group: `Unselected` makes Slicer show it as not selected.
-        diameter: mm; Slicer drops it.
-        owner: device the point belongs to; Slicer drops it.
+    The label has at most 64 ASCII characters, the position is in mm, the color is RGBA from 0 to
+    255; alpha 0 would hide the point in Slicer. The group `Unselected` makes Slicer show it as not
+    selected; diameter and owner are dropped.
     """
 
     label: str

@@ -80,13 +80,9 @@ HEADER_BYTES = _HEADER.size
 class Message:
     """One message.
 
-    Attributes:
-        device: 1 to 20 ASCII characters; the name of the node in Slicer.
-        content: the content, whose class determines the type.
-        metadata: texts by key; header version 2 only.
-        message_id: the sender's 32-bit number; header version 2 only.
-        timestamp: seconds since 1970; None for the time of packing. Slicer sends 0.
-        version: header version, 1 or 2.
+    The device, 1 to 20 ASCII characters, is the name of the node in Slicer; the class of the
+    content is the type. Metadata and number need version 2 of the header. The timestamp is in
+    seconds since 1970, None for the time of packing; Slicer sends 0.
     """
 
     device: str

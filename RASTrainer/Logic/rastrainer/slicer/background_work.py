@@ -138,13 +138,10 @@ class BackgroundWork:
         take: Callable[[T], None],
         refuse: Callable[[Exception], None] = lambda _error: None,
     ) -> None:
-        """Run `work`, unless closed; it starts when earlier results have been delivered.
+        """Run `work` in a thread once earlier results have been delivered, unless closed.
 
-        Args:
-            work: runs in a thread; see the module for what it may touch.
-            take: called by a later `process` with what `work` has returned.
-            refuse: called in its place with what `work` has raised. What is no `InputError` is
-                then raised by `process`, too: it is a mistake of ours.
+        A later `process` calls `take` with its result, or `refuse` with what it has raised. What is
+        no `InputError` is then raised by `process`, too: it is a mistake of ours.
         """
         if not self._isClosed:
             wasBusy = self.isBusy
@@ -225,9 +222,8 @@ class BackgroundWork:
 def inBackground(work: Callable[[Progress], T], progress: Progress) -> T:
     """Return what `work` returns, calling `progress` many times a second meanwhile.
 
-    Args:
-        work: called with a function to report its progress to, which raises once `progress` has.
-        progress: may let the application draw, and may raise to cancel.
+    `work` is called with a function to report its progress to. `progress` may let the application
+    draw, and may raise to cancel: then what is reported to raises, too.
     """
     reported: list[tuple[str, float]] = [("", 0.0)]
     isCanceled = threading.Event()

@@ -31,10 +31,7 @@ otherwise they alone would count as tissue."""
 class Tissue:
     """What is tissue in an image.
 
-    Attributes:
-        level: (i, j, k) float within ±1, positive in tissue; its zero lies between the voxels.
-        threshold: that parts it from air, in the image's own values.
-        isCt: whether the values are Hounsfield units.
+    `level` (i, j, k) is within ±1, positive in tissue, its zero between the voxels.
     """
 
     level: np.ndarray

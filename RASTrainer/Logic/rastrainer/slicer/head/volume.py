@@ -27,10 +27,6 @@ class Volume:
     warnings: tuple[str, ...] = ()
 
 
-def volumeFromNode(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
-    return asFloat(imageOfNode(node))
-
-
 def imageOfNode(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
     """Return the image of a volume node where its transforms place it, at once: it is not copied.
 
@@ -160,13 +156,8 @@ class HeadSettings:
 class HeadBody:
     """A head as voxels of 1 mm along RAS, before it becomes a surface.
 
-    Attributes:
-        level: (i, j, k) float, positive inside, its zero between the voxels where the skin is.
-        body: (i, j, k) bool, without cavities and tunnels.
-        origin: (3,) float, RAS mm, of voxel 0, 0, 0.
-        baseMm: height (S) of the flat base.
-        threshold: that parts air from skin, in the volume's own values.
-        isCt: whether the values are Hounsfield units.
+    `level` (i, j, k) is positive inside, its zero where the skin is; `body` is without cavities and
+    tunnels; `origin` is RAS mm of voxel 0, 0, 0; `threshold` parts air from skin.
     """
 
     level: np.ndarray

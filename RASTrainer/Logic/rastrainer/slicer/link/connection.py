@@ -25,12 +25,7 @@ from rastrainer.slicer.signal import Signal
 
 
 class ConnectorKit(NamedTuple):
-    """Makes the two objects that the link talks to.
-
-    Attributes:
-        makeConnector: returns a new `vtkMRMLIGTLConnectorNode`, or a stand-in.
-        makeCommand: returns a new `vtkSlicerOpenIGTLinkCommand`, or a stand-in.
-    """
+    """Makes a `vtkMRMLIGTLConnectorNode` and a `vtkSlicerOpenIGTLinkCommand`, or stand-ins."""
 
     makeConnector: Callable[[], Any]
     makeCommand: Callable[[], Any]

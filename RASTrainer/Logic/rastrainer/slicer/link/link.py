@@ -57,15 +57,10 @@ COMMANDS_A_TURN, CHARACTERS_A_TURN = 16, 200_000
 class Link(SimulatorConnection):
     """Sends commands, and emits what the simulator reports.
 
-    Attributes:
-        status: the state of the link in words, as of the last `process`.
-        statusChanged: emits the new `LinkStatus`.
-        opened: emits nothing, after the greeting of each connection has been answered.
-        pointsChanged: emits the list of touched points (`vtkMRMLMarkupsFiducialNode`).
-        stateChanged: emits what `SimState` says, a dict.
-        trialCompleted: emits the record that the simulator delivers, a dict not yet checked.
-        trialAborted: emits the record of an aborted trial, a dict not yet checked.
-        stepAnswered: emits the answers to a questionnaire of a study, a dict not yet checked.
+    `status` is as of the last `process`. `opened` is emitted after the greeting of each connection
+    has been answered, `pointsChanged` with the list of touched points, `stateChanged` with what
+    `SimState` says. `trialCompleted`, `trialAborted` and `stepAnswered` emit the records that the
+    simulator delivers: dicts not yet checked.
     """
 
     def __init__(

@@ -29,13 +29,7 @@ class Peer(str, Enum):
 
 @dataclass(frozen=True)
 class ProbeResult:
-    """Who answered.
-
-    Attributes:
-        peer: who it is.
-        ip: tested IPv4 address; empty if the host has none.
-        version: of the simulator's protocol; 0 where it is no simulator.
-    """
+    """Who answered at an IPv4 address; the version is that of a simulator's protocol."""
 
     peer: Peer
     ip: str = ""
@@ -96,16 +90,9 @@ class LinkStatus:
 class LinkObservation:
     """What is known of a connection.
 
-    Attributes:
-        address: as the user gave it, such as `127.0.0.1:18944`; empty if no connection is wanted.
-        isInstalled: there is a connector to connect with.
-        isListening: the simulator is to connect to this side.
-        finding: what answers there; None before the test has a result.
-        isOpen: there is a TCP connection.
-        silenceS: seconds since the last heartbeat, or since the connection was opened, without
-            those in which Slicer itself was held up.
-        hasHeartbeat: a heartbeat has come over this connection.
-        peerVersion: version of the simulator's protocol; None as long as it is not known.
+    The `address` is as the user gave it, empty if no connection is wanted. `silenceS` are seconds
+    since the last heartbeat, or since the connection was opened, without those in which Slicer
+    itself was held up; `hasHeartbeat` says that one has come over this connection.
     """
 
     address: str = ""

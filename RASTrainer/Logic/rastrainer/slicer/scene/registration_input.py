@@ -142,12 +142,8 @@ class Remedy:
     choices: Choices
 
 
-def remedies(registration: Registration, choices: Choices) -> tuple[Remedy, ...]:
-    """Return each warning of a rigid registration with what one click can do about it."""
-    return tuple(_remedy(warning, registration, choices) for warning in registration.warnings)
-
-
-def _remedy(warning: RegistrationWarning, registration: Registration, choices: Choices) -> Remedy:
+def remedyOf(warning: RegistrationWarning, registration: Registration, choices: Choices) -> Remedy:
+    """Return a warning of a rigid registration with what one click can do about it."""
     if warning.code == "order":
         order = find_order(registration.moving_mm, registration.fixed_mm)
         if order is None:

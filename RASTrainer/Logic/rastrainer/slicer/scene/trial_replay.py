@@ -60,7 +60,10 @@ def showReplay(
     sample.
     """
     trajectory = track.trajectory
-    rows = _rows(trajectory.times_s)
+    # About ten samples a second, the first and the last.
+    times = trajectory.times_s
+    wanted = np.arange(times[0], times[-1], 1.0 / SAMPLE_HZ)
+    rows = np.unique([*np.searchsorted(times, wanted), len(times) - 1])
     poses = (
         chain.toolToWorld(track.q[rows])
         if chain.axes.any(axis=1).sum() == track.q.shape[1]
@@ -230,12 +233,6 @@ def _slicesOf(sequence: Any) -> Iterator[None]:
         sequence.RemoveDataNodeAtValue(sequence.GetNthIndexValue(index))
         if index % STATES_A_SLICE == 0:
             yield
-
-
-def _rows(times: np.ndarray) -> np.ndarray:
-    """Return which samples are shown: about ten a second, the first and the last."""
-    wanted = np.arange(times[0], times[-1], 1.0 / SAMPLE_HZ)
-    return np.unique([*np.searchsorted(times, wanted), len(times) - 1])
 
 
 def _toolStates(times: np.ndarray, poses: np.ndarray) -> Iterator[tuple[float, Any]]:
