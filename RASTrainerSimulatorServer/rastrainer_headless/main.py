@@ -43,7 +43,7 @@ from rastrainer.slicer.logic.scenario_cache import ScenarioCache
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.slicer.scene.error_colors import magnification
 from rastrainer.slicer.scene.nodes import labelsOf
-from rastrainer.slicer.scene.scenario_nodes import scenarioLoader, showScenario
+from rastrainer.slicer.scene.scenario_nodes import SceneFileLoader, showScenario
 from rastrainer.study.database.study import STUDY_FILE, Study
 from rastrainer.trial.analysis import TrialAnalysis
 from rastrainer.trial.ctps import CTPS_WARNING, read_trials
@@ -73,7 +73,7 @@ class HeadlessHost:
         self._output = output
         self._touches = 0
         self._work = BackgroundWork()
-        self._files = scenarioLoader(self.application.scene, self._work)
+        self._files = SceneFileLoader(self.application.scene, self._work)
         self._presenter = TrialLogic(
             self.application.scene,
             self.link,

@@ -15,7 +15,7 @@ from rastrainer.slicer.scene.nodes import Role, findNode
 from rastrainer.slicer.scene.scenario_nodes import (
     MODEL,
     VOLUME,
-    scenarioLoader,
+    SceneFileLoader,
     showImages,
     showScenario,
 )
@@ -29,7 +29,7 @@ class Loading:
     def __init__(self, scene):
         self.scene = scene
         self.work = BackgroundWork()
-        self.loader = scenarioLoader(scene, self.work)
+        self.loader = SceneFileLoader(scene, self.work)
         self.shown, self.problems = [], []
         self.loader.shown.connect(self.take)
         self.loader.problemFound.connect(self.problems.append)

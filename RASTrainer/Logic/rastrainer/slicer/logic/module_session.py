@@ -37,7 +37,7 @@ from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.slicer.logic.views import BorrowedLayout, SliceFollower
 from rastrainer.slicer.program.child_process import OwnProcess
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
-from rastrainer.slicer.scene.scenario_nodes import scenarioLoader
+from rastrainer.slicer.scene.scenario_nodes import SceneFileLoader
 from rastrainer.slicer.scene.scene_watch import SceneWatch
 from rastrainer.slicer.scene.trial_scene import followPlacement
 from rastrainer.slicer.settings import Settings
@@ -131,7 +131,7 @@ class ModuleSession:
         self.simulator = SimulatorLogic(self.link, setup, places.records, self.settings)
         self.trainees = TraineeLogic(self.openStudy, places.records, self.openStudyPatiently)
         self.scenario = ScenarioLogic(scene, cache, places.assets / ROBOT, run, self.work)
-        self.files = scenarioLoader(scene, self.work)
+        self.files = SceneFileLoader(scene, self.work)
         self.scenarioMaker = ScenarioMaker(scene, self.simulator, cache, places.library, run)
         self.scenarioFiles = ScenarioFiles(self.simulator, cache, places.library)
         self.training = TrainingLogic(scene, self.link, cache.find, later=self.work.changeScene)
