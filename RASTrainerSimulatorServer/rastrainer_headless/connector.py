@@ -13,7 +13,7 @@ import threading
 import time
 import weakref
 from collections import deque
-from typing import Any
+from typing import Any, NamedTuple
 
 import slicer
 
@@ -22,7 +22,7 @@ from rastrainer.igtl.content import Command, CommandReply, Status
 from rastrainer.igtl.message import Header, Message, crc64, pack, unpack
 from rastrainer.slicer.link.connection import ConnectorKit
 from rastrainer.slicer.scene.nodes import ORIGINAL_NAME, decodedText
-from rastrainer_headless.command import HeadlessCommand, OutgoingCommand
+from rastrainer_headless.command import HeadlessCommand
 from rastrainer_headless.peer_sockets import PeerSockets, recordCrash
 from rastrainer_headless.scene import NODE_CLASS, adoptOrCreateNode, asSlicerHas, updateNode
 
@@ -31,6 +31,25 @@ _CRASHING_TYPE = re.compile(r"(GET|STT|STP|RTS)_")
 _DEVICE_NAME_FIELD = slice(14, 34)
 
 Raw = tuple[Header, bytes]
+
+
+class OutgoingCommand(NamedTuple):
+    """A sent command.
+
+    The real connector keeps what a command says, and reports its events to the object that was made
+    in Python, whether or not that still lives.
+    """
+
+    commandId: int
+    deadline: float
+    command: weakref.ref[HeadlessCommand]
+
+    def alive(self) -> HeadlessCommand:
+        """Return the command; without it Slicer would crash."""
+        command = self.command()
+        if command is None:
+            raise recordCrash("A command was deleted before the connector was done with it.")
+        return command
 
 
 class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
@@ -61,7 +80,6 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         self._events: deque[int] = deque()
 
     def SetTypeClient(self, hostname: str, port: int) -> int:
-        """Make it the client of a server."""
         self._type, self._address = self.TypeClient, (hostname, port)
         return 1
 
@@ -71,7 +89,6 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         return 1
 
     def GetServerHostname(self) -> str:
-        """Return the server that a client connects to."""
         return self._address[0]
 
     def SetServerPort(self, port: int) -> None:
@@ -82,7 +99,7 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
 
     def GetServerPort(self) -> int:
         """Return the TCP port, that in use where a server was given port 0."""
-        return self._sockets.port if self._sockets else self._address[1]
+        return self._sockets.portInUse if self._sockets else self._address[1]
 
     def GetState(self) -> int:
         return self._state
@@ -102,7 +119,6 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         return 1
 
     def Stop(self) -> int:
-        """Disconnect; return 1 on success."""
         if self._sockets is None:
             return 0
         self._sockets.stop()
@@ -111,11 +127,9 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         return 1
 
     def GetNumberOfIncomingMRMLNodes(self) -> int:
-        """Return the number of nodes that messages have been put into."""
         return self.GetNumberOfNodeReferences(_INCOMING)
 
     def GetIncomingMRMLNode(self, index: int) -> Any | None:
-        """Return one of the nodes that messages have been put into."""
         return self.GetNthNodeReference(_INCOMING, index)
 
     def SendCommand(self, command: HeadlessCommand) -> None:
@@ -136,7 +150,7 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
             command.SetCommandStatus(command.CommandFailed)
             return
         command.SetCommandStatus(command.CommandWaiting)
-        deadline = time.monotonic() + command.GetTimeoutSec()
+        deadline = time.monotonic() + command.timeoutSec
         self._outgoing.append(OutgoingCommand(command.commandId, deadline, weakref.ref(command)))
 
     def PeriodicProcess(self) -> None:
@@ -157,8 +171,12 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         for _key, raw in sorted(latest.items(), key=lambda item: item[0]):
             self._processData(*raw, modifications)
         for event in events:
-            if event == self.ConnectedEvent:
-                self._greet()
+            if event == self.ConnectedEvent and self._sockets is not None:
+                # The odd STATUS that Slicer opens each connection with: no name, metadata `dummy`.
+                dummy = Message("none", Status(0), {"dummy": "dummy"}, timestamp=0.0)
+                greeting = bytearray(pack(dummy))
+                greeting[_DEVICE_NAME_FIELD] = bytes(20)
+                self._sockets.send(bytes(greeting))
             self.InvokeEvent(event)
         for node, wasModifying in reversed(modifications):
             node.EndModify(wasModifying)
@@ -175,13 +193,6 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         with self._lock:
             self._events.append(self.ConnectedEvent if isConnected else self.DisconnectedEvent)
 
-    def _greet(self) -> None:
-        """Send the odd STATUS that Slicer opens each connection with: no name, metadata `dummy`."""
-        greeting = bytearray(pack(Message("none", Status(0), {"dummy": "dummy"}, timestamp=0.0)))
-        greeting[_DEVICE_NAME_FIELD] = bytes(20)
-        if self._sockets is not None:
-            self._sockets.send(bytes(greeting))
-
     def _processCommand(self, header: Header, body: bytes) -> None:
         try:
             message = unpack(header, body, keep_bytes=True)
@@ -189,7 +200,15 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
             raise recordCrash(f"A broken command came: {error}") from None
         content = message.content
         if isinstance(content, CommandReply):
-            self._takeAnswer(content, message)
+            sent = [each for each in self._outgoing if each.commandId == content.command_id]
+            if not sent:
+                logging.warning("An answer to no command of ours was dropped.")
+                return
+            command = sent[0].alive()
+            metadata = {key: asSlicerHas(text) for key, text in message.metadata.items()}
+            command.setResponse(asSlicerHas(content.body), metadata)
+            self.InvokeEvent(self.CommandResponseReceivedEvent, command)
+            command.InvokeEvent(command.CommandResponseEvent)
         elif isinstance(content, Command):
             command = HeadlessCommand()
             command.commandId = content.command_id
@@ -198,31 +217,20 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
             command.SetCommandStatus(command.CommandWaiting)
             self.InvokeEvent(self.CommandReceivedEvent, command)
 
-    def _takeAnswer(self, reply: CommandReply, message: Message) -> None:
-        for outgoing in self._outgoing:
-            if outgoing.commandId == reply.command_id:
-                command = outgoing.alive()
-                metadata = {key: asSlicerHas(text) for key, text in message.metadata.items()}
-                command.setResponse(asSlicerHas(reply.body), metadata)
-                self.InvokeEvent(self.CommandResponseReceivedEvent, command)
-                command.InvokeEvent(command.CommandResponseEvent)
-                return
-        logging.warning("An answer to no command of ours was dropped.")
-
     def _giveUpOldCommands(self) -> None:
         now = time.monotonic()
         for outgoing in self._outgoing:
             if now > outgoing.deadline and (command := outgoing.alive()).IsInProgress():
                 command.SetCommandStatus(command.CommandExpired)
                 command.InvokeEvent(command.CommandExpiredEvent)
-        commands = [(outgoing, outgoing.command()) for outgoing in self._outgoing]
-        completed = [command for _out, command in commands if command and command.IsCompleted()]
-        self._outgoing = [
-            out for out, command in commands if command is None or command.IsInProgress()
-        ]
-        for command in completed:
-            self.InvokeEvent(self.CommandCompletedEvent, command)
-            command.InvokeEvent(command.CommandCompletedEvent)
+        sent, self._outgoing = self._outgoing, []
+        for outgoing in sent:
+            ended = outgoing.command()
+            if ended is None or ended.IsInProgress():
+                self._outgoing.append(outgoing)
+            else:
+                self.InvokeEvent(self.CommandCompletedEvent, ended)
+                ended.InvokeEvent(ended.CommandCompletedEvent)
 
     def _processData(
         self, header: Header, body: bytes, modifications: list[tuple[Any, int]]
@@ -234,7 +242,13 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
             return
         if self.GetScene() is None:
             return
-        node = self._incomingNode(header)
+        indexes = range(self.GetNumberOfIncomingMRMLNodes())
+        known = [node for index in indexes if (node := self.GetIncomingMRMLNode(index))]
+        ours = [node for node in known if node.GetAttribute(ORIGINAL_NAME) == header.device]
+        node = next((node for node in ours if node.IsA(NODE_CLASS[header.type])), None)
+        if node is None:
+            node = adoptOrCreateNode(self.GetScene(), header.type, header.device)
+            self.AddNodeReferenceID(_INCOMING, node.GetID())
         modifications.append((node, node.StartModify()))
         if crc64(body) != header.checksum:
             logging.error("A message of %s was dropped: wrong checksum.", header.device)
@@ -246,18 +260,6 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
                 raise recordCrash(f"A message of {header.device} came: {error}") from None
             logging.error("A message of %s was dropped: %s", header.device, error)
 
-    def _incomingNode(self, header: Header) -> Any:
-        for index in range(self.GetNumberOfIncomingMRMLNodes()):
-            node = self.GetIncomingMRMLNode(index)
-            if node is None or not node.IsA(NODE_CLASS[header.type]):
-                continue
-            if node.GetAttribute(ORIGINAL_NAME) == header.device:
-                return node
-        node = adoptOrCreateNode(self.GetScene(), header.type, header.device)
-        self.AddNodeReferenceID(_INCOMING, node.GetID())
-        return node
-
 
 def headlessKit() -> ConnectorKit:
-    """Return what makes the stand-ins of the connector and its commands."""
     return ConnectorKit(HeadlessConnector, HeadlessCommand)

@@ -10,6 +10,7 @@ import tempfile
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -65,14 +66,8 @@ _TAGS = [
 class _Slice:
     """One slice, whose pixels are not read yet.
 
-    Attributes:
-        path: of its file.
-        frame: index within the file.
-        series: what all slices of a stack share.
-        name: of the series, for people.
-        axes: (3, 2) float, RAS mm, from a pixel to the next one in its row and in its column.
-        place: (3,) float, RAS mm, of the first pixel.
-        slope, intercept: from a pixel's number to its value.
+    `axes` (3, 2), RAS mm, lead from a pixel to the next one in its row and in its column; all
+    slices of a stack share `series`.
     """
 
     path: Path
@@ -105,7 +100,9 @@ def readDicom(path: Path) -> Volume:
         raise InputError(f"The folder {path} contains no DICOM files.")
     stacks: list[list[_Slice]] = []
     for each in (found for file in paths for found in _read(file, lambda f: list(_slices(f)))):
-        stack = next((stack for stack in stacks if _fits(each, stack[0])), [])
+        alike = (stack for stack in stacks if stack[0].series == each.series)
+        closeTo = partial(np.allclose, each.axes, atol=_SAME_AXES)
+        stack = next((stack for stack in alike if closeTo(stack[0].axes)), [])
         if not stack:
             stacks.append(stack)
         stack.append(each)
@@ -195,10 +192,6 @@ def _value(header: Any, groups: tuple[Any, Any], group: str, name: str) -> Any:
     return header.get(name)
 
 
-def _fits(one: _Slice, other: _Slice) -> bool:
-    return one.series == other.series and np.allclose(one.axes, other.axes, atol=_SAME_AXES)
-
-
 def _stacked(folder: Path, slices: list[_Slice], notes: tuple[str, ...]) -> Volume:
     axes = slices[0].axes
     normal = np.cross(axes[:, 0], axes[:, 1])
@@ -206,7 +199,15 @@ def _stacked(folder: Path, slices: list[_Slice], notes: tuple[str, ...]) -> Volu
         raise InputError(f"The DICOM series in {folder} does not say where its slices lie.")
     normal /= np.linalg.norm(normal)
     slices = sorted(slices, key=lambda each: float(normal @ each.place))
-    values = _pixels(slices)
+    paths = {each.path for each in slices}
+    if sum(path.stat().st_size for path in paths) > MAX_BYTES:
+        raise InputError(f"The series {slices[0].name} is larger than one head needs.")
+    numbers = {path: _read(path, _numbers) for path in paths}
+    values = [
+        numbers[each.path][each.frame].T.astype(np.float32) * np.float32(each.slope)
+        + np.float32(each.intercept)
+        for each in slices
+    ]
     places = np.array([each.place for each in slices])
     isNew = np.append(True, np.diff(places @ normal) > _SAME_PLACE_MM)
     for index in np.flatnonzero(~isNew):
@@ -232,19 +233,6 @@ def _stacked(folder: Path, slices: list[_Slice], notes: tuple[str, ...]) -> Volu
     if np.abs(places - line).max() > IN_LINE_WITHIN * step:
         raise InputError(f"The slices of the DICOM series in {folder} do not lie in one line.")
     return Volume(np.stack(values, axis=2), matrix, notes)
-
-
-def _pixels(slices: list[_Slice]) -> list[np.ndarray]:
-    """Return the values (i, j) float32 of each slice."""
-    paths = {each.path for each in slices}
-    if sum(path.stat().st_size for path in paths) > MAX_BYTES:
-        raise InputError(f"The series {slices[0].name} is larger than one head needs.")
-    numbers = {path: _read(path, _numbers) for path in paths}
-    return [
-        numbers[each.path][each.frame].T.astype(np.float32) * np.float32(each.slope)
-        + np.float32(each.intercept)
-        for each in slices
-    ]
 
 
 def _numbers(path: Path) -> np.ndarray:

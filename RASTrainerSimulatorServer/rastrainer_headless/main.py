@@ -23,27 +23,27 @@ import math
 import os
 import sys
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
+
+import slicer
 
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.json_records import record_to_json
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
-from rastrainer.registration.registration import Registration
-from rastrainer.registration.target_error import TargetError
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.link.link_status import LinkStatus
 from rastrainer.slicer.logic.delivery_queue import AbortedTrialLogic
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.slicer.scene.error_colors import magnification
-from rastrainer.slicer.scene.nodes import labelsOf, localPoints
-from rastrainer.slicer.scene.scenario_nodes import scenarioLoader, showScenario
+from rastrainer.slicer.scene.nodes import labelsOf
+from rastrainer.slicer.scene.scenario_nodes import SceneFileLoader, showScenario
 from rastrainer.study.database.study import STUDY_FILE, Study
 from rastrainer.trial.analysis import TrialAnalysis
 from rastrainer.trial.ctps import CTPS_WARNING, read_trials
@@ -53,6 +53,9 @@ from rastrainer_headless.residual_picture import writeResidualPicture
 from rastrainer_headless.scene import HeadlessScene
 
 PERIOD_S = 0.005
+SCENE = "trial.mrb"
+PICTURE = "residuals.png"
+RESULTS = "results.jsonl"
 
 
 class TrialsMissingError(RASTrainerError):
@@ -60,14 +63,7 @@ class TrialsMissingError(RASTrainerError):
 
 
 class HeadlessHost:
-    """Replaces Slicer's application: owns the scene and calls what is due.
-
-    Attributes:
-        application: the scene and what it needs.
-        link: to the simulator.
-        latest: the trial that was scored last.
-        scored: how many trials were scored; their numbers are in the output folder, not here.
-    """
+    """Replaces Slicer's application: owns the scene and calls what is due."""
 
     def __init__(self, cache: ScenarioCache, output: Path, cohort: Path | None) -> None:
         self.application = HeadlessScene()
@@ -77,7 +73,7 @@ class HeadlessHost:
         self._output = output
         self._touches = 0
         self._work = BackgroundWork()
-        self._files = scenarioLoader(self.application.scene, self._work)
+        self._files = SceneFileLoader(self.application.scene, self._work)
         self._presenter = TrialLogic(
             self.application.scene,
             self.link,
@@ -91,7 +87,7 @@ class HeadlessHost:
             lambda trial: printEvent("aborted", trialId=trial.trial_id, reason=trial.reason)
         )
         self._procedure = ProcedureLogic(self.application.scene, self.link, cache.find, self._work)
-        self.link.statusChanged.connect(self._printStatus)
+        self.link.statusChanged.connect(lambda status: printEvent("status", **asdict(status)))
         self.link.pointsChanged.connect(self._printPoints)
         self._presenter.trialScored.connect(self._printTrial)
         for problems in (
@@ -103,12 +99,7 @@ class HeadlessHost:
             problems.connect(lambda sentence: printEvent("problem", sentence=sentence))
 
     def run(self, count: int, timeoutS: float) -> TrialAnalysis:
-        """Wait until a number of trials are scored, and return the last one.
-
-        Raises:
-            TrialsMissingError: they did not come in time.
-            InputError: a trial's numbers cannot be written into the output folder.
-        """
+        """Wait until a number of trials are scored, and return the last one."""
         end = time.monotonic() + timeoutS
         while self.scored < count or self.latest is None:
             if time.monotonic() > end:
@@ -132,13 +123,8 @@ class HeadlessHost:
         self._work.close()
         self.link.disconnect()
 
-    def _printStatus(self, status: LinkStatus) -> None:
-        printEvent(
-            "status", state=status.state.value, sentence=status.sentence, remedy=status.remedy
-        )
-
     def _printPoints(self, node: Any) -> None:
-        labels, positions = labelsOf(node), localPoints(node)
+        labels, positions = labelsOf(node), slicer.util.arrayFromMarkupsControlPoints(node)
         for row in range(self._touches, len(labels)):
             printEvent(
                 "point", label=labels[row], count=row + 1, positionMm=positions[row].tolist()
@@ -149,7 +135,14 @@ class HeadlessHost:
 
     def _printTrial(self, analysis: TrialAnalysis) -> None:
         results = results_json(analysis)
-        appendResults(self._output, results)
+        path = self._output / RESULTS
+        try:
+            with path.open("a", encoding="utf-8", newline="\n") as file:
+                file.write(json.dumps(results, allow_nan=False) + "\n")
+                file.flush()
+                os.fsync(file.fileno())
+        except OSError as error:
+            raise InputError(f"The file {path} cannot be written: {error.strerror}.") from None
         self.latest = analysis
         self.scored += 1
         printEvent("trial", results=results)
@@ -167,12 +160,21 @@ def printEvent(event: str, **values: Any) -> None:
 def results_json(analysis: TrialAnalysis) -> dict[str, Any]:
     """Return the numbers of a trial as a JSON object."""
     score, procedure, published = analysis.score, analysis.procedure, analysis.published_score
+    fits = {}
+    for kind, fit in analysis.fits.items():
+        error = analysis.target_errors[kind]
+        fits[kind] = {
+            "freMm": fit.fre_mm,
+            "matrix": fit.matrix.ravel().tolist(),
+            "residualsMm": fit.residuals_mm.tolist(),
+            "targetRas": list(error.target_mm),
+            "expectedTreMm": error.expected_mm,
+            "treIntervalMm": list(error.interval_mm),
+            "warnings": [record_to_json(warning) for warning in fit.warnings],
+        }
     return {
         "record": record_to_json(analysis.record, with_defaults=True),
-        "fits": {
-            kind: _fit_json(fit, analysis.target_errors[kind])
-            for kind, fit in analysis.fits.items()
-        },
+        "fits": fits,
         "targetName": analysis.target_name,
         "truth": None if analysis.truth is None else record_to_json(analysis.truth),
         "score": None if score is None else record_to_json(score, with_defaults=True),
@@ -189,64 +191,30 @@ def results_json(analysis: TrialAnalysis) -> dict[str, Any]:
     }
 
 
-def _fit_json(fit: Registration, error: TargetError) -> dict[str, Any]:
-    return {
-        "freMm": fit.fre_mm,
-        "matrix": fit.matrix.ravel().tolist(),
-        "residualsMm": fit.residuals_mm.tolist(),
-        "targetRas": list(error.target_mm),
-        "expectedTreMm": error.expected_mm,
-        "treIntervalMm": list(error.interval_mm),
-        "warnings": [record_to_json(warning) for warning in fit.warnings],
-    }
-
-
-SCENE = "trial.mrb"
-PICTURE = "residuals.png"
-RESULTS = "results.jsonl"
-
-
-def appendResults(folder: Path, results: Mapping[str, Any]) -> None:
-    """Add a trial's `results_json` to the file of results, as one line that is on the disk then."""
-    path = folder / RESULTS
-    try:
-        with path.open("a", encoding="utf-8", newline="\n") as file:
-            file.write(json.dumps(results, allow_nan=False) + "\n")
-            file.flush()
-            os.fsync(file.fileno())
-    except OSError as error:
-        raise InputError(f"The file {path} cannot be written: {error.strerror}.") from None
-
-
 def writeOutput(
     folder: Path, application: HeadlessScene, scenario: Scenario, latest: TrialAnalysis
 ) -> dict[str, str]:
     """Write scene and picture of the latest trial; return the paths of all files."""
     files = {"scene": folder / SCENE, "picture": folder / PICTURE, "results": folder / RESULTS}
     application.save(files["scene"])
-    _writePicture(files["picture"], scenario, latest)
-    return {name: str(path) for name, path in files.items()}
-
-
-def _writePicture(path: Path, scenario: Scenario, analysis: TrialAnalysis) -> None:
-    task = scenario.task(analysis.record.task)
-    expected = analysis.expected_tre
+    task, expected, rigid = scenario.task(latest.record.task), latest.expected_tre, latest.rigid
     low, high = expected.interval_mm
     # The recording program may not know where the head was.
-    true = "" if analysis.truth is None else f", true TRE {analysis.truth.true_tre_mm:.2f} mm"
+    true = "" if latest.truth is None else f", true TRE {latest.truth.true_tre_mm:.2f} mm"
     title = (
         f"{task.title}: rigid registration of {len(task.labels)} touched points, "
-        f"FRE {analysis.rigid.fre_mm:.2f} mm"
+        f"FRE {rigid.fre_mm:.2f} mm"
     )
     caption = [
         "Ball and number: fiducial in the MRI and its residual in mm. Arrow: toward where the "
-        f"registration puts the touch, {magnification(analysis.rigid):g} times as long.",
+        f"registration puts the touch, {magnification(rigid):g} times as long.",
         f"At the target ({scenario.target_name}): expected TRE {expected.expected_mm:.2f} mm "
         f"(95 %: {low:.2f} to {high:.2f} mm){true}. "
         "FRE does not predict TRE case by case.",
     ]
     head = read_head_mesh(scenario.head_mesh)
-    writeResidualPicture(path, head, analysis.rigid, title, caption)
+    writeResidualPicture(files["picture"], head, rigid, title, caption)
+    return {name: str(path) for name, path in files.items()}
 
 
 def main(argv: Sequence[str] | None = None) -> int:

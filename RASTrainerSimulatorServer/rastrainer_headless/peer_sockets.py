@@ -41,13 +41,8 @@ Received = Callable[[int, wire.Header, bytes], None]
 class PeerSockets:
     """Keeps one connection to a server, or listens for many clients, on separate threads.
 
-    Args:
-        listens: True for a server, False for a client.
-        host: where the server is; a server listens on all addresses of this machine's loopback.
-        port: TCP port.
-        received: called on a receiving thread with the peer's number and each raw message.
-        changed: called on a thread whenever it becomes known that a peer is there, or that the
-            last one has left; Slicer too finds out only every 100 ms.
+    `received` is called on a thread with the peer's number and each raw message; `changed` whenever
+    a peer is there, or the last one has left; Slicer too finds out only every 100 ms.
     """
 
     def __init__(
@@ -59,7 +54,7 @@ class PeerSockets:
         changed: Callable[[bool], None],
     ) -> None:
         self._host = host
-        self._port = port
+        self.port = port
         self._received = received
         self._changed = changed
         self._peers: dict[int, socket.socket] = {}
@@ -75,21 +70,12 @@ class PeerSockets:
         self._thread.start()
 
     @property
-    def port(self) -> int:
-        """The port in use; differs from the given one where that was 0."""
-        return self._listener.getsockname()[1] if self._listener else self._port
-
-    @port.setter
-    def port(self, port: int) -> None:
-        """Let a client connect there the next time."""
-        self._port = port
+    def portInUse(self) -> int:
+        """The port; differs from the given one where that was 0."""
+        return self._listener.getsockname()[1] if self._listener else self.port
 
     def send(self, data: bytes) -> bool:
-        """Send to every peer; blocks while one does not read, as Slicer's does.
-
-        Returns:
-            Whether there was a peer and all of them took it.
-        """
+        """Send to every peer, blocking while one does not read; return whether all took it."""
         with self._lock:
             peers = list(self._peers.values())
         try:
@@ -114,9 +100,11 @@ class PeerSockets:
 
     def _keepConnected(self) -> None:
         while not self._stopped.is_set():
-            peer = self._connect() if self._listener is None else _accept(self._listener)
-            if peer is not None:
-                self._add(peer)
+            with contextlib.suppress(OSError):
+                if self._listener is not None:
+                    self._add(self._listener.accept()[0])
+                elif not self._peers:
+                    self._add(socket.create_connection((self._host, self.port), timeout=1.0))
             with self._lock:
                 isConnected = bool(self._peers)
             if isConnected != self._isConnected:
@@ -124,18 +112,8 @@ class PeerSockets:
                 self._changed(isConnected)
             self._stopped.wait(RETRY_PERIOD_S)
 
-    def _connect(self) -> socket.socket | None:
-        with self._lock:
-            if self._peers:
-                return None
-        try:
-            peer = socket.create_connection((self._host, self._port), timeout=1.0)
-        except OSError:
-            return None
-        peer.settimeout(None)
-        return peer
-
     def _add(self, peer: socket.socket) -> None:
+        peer.settimeout(None)
         peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         number = self._nextPeer
         self._nextPeer += 1
@@ -181,10 +159,3 @@ def _shut(peer: socket.socket) -> None:
     with contextlib.suppress(OSError):  # The other side may have been faster.
         peer.shutdown(socket.SHUT_RDWR)
     peer.close()
-
-
-def _accept(listener: socket.socket) -> socket.socket | None:
-    try:
-        return listener.accept()[0]
-    except OSError:
-        return None

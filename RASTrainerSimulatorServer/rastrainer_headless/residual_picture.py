@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
@@ -23,7 +23,6 @@ from rastrainer.slicer.scene.scenario_nodes import meshPolyData
 WIDTH, HEIGHT = 1800, 1080
 _VIEWS = ((0.0, 0.09, 0.45, 0.92), (0.45, 0.09, 0.9, 0.92))
 _LEGEND = (0.9, 0.09, 1.0, 0.92)
-_PAGE = (0.0, 0.0, 1.0, 1.0)
 _CHARACTER_WIDTH, _LABEL_HEIGHT, _LABEL_GAP = 12, 28, 10
 _MARGIN = 1.08
 _CLEARLY_FACING = 0.25
@@ -43,30 +42,37 @@ _COLORS = (
 def writeResidualPicture(
     path: Path, head: HeadMesh, registration: Registration, title: str, caption: Sequence[str]
 ) -> None:
-    """Render the head from two sides with all points on it, and write a PNG, whole or not at all.
-
-    Args:
-        path: of the picture.
-        head: the head's surface, RAS mm.
-        registration: of the points to the fiducials on that head.
-        title: one line on top.
-        caption: lines below the picture.
-    """
+    """Render the head from two sides with all points on it; write a PNG, whole or not."""
     window = vtk.vtkRenderWindow()
     window.SetOffScreenRendering(True)
     window.SetMultiSamples(8)
     window.SetSize(WIDTH, HEIGHT)
     window.SetNumberOfLayers(2)
-    window.AddRenderer(_page(title, caption))
-    colors = _colors(registration)
+    page = vtk.vtkRenderer()
+    page.SetViewport(0.0, 0.0, 1.0, 1.0)
+    page.SetBackground(*_PAPER)
+    page.AddViewProp(_text(title, 34, (0.5, 0.955), isBold=True))
+    page.AddViewProp(_text("\n".join(caption), 24, (0.5, 0.045)))
+    window.AddRenderer(page)
+    low, high = residualRange(registration)
+    colors = vtk.vtkColorTransferFunction()
+    for share, color in zip(np.linspace(0.0, 1.0, len(_COLORS)), _COLORS, strict=True):
+        colors.AddRGBPoint(low + share * (high - low), *color)
     surface = meshPolyData(head)
     center = 0.5 * (head.vertices.min(axis=0) + head.vertices.max(axis=0))
-    outward = outwardDirections(registration.fixed_mm, center)
+    away = registration.fixed_mm - center
+    outward = away / np.linalg.norm(away, axis=1, keepdims=True)
     directions = chooseTwoViews(outward)
     facing = directions @ outward.T
     shown = np.vstack([head.vertices, arrowTips(registration)])
     for number, viewport in enumerate(_VIEWS):
-        view = _headView(viewport, surface)
+        view = vtk.vtkRenderer()
+        view.SetViewport(*viewport)
+        view.SetBackground(*_PAPER)
+        skin = _actor(surface)
+        skin.GetProperty().SetColor(*_SKIN)
+        skin.GetProperty().SetSpecular(0.1)
+        view.AddActor(skin)
         screen = _look(view, shown, center, directions[number])
         window.AddRenderer(view)
         isLabeled = facing[number] == facing.max(axis=0)
@@ -76,17 +82,16 @@ def writeResidualPicture(
         window.AddRenderer(glyphs)
     window.AddRenderer(_legend(colors))
     window.Render()
-    _write(window, path)
+    image = vtk.vtkWindowToImageFilter()
+    image.SetInput(window)
+    image.ReadFrontBufferOff()
+    writer = vtk.vtkPNGWriter()
+    writer.SetInputConnection(image.GetOutputPort())
+    partial = path.with_suffix(".partial")
+    writer.SetFileName(str(partial))
+    writer.Write()
+    partial.replace(path)
     window.Finalize()
-
-
-def _page(title: str, caption: Sequence[str]) -> vtk.vtkRenderer:
-    page = vtk.vtkRenderer()
-    page.SetViewport(*_PAGE)
-    page.SetBackground(*_PAPER)
-    page.AddViewProp(_text(title, 34, (0.5, 0.955), isBold=True))
-    page.AddViewProp(_text("\n".join(caption), 24, (0.5, 0.045)))
-    return page
 
 
 def _text(
@@ -104,25 +109,6 @@ def _text(
     actor.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
     actor.SetPosition(*place)
     return actor
-
-
-def _colors(registration: Registration) -> vtk.vtkColorTransferFunction:
-    low, high = residualRange(registration)
-    colors = vtk.vtkColorTransferFunction()
-    for share, color in zip(np.linspace(0.0, 1.0, len(_COLORS)), _COLORS, strict=True):
-        colors.AddRGBPoint(low + share * (high - low), *color)
-    return colors
-
-
-def _headView(viewport: Sequence[float], surface: vtk.vtkPolyData) -> vtk.vtkRenderer:
-    view = vtk.vtkRenderer()
-    view.SetViewport(*viewport)
-    view.SetBackground(*_PAPER)
-    skin = _actor(surface)
-    skin.GetProperty().SetColor(*_SKIN)
-    skin.GetProperty().SetSpecular(0.1)
-    view.AddActor(skin)
-    return view
 
 
 def _glyphView(
@@ -190,15 +176,21 @@ def _look(
     """Fill the view with the points `shown`, (n, 3) float, as they are seen from a direction."""
     left, bottom, right, top = view.GetViewport()
     width, height = (right - left) * WIDTH, (top - bottom) * HEIGHT
-    screen = fitScreen(shown, center, direction, width / _MARGIN, height / _MARGIN)
+    rightward = np.cross([0.0, 0.0, 1.0], direction)
+    rightward /= np.linalg.norm(rightward)
+    axes = np.array([rightward, np.cross(direction, rightward)])
+    across = (shown - center) @ axes.T
+    low, high = across.min(axis=0), across.max(axis=0)
+    pixelsPerMm = float(min(np.array([width, height]) / _MARGIN / (high - low)))
+    focus = center + 0.5 * (low + high) @ axes
     camera = view.GetActiveCamera()
     camera.ParallelProjectionOn()
-    camera.SetFocalPoint(screen.focus)
-    camera.SetPosition(screen.focus + 800.0 * direction)
+    camera.SetFocalPoint(focus)
+    camera.SetPosition(focus + 800.0 * direction)
     camera.SetViewUp(0.0, 0.0, 1.0)
-    camera.SetParallelScale(0.5 * height / screen.pixelsPerMm)
+    camera.SetParallelScale(0.5 * height / pixelsPerMm)
     camera.SetClippingRange(1.0, 1600.0)
-    return screen
+    return ViewPlane(axes, focus, pixelsPerMm)
 
 
 def _legend(colors: vtk.vtkColorTransferFunction) -> vtk.vtkRenderer:
@@ -225,36 +217,15 @@ def _legend(colors: vtk.vtkColorTransferFunction) -> vtk.vtkRenderer:
     return legend
 
 
-def _write(window: vtk.vtkRenderWindow, path: Path) -> None:
-    image = vtk.vtkWindowToImageFilter()
-    image.SetInput(window)
-    image.ReadFrontBufferOff()
-    writer = vtk.vtkPNGWriter()
-    writer.SetInputConnection(image.GetOutputPort())
-    partial = path.with_suffix(".partial")
-    writer.SetFileName(str(partial))
-    writer.Write()
-    partial.replace(path)
-
-
 _AZIMUTHS = np.radians(np.arange(0.0, 360.0, 15.0))
 _ELEVATIONS = np.radians([0.0, 25.0, 50.0])
-
-
-def outwardDirections(points: np.ndarray, center: np.ndarray) -> np.ndarray:
-    """Return (n, 3) unit vectors from the head's center through each point."""
-    away = points - center
-    return away / np.linalg.norm(away, axis=1, keepdims=True)
 
 
 def chooseTwoViews(outward: np.ndarray) -> np.ndarray:
     """Return (2, 3) unit vectors, from the head toward two cameras.
 
     Of all pairs in a grid, the one in which the point that is seen worst is seen best; among
-    equals, the one that shows the points best on the whole.
-
-    Args:
-        outward: (n, 3) float, unit vectors along which the points face.
+    equals, the one that shows the points, which face along `outward` (n, 3), best on the whole.
     """
     grid = np.array(
         [
@@ -264,15 +235,12 @@ def chooseTwoViews(outward: np.ndarray) -> np.ndarray:
         ]
     )
     facing = grid @ outward.T
-    best = max(
-        combinations(range(len(grid)), 2),
-        key=lambda pair: _worth(np.maximum(facing[pair[0]], facing[pair[1]])),
-    )
-    return grid[list(best)]
 
+    def worth(pair: Iterable[int]) -> tuple[float, float]:
+        seen = facing[list(pair)].max(axis=0)
+        return round(float(seen.min()), 2), float(seen.sum())
 
-def _worth(facing: np.ndarray) -> tuple[float, float]:
-    return round(float(facing.min()), 2), float(facing.sum())
+    return grid[list(max(combinations(range(len(grid)), 2), key=worth))]
 
 
 @dataclass(frozen=True)
@@ -294,27 +262,6 @@ class ViewPlane:
         return self.pixelsPerMm * (points - self.focus) @ self.axes.T
 
 
-def fitScreen(
-    shown: np.ndarray, center: np.ndarray, direction: np.ndarray, width: float, height: float
-) -> ViewPlane:
-    """Return the view, upright along S, in which points just fill `width` × `height` pixels.
-
-    Args:
-        shown: (n, 3) float, the points.
-        center: (3,) float, a point in the depth that is in focus.
-        direction: (3,) float, unit vector toward the camera, not along S.
-        width: pixels.
-        height: pixels.
-    """
-    right = np.cross([0.0, 0.0, 1.0], direction)
-    right /= np.linalg.norm(right)
-    axes = np.array([right, np.cross(direction, right)])
-    across = (shown - center) @ axes.T
-    low, high = across.min(axis=0), across.max(axis=0)
-    pixelsPerMm = float(min(np.array([width, height]) / (high - low)))
-    return ViewPlane(axes, center + 0.5 * (low + high) @ axes, pixelsPerMm)
-
-
 Side = tuple[int, int]
 
 SIDES: tuple[Side, ...] = ((1, 1), (1, -1), (-1, 1), (-1, -1), (1, 0), (-1, 0), (0, 1), (0, -1))
@@ -326,32 +273,23 @@ _COST_OF_OVERLAP = 10.0
 def placeLabels(
     anchors: np.ndarray, sizes: np.ndarray, obstacles: np.ndarray, gap: float
 ) -> Sequence[Side]:
-    """Return on which side of its anchor each label goes.
+    """Return on which side of its anchor (n, 2) each label of a size (n, 2) goes, in pixels.
 
-    The labels are placed one after the other, each where it covers the least.
-
-    Args:
-        anchors: (n, 2) float, pixels, to the right and up.
-        sizes: (n, 2) float, width and height of the labels, pixels.
-        obstacles: (m, 2) float, places that should stay free, pixels.
-        gap: pixels between an anchor and its label.
+    The labels are placed one after the other, each where it covers the least of others and of the
+    obstacles (m, 2).
     """
     placed: list[np.ndarray] = []
     sides: list[Side] = []
+    directions = np.array(SIDES)
     for anchor, size in zip(anchors, sizes, strict=True):
-        boxes = [_box(anchor, size, side, gap) for side in SIDES]
+        # The lower left and the upper right corner on each side.
+        lower = anchor + gap * directions + 0.5 * (directions - 1) * size
+        boxes = np.stack([lower, lower + size], axis=1)
         costs = [_cost(box, placed, obstacles) for box in boxes]
         best = int(np.argmin(costs))
         placed.append(boxes[best])
         sides.append(SIDES[best])
     return sides
-
-
-def _box(anchor: np.ndarray, size: np.ndarray, side: Side, gap: float) -> np.ndarray:
-    """Return the lower left and the upper right corner of a label, (2, 2) float."""
-    direction = np.array(side)
-    lower = anchor + gap * direction + np.choose(direction + 1, [-size, -0.5 * size, 0.0 * size])
-    return np.array([lower, lower + size])
 
 
 def _cost(box: np.ndarray, placed: Sequence[np.ndarray], obstacles: np.ndarray) -> float:

@@ -7,7 +7,7 @@ this file.
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -39,7 +39,13 @@ class HeadlessScene:
         self._markupsLogic.SetMRMLApplicationLogic(self._applicationLogic)
         self._markupsLogic.SetMRMLScene(self.scene)
         # In a saved scene the slice views show the images.
-        self._sliceLogics = [self._sliceLogic(name, axes) for name, axes in SLICES.items()]
+        self._sliceLogics = []
+        for name, axes in SLICES.items():
+            logic = slicer.vtkMRMLSliceLogic()
+            logic.SetMRMLApplicationLogic(self._applicationLogic)
+            logic.SetMRMLScene(self.scene)
+            logic.AddSliceNode(name).SetOrientation(axes)
+            self._sliceLogics.append(logic)
         # It shows the item of each Sequence that its browser has chosen.
         self._sequencesLogic = slicer.vtkSlicerSequencesLogic()
         self._sequencesLogic.SetMRMLApplicationLogic(self._applicationLogic)
@@ -72,42 +78,24 @@ class HeadlessScene:
         if not isRead:
             raise InputError(f"{path} is not a scene bundle (.mrb) that can be read.")
 
-    def _sliceLogic(self, name: str, orientation: str) -> slicer.vtkMRMLSliceLogic:
-        logic = slicer.vtkMRMLSliceLogic()
-        logic.SetMRMLApplicationLogic(self._applicationLogic)
-        logic.SetMRMLScene(self.scene)
-        logic.AddSliceNode(name).SetOrientation(orientation)
-        return logic
-
 
 METADATA_PREFIX = "OpenIGTLink."
 UNSELECTED = "Unselected"
 
 
 class HeadlessStatusNode(slicer.vtkMRMLScriptedModuleNode):
-    """A stand-in of `vtkMRMLIGTLStatusNode`, which comes with the extension."""
+    """A stand-in of `vtkMRMLIGTLStatusNode`, which comes with the extension.
+
+    Attributes:
+        status: what has arrived.
+    """
 
     def __init__(self) -> None:
-        self._status = Status(0)
+        self.status = Status(0)
         self.SetSaveWithScene(False)
 
-    def GetCode(self) -> int:
-        return self._status.code
-
     def GetSubCode(self) -> int:
-        """Return the device's own code."""
-        return self._status.subcode
-
-    def GetErrorName(self) -> str:
-        return self._status.name
-
-    def GetStatusString(self) -> str:
-        return self._status.message
-
-    def setStatus(self, status: Status) -> None:
-        """Keep what has arrived (the connector's part)."""
-        self._status = status
-        self.Modified()
+        return self.status.subcode
 
 
 NODE_CLASS = {
@@ -118,8 +106,6 @@ NODE_CLASS = {
 }
 
 """Class of the node that each type is put into; Slicer knows more types, which we never send."""
-
-_NEW_NODE_CLASS = {**NODE_CLASS, Transform.TYPE: "vtkMRMLLinearTransformNode"}
 
 
 def asSlicerHas(text: str) -> str | bytes:
@@ -136,20 +122,18 @@ def adoptOrCreateNode(scene: Any, messageType: str, deviceName: str) -> Any:
     name = deviceName or "OpenIGTLink"
     node = scene.GetFirstNode(name, NODE_CLASS[messageType])
     if node is None:
-        node = _newNode(scene, messageType, name)
+        if messageType == Status.TYPE:
+            node = HeadlessStatusNode()
+            node.SetName(name)
+            scene.AddNode(node)
+        else:
+            isTransform = messageType == Transform.TYPE
+            className = "vtkMRMLLinearTransformNode" if isTransform else NODE_CLASS[messageType]
+            node = scene.AddNewNodeByClass(className, name)
+        if messageType == Points.TYPE:
+            node.CreateDefaultDisplayNodes()
         node.SetDescription("Received by OpenIGTLink")
     node.SetAttribute(ORIGINAL_NAME, name)
-    return node
-
-
-def _newNode(scene: Any, messageType: str, name: str) -> Any:
-    if messageType == Status.TYPE:
-        node = HeadlessStatusNode()
-        node.SetName(name)
-        return scene.AddNode(node)
-    node = scene.AddNewNodeByClass(_NEW_NODE_CLASS[messageType], name)
-    if messageType == Points.TYPE:
-        node.CreateDefaultDisplayNodes()
     return node
 
 
@@ -157,7 +141,10 @@ def updateNode(node: Any, message: Message) -> None:
     """Put the content of a message and its metadata into its node."""
     content = message.content
     if isinstance(content, Transform):
-        _updateTransform(node, content, message.metadata)
+        matrix = vtk.vtkMatrix4x4()
+        matrix.DeepCopy([value for row in content.matrix for value in row])
+        node.SetMatrixTransformToParent(matrix)
+        node.Modified()
     elif isinstance(content, String):
         node.SetText(asSlicerHas(content.text.partition("\0")[0]))
         node.Modified()
@@ -165,18 +152,11 @@ def updateNode(node: Any, message: Message) -> None:
         if content.points or message.metadata:
             _updatePoints(node, content.points)
     else:
-        node.setStatus(content)
+        node.status = content
+        node.Modified()
     for key, value in message.metadata.items():
         node.SetAttribute(METADATA_PREFIX + key, asSlicerHas(value))
-
-
-def _updateTransform(node: Any, transform: Transform, metadata: Mapping[str, str]) -> None:
-    matrix = vtk.vtkMatrix4x4()
-    matrix.DeepCopy([value for row in transform.matrix for value in row])
-    node.SetMatrixTransformToParent(matrix)
-    node.Modified()
-    for key, value in metadata.items():
-        if "Status" in key:
+        if isinstance(content, Transform) and "Status" in key:
             node.SetAttribute(key, asSlicerHas(value))
 
 
@@ -184,7 +164,14 @@ def _updatePoints(node: Any, points: Sequence[Point]) -> None:
     while node.GetNumberOfControlPoints() > len(points):
         node.RemoveNthControlPoint(node.GetNumberOfControlPoints() - 1)
     for index, point in enumerate(points):
-        _updatePoint(node, index, point)
+        label, isNew = asSlicerHas(point.label), index >= node.GetNumberOfControlPoints()
+        if isNew:
+            node.AddControlPoint(vtk.vtkVector3d(point.position), label)
+        else:
+            node.SetNthControlPointLabel(index, label)
+            node.SetNthControlPointPosition(index, point.position)
+        node.SetNthControlPointSelected(index, point.group != UNSELECTED)
+        node.SetNthControlPointVisibility(index, point.color[3] > 0)
     display = node.GetDisplayNode()
     if display is None:
         return
@@ -194,14 +181,3 @@ def _updatePoints(node: Any, points: Sequence[Point]) -> None:
             display.SetColor(color)
         else:
             display.SetSelectedColor(color)
-
-
-def _updatePoint(node: Any, index: int, point: Point) -> None:
-    label = asSlicerHas(point.label)
-    if index >= node.GetNumberOfControlPoints():
-        node.AddControlPoint(vtk.vtkVector3d(point.position), label)
-    else:
-        node.SetNthControlPointLabel(index, label)
-        node.SetNthControlPointPosition(index, point.position)
-    node.SetNthControlPointSelected(index, point.group != UNSELECTED)
-    node.SetNthControlPointVisibility(index, point.color[3] > 0)

@@ -12,35 +12,36 @@ import numpy as np
 import slicer
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.head.volume import Volume, volumeFromNode
+from rastrainer.slicer.head.volume import Volume, asFloat, imageOfNode
 from rastrainer.slicer.head.volume_header import checkHeader, leastSize, missingOrientation
 from rastrainer_headless.dicom_series import isDicom, readDicom
 
 
 def readAnyVolume(path: Path, orientation: str | None = None) -> Volume:
-    """Read an NRRD or NIfTI file, a DICOM file of many slices, or a folder with a DICOM series.
-
-    Args:
-        path: of the file or folder.
-        orientation: for a file that states none; see `readVolume`.
-    """
+    """Read an NRRD or NIfTI file, a DICOM file of many slices, or a folder of DICOM files."""
     if path.is_dir() or (path.is_file() and isDicom(path)):
         return readDicom(path)
     return readVolume(path, orientation)
 
 
 def readVolume(path: Path, orientation: str | None = None) -> Volume:
-    """Read a volume of any format that Slicer's volume reader knows, such as NRRD or NIfTI.
+    """Read a volume of any format that Slicer's volume reader knows, such as NRRD.
 
-    Args:
-        path: of the file.
-        orientation: the directions in which the file's axes run in the patient, such as LAS for
-            left, anterior, superior; None takes what the file states.
+    `orientation`, such as LAS, is for a file that states none.
     """
     if not path.is_file():
         raise InputError(f"{path} does not exist; give a volume such as a .nii.gz or .nrrd file.")
     checkHeader(path)
-    if _isCutNifti(path):
+    # A `.nii` or `.nii.gz` file may end too early.
+    opened = gzip.open if path.suffix == ".gz" else open
+    try:
+        with opened(path, "rb") as file:
+            isCut = file.seek(0, os.SEEK_END) < leastSize(path)
+    except (EOFError, zlib.error):
+        isCut = True
+    except OSError:
+        isCut = False
+    if isCut:
         raise InputError(f"{path} is cut short; copy the file again.")
     missing = missingOrientation(path)
     if missing and orientation is None:
@@ -55,20 +56,8 @@ def readVolume(path: Path, orientation: str | None = None) -> Volume:
     storage.SetFileName(str(path))
     if not storage.ReadData(node) or node.GetImageData() is None:
         raise InputError(f"{path} could not be read as a volume such as NIfTI or NRRD.")
-    volume = volumeFromNode(node)
+    volume = asFloat(imageOfNode(node))
     return volume if orientation is None else _oriented(volume, orientation)
-
-
-def _isCutNifti(path: Path) -> bool:
-    """Return whether a `.nii` or `.nii.gz` file ends too early; False for any other file."""
-    opened = gzip.open if path.suffix == ".gz" else open
-    try:
-        with opened(path, "rb") as file:
-            return file.seek(0, os.SEEK_END) < leastSize(path)
-    except (EOFError, zlib.error):
-        return True
-    except OSError:
-        return False
 
 
 def _oriented(volume: Volume, orientation: str) -> Volume:

@@ -7,6 +7,7 @@ from itertools import groupby
 
 import numpy as np
 import pytest
+from slicer.util import arrayFromMarkupsControlPoints
 
 from rastrainer import transforms
 from rastrainer.igtl.client import Client
@@ -16,7 +17,6 @@ from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
 from rastrainer.slicer.logic.trial_logic import TrialLogic
-from rastrainer.slicer.scene.nodes import localPoints
 from rastrainer.study.database.study import Study
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.scene import HeadlessScene
@@ -47,7 +47,7 @@ class SlicerSide:
 
     def see_points(self, node):
         self.counts.append(node.GetNumberOfControlPoints())
-        self.points = localPoints(node)
+        self.points = arrayFromMarkupsControlPoints(node)
 
     def open_logic(self):
         find = ScenarioCache(COLIN).find

@@ -1,7 +1,7 @@
 """A scenario in the scene with all its files, read at once."""
 
 from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.scene.scenario_nodes import scenarioLoader, showScenario
+from rastrainer.slicer.scene.scenario_nodes import SceneFileLoader, showScenario
 
 
 def show_whole(scene, scenario):
@@ -13,7 +13,7 @@ def show_whole(scene, scenario):
 def load_files(scene):
     """Fill all nodes of the scene that wait for their files; return as `show_whole`."""
     work, problems = BackgroundWork(), []
-    loader = scenarioLoader(scene, work)
+    loader = SceneFileLoader(scene, work)
     loader.problemFound.connect(problems.append)
     loader.process()
     while work.isBusy:

@@ -4,13 +4,8 @@ import json
 
 import pytest
 
-from rastrainer.slicer.link.pending_commands import (
-    CHARACTERS_A_TURN,
-    COMMANDS_A_TURN,
-    MAX_KEPT,
-    Arrivals,
-)
-from rastrainer.slicer.signal import ErrorGuard, Signal
+from rastrainer.slicer.link.link import CHARACTERS_A_TURN, COMMANDS_A_TURN, MAX_KEPT
+from rastrainer_headless.command import HeadlessCommand
 
 
 @pytest.fixture
@@ -18,43 +13,55 @@ def received():
     return []
 
 
+class Arrivals:
+    """A link that the connector hands commands to."""
+
+    def __init__(self, link):
+        self.link = link
+
+    def keep(self, name, content):
+        command = HeadlessCommand()
+        command.SetName(name)
+        command.SetCommandContent(content)
+        self.link._onCommand(None, "", command)
+
+
 @pytest.fixture
-def arrivals(scene, received):
-    known = Signal()
-    known.connect(received.append)
-    return Arrivals(scene, ErrorGuard(), Signal(), Signal(), {"Known": known})
+def arrivals(link, received):
+    link.trialCompleted.connect(received.append)
+    return Arrivals(link)
 
 
 def test_commands_are_delivered_a_few_per_turn_in_order(arrivals, received):
     for number in range(3 * COMMANDS_A_TURN):
-        arrivals.keepCommand("Known", json.dumps({"number": number}))
+        arrivals.keep("TrialCompleted", json.dumps({"number": number}))
     for turn in range(1, 4):
-        arrivals.emitCommands()
+        arrivals.link.process()
         assert len(received) == turn * COMMANDS_A_TURN
     assert [command["number"] for command in received] == list(range(3 * COMMANDS_A_TURN))
 
 
 def test_fewer_long_commands_are_delivered_per_turn(arrivals, received):
     for _ in range(4):
-        arrivals.keepCommand("Known", json.dumps({"text": CHARACTERS_A_TURN * "x"}))
+        arrivals.keep("TrialCompleted", json.dumps({"text": CHARACTERS_A_TURN * "x"}))
     for turn in range(1, 5):
-        arrivals.emitCommands()
+        arrivals.link.process()
         assert len(received) == turn
 
 
 def test_a_flood_keeps_no_more_than_the_queue_can_hold(arrivals, received):
     for number in range(10 * MAX_KEPT):
-        arrivals.keepCommand("Known", json.dumps({"number": number}))
+        arrivals.keep("TrialCompleted", json.dumps({"number": number}))
     for _ in range(10 * MAX_KEPT):
-        arrivals.emitCommands()
+        arrivals.link.process()
     assert [command["number"] for command in received] == list(range(MAX_KEPT))
 
 
 def test_unknown_commands_count_as_well(arrivals, received):
     for _ in range(COMMANDS_A_TURN):
-        arrivals.keepCommand("Unknown", "{}")
-    arrivals.keepCommand("Known", "{}")
-    arrivals.emitCommands()
+        arrivals.keep("Unknown", "{}")
+    arrivals.keep("TrialCompleted", "{}")
+    arrivals.link.process()
     assert received == []
-    arrivals.emitCommands()
+    arrivals.link.process()
     assert received == [{}]

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from slicer.util import arrayFromTransformMatrix
 
 from rastrainer import transforms
 from rastrainer.igtl.content import Point, Points
@@ -15,7 +16,7 @@ from rastrainer.json_records import record_from_json
 from rastrainer.protocol import DeviceName
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.nodes import Role, findNode, labelsOf, worldPoints
-from rastrainer.slicer.scene.trial_scene import FIXED_REFERENCE, isApplied, matrixOf
+from rastrainer.slicer.scene.trial_scene import FIXED_REFERENCE, isApplied
 from rastrainer.study.database.study import Study
 from rastrainer.trial.analysis import analyze_trial
 from rastrainer.trial.record import TrialRecord
@@ -114,7 +115,7 @@ def check_saved_scene(path, results):
     scene = application.scene
     transform = findNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
     matrix = np.reshape(results["fits"]["rigid"]["matrix"], (4, 4))
-    np.testing.assert_allclose(matrixOf(transform), matrix, atol=1e-9)
+    np.testing.assert_allclose(arrayFromTransformMatrix(transform), matrix, atol=1e-9)
     assert isApplied(transform)
     touched = scene.GetFirstNode("CapturedPoints", "vtkMRMLMarkupsFiducialNode")
     fixed = transform.GetNodeReference(FIXED_REFERENCE)

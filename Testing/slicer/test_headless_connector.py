@@ -184,8 +184,8 @@ def test_a_status_arrives_with_code_and_message(connector, simulator):
     simulator.send("Robot", Status(1, 2, "fine", "all is well"))
     wait_for(connector, lambda: incoming(connector, "Robot"))
     node = incoming(connector, "Robot")
-    assert (node.GetCode(), node.GetSubCode()) == (1, 2)
-    assert (node.GetErrorName(), node.GetStatusString()) == ("fine", "all is well")
+    assert node.status == Status(1, 2, "fine", "all is well")
+    assert node.GetSubCode() == 2
 
 
 def test_each_connection_opens_with_the_nameless_status_that_slicer_sends(connector, simulator):
@@ -213,7 +213,7 @@ def test_a_refusal_arrives_with_its_message(scene):
     with SimulatorDouble(lambda *_: "There is no task seven.") as simulator:
         connector = started_connector(scene, simulator)
         command = sent(connector, "StartTask")
-        wait_for(connector, command.IsCompleted)
+        wait_for(connector, lambda: command.GetCommandStatus() > command.CommandWaiting)
         assert not command.GetSuccessful()
         assert command.GetErrorMessage() == "There is no task seven."
         connector.Stop()
@@ -223,7 +223,7 @@ def test_a_command_without_an_answer_expires(scene):
     with SimulatorDouble(lambda *_: None) as simulator:
         connector = started_connector(scene, simulator)
         command = sent(connector, "Hello", timeout=0.05)
-        wait_for(connector, command.IsCompleted)
+        wait_for(connector, lambda: command.GetCommandStatus() > command.CommandWaiting)
         assert command.GetCommandStatus() == command.CommandExpired
         connector.Stop()
 

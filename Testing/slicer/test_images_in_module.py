@@ -14,7 +14,7 @@ from rastrainer.igtl.content import Status, String
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 from rastrainer.scenario.library import user_library
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.head.volume import volumeFromNode
+from rastrainer.slicer.head.volume import imageOfNode
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.scene.nodes import Role, findNode
 from rastrainer.slicer.scene.scenario_nodes import VOLUME
@@ -79,7 +79,7 @@ def test_a_target_is_placed_on_the_mri_and_lies_where_it_was_placed(host):
     host.place(*TARGET)
     node = host.find("planComboBox").currentNode()
     np.testing.assert_allclose(node.GetNthControlPointPosition(0), TARGET)
-    volume = volumeFromNode(images(host))
+    volume = imageOfNode(images(host))
     i, j, k = np.rint(np.linalg.inv(volume.ijkToRas) @ [*TARGET, 1.0])[:3].astype(int)
     assert 40 < volume.values[i, j, k] < 200
 

@@ -16,7 +16,6 @@ from rastrainer.slicer.link.link_status import (
 
 WELL = LinkObservation(
     "127.0.0.1:18944",
-    isWanted=True,
     isOpen=True,
     silenceS=0.5,
     hasHeartbeat=True,
@@ -32,7 +31,7 @@ def found(peer):
     ("link", "state", "sentence", "remedy"),
     [
         (WELL, LinkState.CONNECTED, "Connected to the simulator at 127.0.0.1:18944", ""),
-        (replace(WELL, isWanted=False), LinkState.OFF, "Not connected", "Start and connect"),
+        (replace(WELL, address=""), LinkState.OFF, "Not connected", "Start and connect"),
         (replace(WELL, isOpen=False), LinkState.LOOKING, "Looking for a simulator at 127", ""),
         (
             replace(WELL, isOpen=False, finding=ProbeResult(Peer.SIMULATOR, "", PROTOCOL_VERSION)),

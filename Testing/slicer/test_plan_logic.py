@@ -197,7 +197,7 @@ def test_placing_a_target_erases_none_and_each_change_can_be_undone(room):
     np.testing.assert_allclose(worldPoints(node), [TUMOR])
     points.undo()
     assert node.GetNumberOfControlPoints() == 0
-    assert not points.canUndo
+    assert not points.changes
 
 
 def test_undo_skips_points_that_were_not_placed_and_removed_ones(room):

@@ -5,6 +5,7 @@ import threading
 import numpy as np
 import pytest
 import slicer
+from slicer.util import arrayFromTransformMatrix
 
 from rastrainer import transforms
 from rastrainer.head.mesh import nearest_on_mesh
@@ -22,7 +23,6 @@ from rastrainer.slicer.scene.scenario_nodes import showTask
 from rastrainer.slicer.scene.trial_scene import (
     FIXED_REFERENCE,
     isApplied,
-    matrixOf,
     movingNode,
     setApplied,
 )
@@ -104,7 +104,9 @@ def test_the_transform_shows_the_chosen_fit_and_remembers_its_lists(table):
     table.touch()
     table.logic.chooseKind(AFFINE)
     transform = table.logic.transform()
-    np.testing.assert_allclose(matrixOf(transform), table.logic.comparison.fits[AFFINE].matrix)
+    np.testing.assert_allclose(
+        arrayFromTransformMatrix(transform), table.logic.comparison.fits[AFFINE].matrix
+    )
     assert movingNode(transform) is capturedPointsNode(table.scene)
     assert transform.GetNodeReference(FIXED_REFERENCE) is table.fixed
     assert isApplied(transform)
@@ -419,7 +421,7 @@ def test_with_turns_each_part_of_a_registration_is_shown_in_a_separate_turn(
     counts = [sum(part is not None for part in parts) for parts in seen]
     assert counts == sorted(counts)
     assert set(counts) == {0, 1, 2, 3, 4}
-    np.testing.assert_array_equal(matrixOf(logic.transform()), logic.shown.matrix)
+    np.testing.assert_array_equal(arrayFromTransformMatrix(logic.transform()), logic.shown.matrix)
 
 
 def test_with_turns_the_result_is_the_same_as_at_once(table, logic_in_turns, work):

@@ -8,14 +8,14 @@ import pytest
 import slicer
 
 from rastrainer.head.mesh import write_head_mesh
-from rastrainer.head.volume import VolumeFile, write_head_volume
+from rastrainer.head.volume import VolumeFile, write_nrrd
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.scene import scenario_nodes
 from rastrainer.slicer.scene.nodes import Role, findNode
 from rastrainer.slicer.scene.scenario_nodes import (
     MODEL,
     VOLUME,
-    scenarioLoader,
+    SceneFileLoader,
     showImages,
     showScenario,
 )
@@ -29,7 +29,7 @@ class Loading:
     def __init__(self, scene):
         self.scene = scene
         self.work = BackgroundWork()
-        self.loader = scenarioLoader(scene, self.work)
+        self.loader = SceneFileLoader(scene, self.work)
         self.shown, self.problems = [], []
         self.loader.shown.connect(self.take)
         self.loader.problemFound.connect(self.problems.append)
@@ -59,7 +59,7 @@ def loading(scene):
 def imaged(scenario):
     """The scenario with images of its ball."""
     path = scenario.folder / "volume.nrrd"
-    write_head_volume(path, ball_volume())
+    write_nrrd(path, ball_volume().values, ball_volume().ijk_to_ras)
     return replace(scenario, volume=VolumeFile(path, 120.0, 60.0))
 
 
@@ -144,7 +144,7 @@ def test_displayed_images_are_not_read_again_and_a_users_changes_stay(scene, loa
 def test_rebuilt_images_are_read_again(scene, loading, imaged):
     showScenario(scene, imaged)
     loading.finish()
-    write_head_volume(imaged.volume.file, ball_volume(60.0))
+    write_nrrd(imaged.volume.file, ball_volume(60.0).values, ball_volume(60.0).ijk_to_ras)
     showScenario(scene, imaged)
     loading.finish()
     assert np.array_equal(slicer.util.arrayFromVolume(loading.node).T, ball_volume(60.0).values)
@@ -162,7 +162,7 @@ def test_a_scenario_without_images_removes_those_of_another(scene, loading, imag
 
 def test_of_two_scenarios_shown_at_once_the_last_ones_images_are_shown(scene, loading, imaged):
     path = imaged.folder / "other.nrrd"
-    write_head_volume(path, ball_volume(60.0))
+    write_nrrd(path, ball_volume(60.0).values, ball_volume(60.0).ijk_to_ras)
     showScenario(scene, imaged)
     loading.loader.process()
     showScenario(scene, replace(imaged, name="other", volume=VolumeFile(path, 10.0, 5.0)))

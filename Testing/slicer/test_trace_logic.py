@@ -14,7 +14,7 @@ from rastrainer.scenario.scenario import Camera
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.logic.trace_logic import DISTANCE_SCALARS, MODEL, TraceLogic
 from rastrainer.slicer.scene.nodes import Role
-from rastrainer.slicer.scene.scenario_nodes import scenarioLoader
+from rastrainer.slicer.scene.scenario_nodes import SceneFileLoader
 from Testing.slicer.simulator_double import run_logic_until, run_until_received
 from Testing.slicer.training_room import TRIAL, Room
 
@@ -35,7 +35,7 @@ class Tracing(Room):
         self.to_world, self.places = scenario.head_to_world, np.zeros((0, 3))
         super().__init__(scene, scenario)
         self.work = BackgroundWork()
-        self.files = scenarioLoader(scene, self.work)
+        self.files = SceneFileLoader(scene, self.work)
         self.traces = TraceLogic(scene, self.link, self.work, lambda: self.now)
         self.logic.sceneShown.connect(self.traces.begin)
 

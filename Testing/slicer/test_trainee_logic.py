@@ -19,8 +19,7 @@ from rastrainer.slicer.scene.score_tables import (
     ctpsRows,
     motionRows,
     scoreRows,
-    showMotion,
-    showScore,
+    showRows,
     showStandings,
     standings,
 )
@@ -301,8 +300,8 @@ def test_motion_metrics_come_with_their_definitions(add_trial):
 
 def test_score_comparison_and_motion_become_tables_in_the_scene(scene, logic, add_trial):
     trial = add_trial(1, motion={"sparc": -1.9})
-    showScore(scene, [*scoreRows(trial), *ctpsRows(trial, COHORT)])
+    showRows(scene, Role.SCORE, "Score", [*scoreRows(trial), *ctpsRows(trial, COHORT)])
     showStandings(scene, standings(logic.study, trial, COHORT))
-    showMotion(scene, motionRows(trial))
+    showRows(scene, Role.MOTION, "Motion metrics", motionRows(trial))
     for role, rows in ((Role.SCORE, 15), (Role.COMPARISON, 2), (Role.MOTION, 1)):
         assert findNode(scene, "vtkMRMLTableNode", role).GetNumberOfRows() == rows

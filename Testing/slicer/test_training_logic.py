@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
+from slicer.util import arrayFromTransformMatrix
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.igtl.content import Point, Points
 from rastrainer.protocol import DeviceName
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode
-from rastrainer.slicer.scene.trial_scene import isApplied, isPlanned, matrixOf
+from rastrainer.slicer.scene.trial_scene import isApplied, isPlanned
 from Testing.slicer.training_room import LOADING_REFUSAL, TRIAL
 
 
@@ -107,7 +108,11 @@ def test_touches_appear_on_the_planned_head_while_the_trial_runs(room, scenario)
     transform = room.node(Role.WORLD_TO_HEAD, "vtkMRMLLinearTransformNode")
     assert isPlanned(transform)
     assert isApplied(transform)
-    np.testing.assert_allclose(matrixOf(transform) @ scenario.head_to_world, np.eye(4), atol=1e-9)
+    np.testing.assert_allclose(
+        arrayFromTransformMatrix(transform) @ scenario.head_to_world,
+        np.eye(4),
+        atol=1e-9,
+    )
     shown = capturedPointsNode(room.scene).GetNthControlPointPositionWorld(0)
     np.testing.assert_allclose(shown, fiducial, atol=1e-3)
     assert room.logic.status.touched == 1

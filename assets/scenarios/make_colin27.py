@@ -17,7 +17,7 @@ import numpy as np
 
 from rastrainer.errors import RASTrainerError
 from rastrainer.head.mesh import HeadMesh, write_head_mesh
-from rastrainer.head.volume import HeadVolume, read_nrrd, write_head_volume
+from rastrainer.head.volume import HeadVolume, read_nrrd, write_nrrd
 from rastrainer.slicer.head.head_draft import makeDraft
 from rastrainer_headless.volume_files import readVolume
 
@@ -55,7 +55,7 @@ def make(mri: Path, check: bool) -> int:
         return 0 if all([*same, _is_same_volume(draft.volume)]) else 1
     write_head_mesh(HEAD, draft.head)
     write_head_mesh(SKULL, draft.skull)
-    write_head_volume(VOLUME, draft.volume)
+    write_nrrd(VOLUME, draft.volume.values, draft.volume.ijk_to_ras)
     window, level = draft.volume.window, draft.volume.level
     print(f"{draft.method}\nwindow {window:g}, level {level:g}, {VOLUME.stat().st_size} bytes")
     return 0

@@ -4,7 +4,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.head.volume import Volume, volumeFromNode
+from rastrainer.slicer.head.volume import Volume, imageOfNode
 from rastrainer_headless.volume_files import readVolume
 from Testing.slicer.head.placed import add_transform, add_volume
 
@@ -20,7 +20,7 @@ def test_a_voxel_is_found_where_slicer_places_it(scene):
     node.SetSpacing(2.0, 3.0, 4.0)
     node.SetOrigin(-10.0, 20.0, 30.0)
     node.SetIJKToRASDirections(0, -1, 0, 1, 0, 0, 0, 0, 1)
-    volume = volumeFromNode(node)
+    volume = imageOfNode(node)
     assert np.argwhere(volume.values == 100).tolist() == [[1, 2, 3]]
     assert (volume.ijkToRas @ [1, 2, 3, 1])[:3].tolist() == [-10 - 6, 20 + 2, 30 + 12]
 
@@ -30,7 +30,7 @@ def test_a_volume_lies_where_its_transforms_place_it(scene):
     outer, inner = add_transform(scene, [1.0, 2.0, 3.0]), add_transform(scene, [10.0, 0.0, 0.0])
     inner.SetAndObserveTransformNodeID(outer.GetID())
     node.SetAndObserveTransformNodeID(inner.GetID())
-    assert (volumeFromNode(node).ijkToRas @ [1, 1, 1, 1])[:3].tolist() == [12, 3, 4]
+    assert (imageOfNode(node).ijkToRas @ [1, 1, 1, 1])[:3].tolist() == [12, 3, 4]
 
 
 def test_a_nonlinear_transform_is_refused_with_a_message(scene):
@@ -39,7 +39,7 @@ def test_a_nonlinear_transform_is_refused_with_a_message(scene):
     bent.SetAndObserveTransformToParent(vtk.vtkThinPlateSplineTransform())
     node.SetAndObserveTransformNodeID(bent.GetID())
     with pytest.raises(InputError, match="has the parent transform Bent, which is not linear"):
-        volumeFromNode(node)
+        imageOfNode(node)
 
 
 def test_a_missing_volume_is_named(tmp_path):

@@ -15,7 +15,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.files.ply import read_ply
 from rastrainer.files.writing import write_bytes
-from rastrainer.head.triangle_tree import TriangleTree
+from rastrainer.head.triangle_tree import TriangleSides, TriangleTree
 
 MAX_TRIANGLES = 1_000_000
 RAS_LIMIT_MM = 2000.0
@@ -246,12 +246,13 @@ def nearest_on_mesh(mesh: HeadMesh, point: np.ndarray) -> NearestPoint:
     centers, radii = mesh.triangle_spheres
     to_centers = np.linalg.norm(centers - point, axis=1)
     near = np.flatnonzero(to_centers - radii <= (to_centers + radii).min())
-    corners = mesh.vertices[mesh.triangles[near]]
-    weights = _nearest_weights(corners, np.asarray(point, dtype=float))
-    positions = np.einsum("ij,ijk->ik", weights, corners)
+    sides = TriangleSides.of(mesh.vertices[mesh.triangles[near]].astype(float))
+    _, v, w = sides.nearest(np.asarray(point, dtype=float))
+    positions = sides.at(v, w)
     distances = np.linalg.norm(positions - point, axis=1)
     best = int(np.argmin(distances))
-    return NearestPoint(positions[best], float(distances[best]), int(near[best]), weights[best])
+    weights = np.array([1.0 - v[best] - w[best], v[best], w[best]])
+    return NearestPoint(positions[best], float(distances[best]), int(near[best]), weights)
 
 
 def nearest_vertices(mesh: HeadMesh, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -286,10 +287,9 @@ def outward_normals(mesh: HeadMesh, points: np.ndarray) -> np.ndarray:
 
 
 def hides(mesh: HeadMesh, eye: np.ndarray, point: np.ndarray, slack_mm: float = 1.0) -> bool:
-    """Return whether the surface is between `eye` and `point`, both (3,).
+    """Return whether the surface is between `eye` and `point`, both (3,), but for `slack_mm`.
 
-    The last `slack_mm` are ignored, because the point is on the surface. (Ray and triangle by
-    Möller and Trumbore 1997.)
+    The point is on the surface. (Ray and triangle by Möller and Trumbore 1997.)
     """
     start = np.asarray(eye, dtype=float)
     along = point - start
@@ -304,40 +304,3 @@ def hides(mesh: HeadMesh, eye: np.ndarray, point: np.ndarray, slack_mm: float = 
     share = np.einsum("ij,ij->i", c - a, turned) / safe
     last = 1.0 - slack_mm / np.linalg.norm(along)
     return bool(np.any((u >= 0) & (v >= 0) & (u + v <= 1) & (share > 0) & (share < last)))
-
-
-def _nearest_weights(corners: np.ndarray, point: np.ndarray) -> np.ndarray:
-    """Return the barycentric weights (m, 3) of the nearest point of each triangle (m, 3, 3)."""
-    weights = _weights_in_plane(corners, point)
-    outside = np.flatnonzero(np.any(weights < 0, axis=1))
-    weights[outside] = _weights_on_sides(corners[outside], point)
-    return weights
-
-
-def _weights_in_plane(corners: np.ndarray, point: np.ndarray) -> np.ndarray:
-    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    normal = np.cross(b - a, c - a)
-    area = np.einsum("ij,ij->i", normal, normal)
-    # A triangle without area has no inside: its nearest point lies on a side.
-    area = np.where(area > 0, area, -np.inf)
-    of_b = np.einsum("ij,ij->i", np.cross(point - a, c - a), normal) / area
-    of_c = np.einsum("ij,ij->i", np.cross(b - a, point - a), normal) / area
-    weights = np.stack([1.0 - of_b - of_c, of_b, of_c], axis=1)
-    weights[~np.isfinite(area)] = -1.0
-    return weights
-
-
-def _weights_on_sides(corners: np.ndarray, point: np.ndarray) -> np.ndarray:
-    rows = np.arange(len(corners))
-    best, best_distance = np.zeros((len(corners), 3)), np.full(len(corners), np.inf)
-    for first, second in ((0, 1), (1, 2), (2, 0)):
-        start, along = corners[:, first], corners[:, second] - corners[:, first]
-        squared = np.maximum(np.einsum("ij,ij->i", along, along), 1e-30)
-        share = np.clip(np.einsum("ij,ij->i", point - start, along) / squared, 0.0, 1.0)
-        distance = np.linalg.norm(start + share[:, None] * along - point, axis=1)
-        better = distance < best_distance
-        best_distance = np.where(better, distance, best_distance)
-        best[better] = 0.0
-        best[rows[better], first] = 1.0 - share[better]
-        best[rows[better], second] = share[better]
-    return best

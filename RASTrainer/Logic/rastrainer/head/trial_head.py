@@ -44,14 +44,7 @@ MAX_PERTURBATION = Perturbation(200.0, 180.0, 45.0)
 def perturbed_pose(
     head_to_world: np.ndarray, pivot: np.ndarray, limits: Perturbation, seed: int
 ) -> np.ndarray:
-    """Return the pose of the head for a seed, (4, 4) float, mm: rotated about a pivot, then moved.
-
-    Args:
-        head_to_world: (4, 4) float, the nominal pose.
-        pivot: (3,) float, RAS mm.
-        limits: of the perturbation.
-        seed: 0 or above.
-    """
+    """Return the pose of the head for a seed, (4, 4) mm: rotated about a pivot, then moved."""
     random = default_rng(seed)
     shift = random.uniform(-limits.translation_mm, limits.translation_mm, 3)
     yaw = np.radians(random.uniform(-limits.yaw_deg, limits.yaw_deg))
@@ -83,10 +76,8 @@ INVERSIONS = 8
 class SkinShift:
     """The shift of the skin in the operation, compared with the images.
 
-    Attributes:
-        shift_mm: root mean square length of the shift, over seeds; 0 for none.
-        seed: which shift; secret like the head's pose.
-        indentation_mm: how deep the tip presses into the skin.
+    `shift_mm` is the root mean square length of the shift, over seeds; the seed is secret like the
+    head's pose; `indentation_mm` is how deep the tip presses into the skin.
     """
 
     shift_mm: _Amount = 0.0
@@ -112,12 +103,7 @@ class SkinShift:
         return vectors, phases, sizes
 
     def moved(self, points: np.ndarray, mesh: HeadMesh) -> np.ndarray:
-        """Return by how much skin at points (n, 3) of the images has moved, (n, 3) float, mm.
-
-        Args:
-            points: RAS mm.
-            mesh: The head of the images; at its base the shift is none.
-        """
+        """Return by how much skin at points (n, 3) of the images has moved, (n, 3) mm."""
         points = np.asarray(points, dtype=float)
         if self.shift_mm == 0.0:
             return np.zeros_like(points)
@@ -127,23 +113,13 @@ class SkinShift:
         return np.asarray(field * (above**2 * (3.0 - 2.0 * above))[:, None])
 
     def touched(self, points: np.ndarray, normals: np.ndarray, mesh: HeadMesh) -> np.ndarray:
-        """Return where the tip is when it touches skin at points of the images, (n, 3) float, RAS.
-
-        Args:
-            points: (n, 3) float, RAS mm.
-            normals: (n, 3) float, outward unit normals of the skin there.
-            mesh: The head of the images.
-        """
+        """Return where the tip is when it touches skin at points of the images, (n, 3) mm."""
         return points + self.moved(points, mesh) - self.indentation_mm * normals
 
     def measured(self, points: np.ndarray, mesh: HeadMesh) -> np.ndarray:
         """Return where skin at points of the images is measured, (n, 3) float, RAS mm.
 
         It is indented along the normal of the nearest vertex.
-
-        Args:
-            points: (n, 3) float, RAS mm.
-            mesh: The head of the images.
         """
         if self.indentation_mm == 0.0:
             return points + self.moved(points, mesh)
@@ -156,11 +132,6 @@ class SkinShift:
         for _ in range(INVERSIONS):
             found = found + points - self.measured(found, mesh)
         return found
-
-    @property
-    def amounts(self) -> dict[str, float]:
-        """What everyone may know: all but the seed."""
-        return {"shiftMm": self.shift_mm, "indentationMm": self.indentation_mm}
 
 
 UNMOVED = SkinShift()

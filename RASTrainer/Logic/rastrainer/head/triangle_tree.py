@@ -39,7 +39,6 @@ class TriangleSides:
         return cls(np.column_stack([a, to_b, to_c, *products]))
 
     def taken(self, rows: np.ndarray) -> TriangleSides:
-        """Return some of the triangles, (p,) int."""
         return TriangleSides(self.rows.take(rows, axis=0))
 
     def at(self, v: np.ndarray, w: np.ndarray) -> np.ndarray:
@@ -74,10 +73,8 @@ class TriangleSides:
 def least_of_each(squares: np.ndarray, starts: np.ndarray, who: np.ndarray) -> np.ndarray:
     """Return the first pair of each point whose square is least, (n,) int.
 
-    Args:
-        squares: (p,) float, of pairs of point and triangle.
-        starts: (n,) int, the first pair of each point; every point has one or more.
-        who: (p,) int, ascending, the point of each pair.
+    Pairs are sorted by point: `who` (p,) is the point of each, `starts` (n,) the first pair of
+    each.
     """
     least = np.minimum.reduceat(squares, starts)
     ties = np.flatnonzero(squares == least[who])
@@ -110,32 +107,18 @@ def _on_sides(
 
 @dataclass(frozen=True)
 class NearestPoints:
-    """The points of a surface nearest to n given ones; mm.
-
-    Attributes:
-        positions: (n, 3) float.
-        distances: (n,) float, to the given points.
-        triangles: (n,) int, indices of the triangles that they lie on.
-    """
+    """The points of a surface nearest to n given ones, their distances, mm, and triangles."""
 
     positions: np.ndarray
     distances: np.ndarray
     triangles: np.ndarray
 
     def taken(self, rows: np.ndarray) -> NearestPoints:
-        """Return the points of some rows, (k,) int."""
         return NearestPoints(self.positions[rows], self.distances[rows], self.triangles[rows])
 
 
 class TriangleTree:
-    """The boxes of a mesh's triangles.
-
-    Args:
-        corners: (m, 3, 3) float, mm, the corners of at least one triangle.
-
-    Attributes:
-        sides: The triangles, in the tree's order; the last is repeated.
-    """
+    """The boxes of a mesh's triangles, in the order of `sides`, of which the last is repeated."""
 
     def __init__(self, corners: np.ndarray) -> None:
         levels = max(int(np.ceil(np.log2(max(len(corners) / LEAF, 1.0)))), 0)
@@ -171,17 +154,20 @@ class TriangleTree:
         return NearestPoints(positions, distances, self._order[places])
 
     def nearby(self, points: np.ndarray, squares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return pairs of point and triangle, sorted by point: all within a squared distance.
+        """Return pairs of point (p,) and triangle in `sides` (p,), sorted by point.
 
-        Args:
-            points: (n, 3) float, mm.
-            squares: (n,) float, mm², at least that to the nearest triangle.
-
-        Returns:
-            The points (p,) int, and the places (p,) int of the triangles in `sides`; some pairs
-            are farther apart, none that are near is missing.
+        None within the squared distances (n,), mm², is missing; some pairs are farther apart.
         """
-        who, leaf = self._leaves_within(points, squares)
+        last = len(self._boxes) - 1
+        level = min(TOP_LEVEL, last)
+        near = _is_within(self._boxes[level][None], points[:, None], squares[:, None])
+        who, leaf = np.nonzero(near)
+        while level < last:
+            level += 1
+            who = np.repeat(who, 2)
+            leaf = (leaf[:, None] * 2 + np.arange(2)).ravel()
+            kept = _is_within(self._boxes[level].take(leaf, axis=0), points[who], squares[who])
+            who, leaf = who[kept], leaf[kept]
         who = np.repeat(who, LEAF)
         triangle = (leaf[:, None] * LEAF + np.arange(LEAF)).ravel()
         boxes = self._triangle_boxes.take(triangle, axis=0)
@@ -201,22 +187,6 @@ class TriangleTree:
         tried = (box[:, None] * LEAF + np.arange(LEAF)).ravel()
         squares, _, _ = self.sides.taken(tried).nearest(np.repeat(points, LEAF, axis=0))
         return np.asarray(squares.reshape(-1, LEAF).min(axis=1))
-
-    def _leaves_within(
-        self, points: np.ndarray, squares: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Return pairs of point and lowest box within its squared distance, sorted by point."""
-        last = len(self._boxes) - 1
-        level = min(TOP_LEVEL, last)
-        near = _is_within(self._boxes[level][None], points[:, None], squares[:, None])
-        who, box = np.nonzero(near)
-        while level < last:
-            level += 1
-            who = np.repeat(who, 2)
-            box = (box[:, None] * 2 + np.arange(2)).ravel()
-            kept = _is_within(self._boxes[level].take(box, axis=0), points[who], squares[who])
-            who, box = who[kept], box[kept]
-        return who, box
 
 
 def _is_within(boxes: np.ndarray, points: np.ndarray, squares: np.ndarray) -> np.ndarray:
@@ -248,17 +218,11 @@ POOR_GUESS_MM = 2.0
 
 
 class FollowedPoints:
-    """The search for points that move by ever smaller steps; it answers as `TriangleTree.nearest`.
+    """The search for points that move by ever smaller steps; as `TriangleTree.nearest`.
 
     A point whose nearest triangle is d away finds it, after a move by at most m, among the
     triangles that were within d + 2m before. So these are kept, and are all that is tried until it
-    moves farther.
-
-    Args:
-        tree: Of the surface.
-        points: (n, 3) float, mm, where they are now.
-        slack_mm: By how much they are to move before the surface is searched again, for all or
-            for each (n,).
+    moves farther than `slack_mm`, for all or for each (n,).
     """
 
     def __init__(
@@ -272,19 +236,14 @@ class FollowedPoints:
         self._sides = tree.sides.taken(self._triangle)
         self._starts = np.zeros(count, dtype=np.int64)
         self._search(self._anchors, np.arange(count), np.full(count, slack_mm, dtype=float), None)
-        self._found = self._nearest_of(self._anchors)
-
-    @property
-    def nearest(self) -> NearestPoints:
-        return self._found[0]
+        self.nearest, self._places = self._nearest_of(self._anchors)
 
     def keep(self, rows: np.ndarray) -> None:
         """Follow only some of the points, (k,) int ascending; they are numbered anew."""
         number = np.full(len(self._anchors), -1)
         number[rows] = np.arange(len(rows))
         self._anchors, self._slack = self._anchors[rows], self._slack[rows]
-        found, places = self._found
-        self._found = found.taken(rows), places[rows]
+        self.nearest, self._places = self.nearest.taken(rows), self._places[rows]
         who = number[self._who]
         pairs = np.flatnonzero(who >= 0)
         self._set_pairs(who[pairs], self._triangle[pairs])
@@ -292,9 +251,8 @@ class FollowedPoints:
     def repeat(self, slack_mm: np.ndarray) -> None:
         """Follow copies of the points, one set after the other.
 
-        Args:
-            slack_mm: (k, n) float, by how much each copy of each point is to move from here, at
-                most what it was for the point itself.
+        `slack_mm` (k, n) is by how much each copy of each point is to move from here, at most what
+        it was for the point itself.
         """
         copies, count = slack_mm.shape
         squares, _, _ = self._sides.nearest(self._anchors[self._who])
@@ -303,24 +261,21 @@ class FollowedPoints:
         copy, pair = np.nonzero(near)
         self._anchors = np.tile(self._anchors, (copies, 1))
         self._slack = slack_mm.ravel()
-        found, places = self._found
         rows = np.tile(np.arange(count), copies)
-        self._found = found.taken(rows), places[rows]
+        self.nearest, self._places = self.nearest.taken(rows), self._places[rows]
         self._set_pairs(self._who[pair] + count * copy, self._triangle[pair])
 
     def move(self, points: np.ndarray, slack_mm: np.ndarray) -> NearestPoints:
-        """Return the nearest points (n,) of where the points have moved.
+        """Return the nearest points of where the points (n, 3) have moved.
 
-        Args:
-            points: (n, 3) float, mm.
-            slack_mm: (n,) float, by how much each is expected to move from here.
+        `slack_mm` (n,) is by how much each is expected to move from here.
         """
         away = np.sum((points - self._anchors) ** 2, axis=1)
         lost = np.flatnonzero(away > self._slack**2)
         if len(lost):
-            self._search(points, lost, slack_mm[lost], self._found[1][lost])
-        self._found = self._nearest_of(points)
-        return self._found[0]
+            self._search(points, lost, slack_mm[lost], self._places[lost])
+        self.nearest, self._places = self._nearest_of(points)
+        return self.nearest
 
     def _nearest_of(self, points: np.ndarray) -> tuple[NearestPoints, np.ndarray]:
         squares, v, w = self._sides.nearest(points[self._who])

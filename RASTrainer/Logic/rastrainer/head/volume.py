@@ -53,13 +53,7 @@ class VolumeFile:
 
 @dataclass(frozen=True)
 class HeadVolume:
-    """A scalar image of a head.
-
-    Attributes:
-        values: (i, j, k) uint8 or int16.
-        ijk_to_ras: (4, 4) float, voxel index to RAS mm.
-        window, level: as of `VolumeFile`.
-    """
+    """A scalar image of a head: values (i, j, k) uint8 or int16, index to RAS mm."""
 
     values: np.ndarray
     ijk_to_ras: np.ndarray
@@ -70,11 +64,6 @@ class HeadVolume:
 def read_head_volume(file: VolumeFile) -> HeadVolume:
     """Read the volume of a scenario."""
     return HeadVolume(*read_nrrd(file.file), file.window, file.level)
-
-
-def write_head_volume(path: Path, volume: HeadVolume) -> None:
-    """Write the voxels and geometry of a volume, and nothing else."""
-    write_nrrd(path, volume.values, volume.ijk_to_ras)
 
 
 def check_place(volume: HeadVolume, head: HeadMesh, path: Path) -> None:
@@ -115,39 +104,37 @@ _ELSEWHERE = ("data file", "datafile", "line skip", "lineskip", "byte skip", "by
 _VECTOR = re.compile(r"\(([^()]*)\)")
 
 
-@dataclass(frozen=True)
-class _Header:
-    """Type and geometry of the voxels.
-
-    Attributes:
-        dtype: as stored.
-        shape: number of voxels along each axis.
-        ijk_to_ras: (4, 4) float, mm.
-    """
-
-    dtype: np.dtype
-    shape: tuple[int, int, int]
-    ijk_to_ras: np.ndarray
-
-
 def read_nrrd(path: Path) -> tuple[np.ndarray, np.ndarray]:
     """Return the voxels (i, j, k), uint8 or int16, and the matrix (4, 4) float, index to RAS mm."""
     content = read_bytes(path, MAX_FILE_BYTES)
-    header, start = _read_header(path, content)
-    count = math.prod(header.shape) * header.dtype.itemsize
-    values = np.frombuffer(_unpacked(path, content[start:], count), header.dtype)
-    native = values.astype(header.dtype.newbyteorder("="), copy=False)
-    return native.reshape(header.shape, order="F"), header.ijk_to_ras
+    head = content[:_MAX_HEADER_BYTES].replace(b"\r\n", b"\n")
+    text, separator, _ = head.partition(b"\n\n")
+    magic, _, rest = text.decode("latin-1").partition("\n")
+    if not _MAGIC.fullmatch(magic):
+        raise _wrong(path, "start as NRRD files do")
+    if not separator:
+        raise _wrong(path, f"have a header of at most {_MAX_HEADER_BYTES // 1024} KiB")
+    fields = _fields(path, rest)
+    blank_line = re.search(rb"\r?\n\r?\n", content[:_MAX_HEADER_BYTES])
+    assert blank_line is not None  # The separator was found above.
+    dtype, shape, matrix = _dtype(path, fields), _shape(path, fields), _matrix(path, fields)
+    count = math.prod(shape) * dtype.itemsize
+    stream = zlib.decompressobj(wbits=31)
+    try:
+        voxels = stream.decompress(content[blank_line.end() :], count + 1)
+    except zlib.error:
+        raise _wrong(path, "hold voxels that gzip can unpack: it is damaged") from None
+    if len(voxels) > count:
+        raise _wrong(path, "hold no more voxels than its header says")
+    if len(voxels) < count or not stream.eof:
+        raise _wrong(path, "hold as many voxels as its header says: it is cut short")
+    values = np.frombuffer(voxels, dtype)
+    native = values.astype(dtype.newbyteorder("="), copy=False)
+    return native.reshape(shape, order="F"), matrix
 
 
 def write_nrrd(path: Path, values: np.ndarray, ijk_to_ras: np.ndarray) -> None:
-    """Write a gzip-compressed image; the same image gives the same bytes.
-
-    Args:
-        path: of the file.
-        values: (i, j, k) uint8 or int16.
-        ijk_to_ras: (4, 4) float, mm.
-    """
+    """Write (i, j, k) uint8 or int16, gzip-compressed; the same image gives the same bytes."""
     to_lps = np.diag([*_SPACES["lps"], 1.0]) @ ijk_to_ras
     directions = " ".join(_vector(to_lps[:3, axis]) for axis in range(3))
     lines = (
@@ -169,21 +156,6 @@ def write_nrrd(path: Path, values: np.ndarray, ijk_to_ras: np.ndarray) -> None:
     write_bytes(path, "\n".join(lines).encode("ascii") + b"\n\n" + packed.getvalue())
 
 
-def _read_header(path: Path, content: bytes) -> tuple[_Header, int]:
-    """Return the header of a file and the offset of its voxels."""
-    head = content[:_MAX_HEADER_BYTES].replace(b"\r\n", b"\n")
-    text, separator, _ = head.partition(b"\n\n")
-    magic, _, rest = text.decode("latin-1").partition("\n")
-    if not _MAGIC.fullmatch(magic):
-        raise _wrong(path, "start as NRRD files do")
-    if not separator:
-        raise _wrong(path, f"have a header of at most {_MAX_HEADER_BYTES // 1024} KiB")
-    fields = _fields(path, rest)
-    blank_line = re.search(rb"\r?\n\r?\n", content[:_MAX_HEADER_BYTES])
-    assert blank_line is not None  # The separator was found above.
-    return _header(path, fields), blank_line.end()
-
-
 def _fields(path: Path, text: str) -> dict[str, str]:
     fields: dict[str, str] = {}
     for line in text.split("\n"):
@@ -200,7 +172,7 @@ def _fields(path: Path, text: str) -> dict[str, str]:
     return fields
 
 
-def _header(path: Path, fields: dict[str, str]) -> _Header:
+def _dtype(path: Path, fields: dict[str, str]) -> np.dtype:
     kind = fields.get("type", "").lower()
     name = next((name for name, words in _KINDS.items() if kind in words), None)
     if name is None:
@@ -210,8 +182,7 @@ def _header(path: Path, fields: dict[str, str]) -> _Header:
     endian = fields.get("endian", "little").lower()
     if endian not in ("little", "big"):
         raise _wrong(path, "be little or big endian")
-    dtype = np.dtype(name).newbyteorder("<" if endian == "little" else ">")
-    return _Header(dtype, _shape(path, fields), _matrix(path, fields))
+    return np.dtype(name).newbyteorder("<" if endian == "little" else ">")
 
 
 def _shape(path: Path, fields: dict[str, str]) -> tuple[int, int, int]:
@@ -259,20 +230,6 @@ def _vectors(path: Path, fields: dict[str, str], name: str, count: int) -> np.nd
         numbers = f"{3 * count} numbers within ±{MAX_ORIGIN_MM:g}"
         raise _wrong(path, f"have the field “{name}” with {numbers}")
     return vectors
-
-
-def _unpacked(path: Path, packed: bytes, count: int) -> bytes:
-    """Return exactly `count` bytes; more or fewer are refused."""
-    stream = zlib.decompressobj(wbits=31)
-    try:
-        content = stream.decompress(packed, count + 1)
-    except zlib.error:
-        raise _wrong(path, "hold voxels that gzip can unpack: it is damaged") from None
-    if len(content) > count:
-        raise _wrong(path, "hold no more voxels than its header says")
-    if len(content) < count or not stream.eof:
-        raise _wrong(path, "hold as many voxels as its header says: it is cut short")
-    return content
 
 
 def _vector(values: np.ndarray) -> str:

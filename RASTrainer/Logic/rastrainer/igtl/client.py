@@ -45,6 +45,7 @@ class Client:
 
     Attributes:
         latest: the last message of each device, by name.
+        is_open: the connection is open, as far as this side knows.
     """
 
     def __init__(
@@ -54,11 +55,7 @@ class Client:
         on_message: Callable[[Message], None] | None = None,
         timeout: float = PATIENCE_S,
     ):
-        """Connect within `timeout` seconds.
-
-        Raises:
-            LinkError: the connection is refused or times out.
-        """
+        """Connect within `timeout` seconds, or raise `LinkError`."""
         try:
             self._socket = socket.create_connection((host, port), timeout)
         except OSError as error:
@@ -72,7 +69,7 @@ class Client:
         self._news = threading.Condition()
         self._numbers = itertools.count(1)
         self._waiting: dict[int, Future[Reply]] = {}
-        self._is_open = True
+        self.is_open = True
         self.latest: dict[str, Message] = {}
         self._thread = threading.Thread(target=self._receive, name="igtl-client", daemon=True)
         self._thread.start()
@@ -83,11 +80,6 @@ class Client:
     def __exit__(self, *_exception: object) -> None:
         self.close()
 
-    @property
-    def is_open(self) -> bool:
-        """Whether the connection is open, as far as this side knows."""
-        return self._is_open
-
     def close(self) -> None:
         """Close the connection and wait for the receiving thread."""
         with contextlib.suppress(OSError):  # The peer may have closed it first.
@@ -96,12 +88,7 @@ class Client:
             self._thread.join()
 
     def send(self, message: Message) -> None:
-        """Send one message.
-
-        Raises:
-            InputError: the message is invalid.
-            LinkError: the connection is lost.
-        """
+        """Send one message; raise `LinkError` if the connection is lost."""
         data = pack(message)
         try:
             with self._sending:
@@ -112,18 +99,14 @@ class Client:
     def send_command(
         self, name: str, arguments: Mapping[str, Any] | None = None, timeout: float = PATIENCE_S
     ) -> Reply:
-        """Send a command and return its answer.
-
-        Raises:
-            LinkError: the connection is lost, or no answer within `timeout` seconds.
-        """
+        """Send a command and return its answer; raise `LinkError` if there is none in time."""
         number = next(self._numbers)
         answer: Future[Reply] = Future()
         self._waiting[number] = answer
         try:
             body = json.dumps(dict(arguments or {}), allow_nan=False)
             self.send(Message(DeviceName.COMMAND, Command(number, name, body)))
-            if not self._is_open and not answer.done():
+            if not self.is_open and not answer.done():
                 raise LinkError("The connection is lost.")
             return answer.result(timeout)
         except NoResult:
@@ -137,20 +120,16 @@ class Client:
         accept: Callable[[Message], bool] = lambda _message: True,
         timeout: float = PATIENCE_S,
     ) -> Message:
-        """Return the latest message of `device` that `accept` accepts, waiting for it if needed.
-
-        Raises:
-            LinkError: none within `timeout` seconds, or the connection is lost.
-        """
+        """Return the latest message of `device` that `accept` accepts, waiting for it if needed."""
 
         def has_arrived() -> bool:
             return device in self.latest and accept(self.latest[device])
 
         with self._news:
-            self._news.wait_for(lambda: has_arrived() or not self._is_open, timeout)
+            self._news.wait_for(lambda: has_arrived() or not self.is_open, timeout)
             if has_arrived():
                 return self.latest[device]
-            if not self._is_open:
+            if not self.is_open:
                 raise LinkError("The connection is lost.")
             raise LinkError(f"No matching message from {device} within {timeout:g} s.")
 
@@ -167,7 +146,7 @@ class Client:
         finally:
             self._socket.close()
             with self._news:
-                self._is_open = False
+                self.is_open = False
                 self._news.notify_all()
             for answer in list(self._waiting.values()):
                 answer.set_exception(LinkError("The connection is lost."))
@@ -175,22 +154,18 @@ class Client:
     def _accept(self, message: Message) -> None:
         if type(message.content) is CommandReply:
             answer = self._waiting.pop(message.content.command_id, None)
-            if answer is not None:
-                _resolve(answer, message.content, message.metadata)
+            if answer is None:
+                return
+            is_success = message.metadata.get(STATUS_KEY) == SUCCESS
+            error = message.metadata.get(ERROR_KEY, "")
+            try:
+                data = decode_answer_object(message.content.body)
+                answer.set_result(Reply(is_success, error, data))
+            except InputError:
+                answer.set_exception(LinkError("An answer's body must be a JSON object."))
             return
         with self._news:
             self.latest[message.device] = message
             self._news.notify_all()
         if self._on_message is not None:
             self._on_message(message)
-
-
-def _resolve(answer: Future[Reply], content: CommandReply, metadata: Mapping[str, str]) -> None:
-    """Pass the answer to the waiting thread; its body is untrusted and checked."""
-    try:
-        data = decode_answer_object(content.body)
-    except InputError:
-        answer.set_exception(LinkError("An answer's body must be a JSON object."))
-        return
-    is_success = metadata.get(STATUS_KEY) == SUCCESS
-    answer.set_result(Reply(is_success, metadata.get(ERROR_KEY, ""), data))

@@ -99,7 +99,6 @@ class Transform:
         return (*(self.columns[row::3] for row in range(3)), (0.0, 0.0, 0.0, 1.0))
 
     def pack(self) -> bytes:
-        """Return the content's bytes."""
         return _TRANSFORM.pack(*self.columns)
 
     @classmethod
@@ -117,7 +116,6 @@ class String:
     text: str
 
     def pack(self) -> bytes:
-        """Return the content's bytes."""
         encoding, data = encode_text(self.text)
         if len(data) > MAX_STRING_BYTES:
             raise InputError(
@@ -127,7 +125,6 @@ class String:
 
     @classmethod
     def unpack(cls, data: bytes, keep_bytes: bool = False) -> String:
-        """Return the content of `data`."""
         if len(data) < _STRING.size:
             raise InputError(f"A STRING must have at least {_STRING.size} bytes, not {len(data)}.")
         _encoding, length = _STRING.unpack_from(data)
@@ -140,11 +137,8 @@ class String:
 class Status:
     """The state of a device; becomes a status node in Slicer.
 
-    Attributes:
-        code: 1 is OK, other numbers are the protocol's error codes.
-        subcode: defined by the device.
-        name: of the error, at most 20 ASCII characters.
-        message: for people.
+    Code 1 is OK, others are the protocol's error codes; the device defines the subcode; the name of
+    the error has at most 20 ASCII characters.
     """
 
     TYPE: ClassVar[str] = "STATUS"
@@ -155,7 +149,6 @@ class Status:
     message: str = ""
 
     def pack(self) -> bytes:
-        """Return the content's bytes."""
         if not (0 <= self.code < 2**16 and 0 <= self.subcode < 2**64):
             raise InputError("A status must have a 16-bit code and a 64-bit subcode.")
         name = pack_name(self.name, 20, "The name in a status")
@@ -164,7 +157,6 @@ class Status:
 
     @classmethod
     def unpack(cls, data: bytes, keep_bytes: bool = False) -> Status:
-        """Return the content of `data`."""
         if len(data) < _STATUS.size:
             raise InputError(f"A STATUS must have at least {_STATUS.size} bytes, not {len(data)}.")
         code, subcode, name = _STATUS.unpack_from(data)
@@ -191,7 +183,6 @@ class _NumberedText:
     body: str = ""
 
     def pack(self) -> bytes:
-        """Return the content's bytes."""
         if not 0 <= self.command_id < 2**32:
             raise InputError("The number of a command must fit 32 bits.")
         name = pack_name(self.name, 128, "The name of a command")
@@ -200,7 +191,6 @@ class _NumberedText:
 
     @classmethod
     def unpack(cls: type[_T], data: bytes, keep_bytes: bool = False) -> _T:
-        """Return the content of `data`."""
         if len(data) < _COMMAND.size:
             raise InputError(f"A COMMAND must have at least {_COMMAND.size} bytes.")
         command_id, name, _encoding, length = _COMMAND.unpack_from(data)
@@ -240,13 +230,9 @@ MAX_POINTS = 1_000
 class Point:
     """One labeled point.
 
-    Attributes:
-        label: shown beside the point, at most 64 ASCII characters.
-        position: `(3,) float`, mm.
-        color: red, green, blue and alpha from 0 to 255; alpha 0 would hide the point in Slicer.
-        group: `Unselected` makes Slicer show it as not selected.
-        diameter: mm; Slicer drops it.
-        owner: device the point belongs to; Slicer drops it.
+    The label has at most 64 ASCII characters, the position is in mm, the color is RGBA from 0 to
+    255; alpha 0 would hide the point in Slicer. The group `Unselected` makes Slicer show it as not
+    selected; diameter and owner are dropped.
     """
 
     label: str
@@ -272,38 +258,35 @@ class Points:
     points: tuple[Point, ...]
 
     def pack(self) -> bytes:
-        """Return the content's bytes, 136 per point."""
         if len(self.points) > MAX_POINTS:
             raise InputError(f"A POINT message must have at most {MAX_POINTS} points.")
-        return b"".join(_pack_point(point) for point in self.points)
+        packed = (
+            _POINT.pack(
+                pack_name(point.label, 64, "The label of a point"),
+                pack_name(point.group, 32, "The group of a point"),
+                *point.color,
+                *point.position,
+                point.diameter,
+                pack_name(point.owner, 20, "The owner of a point"),
+            )
+            for point in self.points
+        )
+        return b"".join(packed)
 
     @classmethod
     def unpack(cls, data: bytes, keep_bytes: bool = False) -> Points:
-        """Return the content of `data`."""
         if len(data) % _POINT.size:
             raise InputError(f"A POINT message must have {_POINT.size} bytes for each point.")
-        points = (_unpack_point(fields, keep_bytes) for fields in _POINT.iter_unpack(data))
+        points = (
+            Point(
+                label=unpack_name(label, keep_bytes),
+                position=position,
+                color=color,
+                group=unpack_name(group),
+                diameter=diameter,
+                owner=unpack_name(owner),
+            )
+            for label, group, *numbers, diameter, owner in _POINT.iter_unpack(data)
+            for color, position in [(tuple(numbers[:4]), tuple(numbers[4:]))]
+        )
         return cls(tuple(points))
-
-
-def _pack_point(point: Point) -> bytes:
-    return _POINT.pack(
-        pack_name(point.label, 64, "The label of a point"),
-        pack_name(point.group, 32, "The group of a point"),
-        *point.color,
-        *point.position,
-        point.diameter,
-        pack_name(point.owner, 20, "The owner of a point"),
-    )
-
-
-def _unpack_point(fields: tuple, keep_bytes: bool) -> Point:
-    label, group, red, green, blue, alpha, x, y, z, diameter, owner = fields
-    return Point(
-        label=unpack_name(label, keep_bytes),
-        position=(x, y, z),
-        color=(red, green, blue, alpha),
-        group=unpack_name(group),
-        diameter=diameter,
-        owner=unpack_name(owner),
-    )

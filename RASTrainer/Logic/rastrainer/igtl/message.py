@@ -34,14 +34,9 @@ _POLYNOMIAL = 0x42F0E1EBA9EA3693
 _MASK = 0xFFFFFFFFFFFFFFFF
 
 
-def _remainder(byte: int) -> int:
-    value = byte << 56
-    for _ in range(8):
-        value = ((value << 1) ^ (_POLYNOMIAL if value >> 63 else 0)) & _MASK
-    return value
-
-
-_TABLE = tuple(_remainder(byte) for byte in range(256))
+_TABLE = list(range(0, 256 << 56, 1 << 56))
+for _bit in range(8):
+    _TABLE = [((v << 1) ^ (_POLYNOMIAL if v >> 63 else 0)) & _MASK for v in _TABLE]
 
 
 def plain_crc64(data: bytes) -> int:
@@ -85,13 +80,9 @@ HEADER_BYTES = _HEADER.size
 class Message:
     """One message.
 
-    Attributes:
-        device: 1 to 20 ASCII characters; the name of the node in Slicer.
-        content: the content, whose class determines the type.
-        metadata: texts by key; header version 2 only.
-        message_id: the sender's 32-bit number; header version 2 only.
-        timestamp: seconds since 1970; None for the time of packing. Slicer sends 0.
-        version: header version, 1 or 2.
+    The device, 1 to 20 ASCII characters, is the name of the node in Slicer; the class of the
+    content is the type. Metadata and number need version 2 of the header. The timestamp is in
+    seconds since 1970, None for the time of packing; Slicer sends 0.
     """
 
     device: str
@@ -147,23 +138,18 @@ def _pack_body(message: Message) -> bytes:
         raise InputError("An answer must say in its metadata whether the command succeeded.")
     if not (content or message.metadata):
         raise InputError("An empty list must be sent with metadata.")
-    index, entries = _pack_metadata(message.metadata)
-    extended = _EXTENDED.pack(_EXTENDED.size, len(index), len(entries), message.message_id)
-    return extended + content + index + entries
-
-
-def _pack_metadata(metadata: Mapping[str, str]) -> tuple[bytes, bytes]:
-    if len(metadata) > MAX_METADATA:
+    if len(message.metadata) > MAX_METADATA:
         raise InputError(f"A message must have at most {MAX_METADATA} metadata entries.")
-    index, entries = [_COUNT.pack(len(metadata))], list[bytes]()
-    for key, value in metadata.items():
+    index, entries = _COUNT.pack(len(message.metadata)), b""
+    for key, value in message.metadata.items():
         key_bytes = pack_name(key, 255, "A metadata key")
         if not key_bytes:
             raise InputError("A metadata key must not be empty.")
         encoding, value_bytes = encode_text(value)
-        index.append(_ENTRY.pack(len(key_bytes), encoding, len(value_bytes)))
-        entries += (key_bytes, value_bytes)
-    return b"".join(index), b"".join(entries)
+        index += _ENTRY.pack(len(key_bytes), encoding, len(value_bytes))
+        entries += key_bytes + value_bytes
+    extended = _EXTENDED.pack(_EXTENDED.size, len(index), len(entries), message.message_id)
+    return extended + content + index + entries
 
 
 def read_header(data: bytes | bytearray) -> Header | None:
@@ -283,7 +269,10 @@ class MessageReader:
     def _take_one(self, messages: list[Message]) -> bool:
         """Process one message or stretch of garbage; return False if more bytes are needed."""
         if self._to_skip:
-            return self._skip()
+            skipped = min(self._to_skip, len(self._buffer))
+            del self._buffer[:skipped]
+            self._to_skip -= skipped
+            return not self._to_skip
         if len(self._buffer) < HEADER_BYTES:
             return False
         header = read_header(self._buffer)
@@ -293,7 +282,9 @@ class MessageReader:
         if header.body_size > MAX_BODY_BYTES:
             self.refusal = f"A message claims more than {MAX_BODY_BYTES} bytes."
             return False
-        if self._is_unwanted(header):
+        wanted_bytes = self._kept.get(header.type)
+        if wanted_bytes is None or header.body_size > wanted_bytes:
+            self.errors[StreamError.TYPE if wanted_bytes is None else StreamError.SIZE] += 1
             self._to_skip = HEADER_BYTES + header.body_size
             return True
         end = HEADER_BYTES + header.body_size
@@ -301,33 +292,15 @@ class MessageReader:
             return False
         body = bytes(self._buffer[HEADER_BYTES:end])
         del self._buffer[:end]
-        self._read(header, body, messages)
-        return True
-
-    def _skip(self) -> bool:
-        skipped = min(self._to_skip, len(self._buffer))
-        del self._buffer[:skipped]
-        self._to_skip -= skipped
-        return not self._to_skip
-
-    def _is_unwanted(self, header: Header) -> bool:
-        if header.type not in self._kept:
-            self.errors[StreamError.TYPE] += 1
-            return True
-        if header.body_size > self._kept[header.type]:
-            self.errors[StreamError.SIZE] += 1
-            return True
-        return False
-
-    def _read(self, header: Header, body: bytes, messages: list[Message]) -> None:
         if crc64(body) != header.checksum:
             self.errors[StreamError.CHECKSUM] += 1
-            return
+            return True
         self._garbage = 0
         try:
             messages.append(unpack(header, body))
         except InputError:
             self.errors[StreamError.CONTENT] += 1
+        return True
 
     def _find_next_header(self) -> bool:
         if not self.taken:

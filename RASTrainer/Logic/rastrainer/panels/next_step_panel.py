@@ -128,7 +128,7 @@ class NextStepPanel(Panel):
         simulator, trial, study = session.simulator, session.training.status, self._studyStep
         return WorkflowState(
             # Reported at once, before downloading a simulator to which no connection is possible.
-            link=session.link.status if session.link.isInstalled else notInstalled(),
+            link=session.link.status if session.link.findKit() else notInstalled(),
             program=simulator.program.state,
             programSentence=simulator.program.sentence,
             needsSetup=not (self._isSetUp or simulator.ownProgram),

@@ -22,13 +22,13 @@ from rastrainer.panels.widgets import (
     setUsable,
 )
 from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.score_tables import (
     GroupComparison,
     ctpsRows,
     motionRows,
     scoreRows,
-    showMotion,
-    showScore,
+    showRows,
     showStandings,
     standings,
 )
@@ -75,8 +75,9 @@ class ScorePanel(Panel):
                 return
             rows = [*scoreRows(trial), *ctpsRows(trial, self._session.cohort)]
             showStandings(slicer.mrmlScene, self._standings(trial))
-            showMotion(slicer.mrmlScene, motionRows(trial))
-            showTable(self._session.layout, showScore(slicer.mrmlScene, rows))
+            showRows(slicer.mrmlScene, Role.MOTION, "Motion metrics", motionRows(trial))
+            score = showRows(slicer.mrmlScene, Role.SCORE, "Score", rows)
+            showTable(self._session.layout, score)
             self._showMessage(
                 _("Score, Comparison and Motion metrics are now tables in the scene.")
             )

@@ -134,7 +134,7 @@ class PlanPanel(Panel):
         )
         setUsable(
             ui.undoPlanButton,
-            self._logic.points.canUndo,
+            bool(self._logic.points.changes),
             _("Undo the last placement or removal of a point."),
             _("Nothing was placed or removed."),
         )

@@ -24,7 +24,7 @@ from rastrainer.head.volume import (
     HeadVolume,
     VolumeFile,
     read_head_volume,
-    write_head_volume,
+    write_nrrd,
 )
 from rastrainer.json_checks import identifier_of, text
 from rastrainer.json_records import record_to_json
@@ -103,7 +103,7 @@ def write_scenario(
     if skull is not None:
         write_head_mesh(folder / SKULL_NAME, skull)
     if volume is not None:
-        write_head_volume(folder / VOLUME_NAME, volume)
+        write_nrrd(folder / VOLUME_NAME, volume.values, volume.ijk_to_ras)
     for task in scenario.tasks:
         write_markups(folder / _file(task), PointList(task.labels, task.fiducials))
     for name, mesh in (no_go or {}).items():
@@ -202,7 +202,7 @@ def write_draft(folder: Path, draft: HeadDraft) -> None:
     if draft.skull is not None:
         write_head_mesh(folder / SKULL_NAME, draft.skull)
     if volume is not None:
-        write_head_volume(folder / VOLUME_NAME, volume)
+        write_nrrd(folder / VOLUME_NAME, volume.values, volume.ijk_to_ras)
     file = DraftFile(
         draft.method,
         kind if draft.skull else None,

@@ -17,7 +17,6 @@ import threading
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
-from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from rastrainer.errors import InputError
@@ -47,53 +46,30 @@ LEAVING_S = 0.2
 """How long it then waits for the work to end what it had started."""
 
 
-class _Workers:
-    """Makes Python give the main thread priority while any worker runs.
+class Job(Generic[T]):
+    """One job in a thread, started at once and supervised by the main thread.
 
-    It looks for no cycles of garbage: that would happen in a worker's thread, where wrappers of
-    VTK's and Qt's objects must not die, and among all that Slicer holds it takes tenths of a
-    second, which nothing interrupts. So the main thread lets Python collect again.
-
-    And a worker gives Python's lock back soon: numpy gives it away in each call of LAPACK, so that
-    the main thread would wait Python's usual 5 ms hundreds of times in one registration.
+    While any job runs, Python gives the main thread priority. It looks for no cycles of garbage:
+    that would happen in a job's thread, where wrappers of VTK's and Qt's objects must not die, and
+    among all that Slicer holds it takes tenths of a second, which nothing interrupts. And a job
+    gives Python's lock back soon: numpy gives it away in each call of LAPACK, so that the main
+    thread would wait Python's usual 5 ms hundreds of times in one registration.
     """
 
-    def __init__(self) -> None:
-        self._count = 0
-        self._wasEnabled = False
-        self._interval_s = sys.getswitchinterval()
-
-    def begin(self) -> None:
-        """Note that a worker starts; called by the main thread only, as `end`."""
-        if self._count == 0:
-            self._wasEnabled = gc.isenabled()
-            gc.disable()
-            self._interval_s = sys.getswitchinterval()
-            sys.setswitchinterval(SWITCH_INTERVAL_S)
-        self._count += 1
-
-    def end(self) -> None:
-        """Note that a worker has ended, or that its result is no longer needed."""
-        self._count -= 1
-        if self._count:
-            return
-        sys.setswitchinterval(self._interval_s)
-        if self._wasEnabled:
-            gc.enable()
-
-
-_WORKERS = _Workers()
-
-
-class Job(Generic[T]):
-    """One job in a thread, started at once and supervised by the main thread."""
+    _supervised = 0
+    _former = True, 0.0
+    """Whether Python collected garbage, and its interval of switching, before the first job."""
 
     def __init__(self, work: Callable[[], T]) -> None:
         self._work = work
         self._outcome: Future[T] = Future()
         self._isSupervised = True
         self._thread = threading.Thread(target=self._run, daemon=True)
-        _WORKERS.begin()
+        if not Job._supervised:
+            Job._former = gc.isenabled(), sys.getswitchinterval()
+            gc.disable()
+            sys.setswitchinterval(SWITCH_INTERVAL_S)
+        Job._supervised += 1
         self._thread.start()
 
     @property
@@ -110,9 +86,15 @@ class Job(Generic[T]):
 
     def leave(self) -> None:
         """Stop supervising the thread: it has ended, or its result is no longer needed."""
-        if self._isSupervised:
-            self._isSupervised = False
-            _WORKERS.end()
+        if not self._isSupervised:
+            return
+        self._isSupervised = False
+        Job._supervised -= 1
+        if not Job._supervised:
+            wasCollecting, interval_s = Job._former
+            sys.setswitchinterval(interval_s)
+            if wasCollecting:
+                gc.enable()
 
     def result(self) -> T:
         """Return what finished work has returned, or raise what it has raised."""
@@ -125,11 +107,8 @@ class Job(Generic[T]):
             self._outcome.set_exception(error)
 
 
-@dataclass(frozen=True)
-class _Waiting:
-    work: Callable[[], Any]
-    take: Callable[[Any], None]
-    refuse: Callable[[Exception], None]
+_Take = Callable[[Any], None]
+_Refuse = Callable[[Exception], None]
 
 
 class BackgroundWork:
@@ -141,9 +120,9 @@ class BackgroundWork:
 
     def __init__(self) -> None:
         self.began = Signal()
-        self._waiting: deque[_Waiting] = deque()
+        self._waiting: deque[tuple[Callable[[], Any], _Take, _Refuse]] = deque()
         self._slices: deque[Callable[[], object]] = deque()
-        self._underWay: tuple[Job[Any], _Waiting] | None = None
+        self._underWay: tuple[Job[Any], _Take, _Refuse] | None = None
         self._isClosed = False
         self._clearedCount = 0
         self._isLeft = threading.Event()
@@ -159,30 +138,25 @@ class BackgroundWork:
         take: Callable[[T], None],
         refuse: Callable[[Exception], None] = lambda _error: None,
     ) -> None:
-        """Run `work`, unless closed; it starts when earlier results have been delivered.
+        """Run `work` in a thread once earlier results have been delivered, unless closed.
 
-        Args:
-            work: runs in a thread; see the module for what it may touch.
-            take: called by a later `process` with what `work` has returned.
-            refuse: called in its place with what `work` has raised. What is no `InputError` is
-                then raised by `process`, too: it is a mistake of ours.
+        A later `process` calls `take` with its result, or `refuse` with what it has raised. What is
+        no `InputError` is then raised by `process`, too: it is a mistake of ours.
         """
-        if self._isClosed:
-            return
-        wasBusy = self.isBusy
-        self._waiting.append(_Waiting(work, take, refuse))
-        self._startNext()
-        if not wasBusy:
-            self.began.emit()
+        if not self._isClosed:
+            wasBusy = self.isBusy
+            self._waiting.append((work, take, refuse))
+            self._startNext()
+            if not wasBusy:
+                self.began.emit()
 
     def later(self, slice_: Callable[[], object]) -> None:
         """Have a later `process` call a function on the main thread, one each time."""
-        if self._isClosed:
-            return
-        wasBusy = self.isBusy
-        self._slices.append(slice_)
-        if not wasBusy:
-            self.began.emit()
+        if not self._isClosed:
+            wasBusy = self.isBusy
+            self._slices.append(slice_)
+            if not wasBusy:
+                self.began.emit()
 
     def changeScene(self, change: Callable[[], object]) -> None:
         """Have a change made as by `later`, unless the scene is cleared before."""
@@ -200,18 +174,20 @@ class BackgroundWork:
 
     def process(self) -> None:
         """Call one postponed function, or deliver a finished result."""
-        if self._slices:
-            try:
-                self._slices.popleft()()
-            finally:
-                self._startNext()
-            return
-        if self._underWay is None or not self._underWay[0].isDone:
-            return
-        job, ended = self._underWay
-        self._underWay = None
         try:
-            self._deliver(job, ended)
+            if self._slices:
+                self._slices.popleft()()
+            elif self._underWay is not None and self._underWay[0].isDone:
+                job, take, refuse = self._underWay
+                self._underWay = None
+                try:
+                    result = job.result()
+                except Exception as error:
+                    refuse(error)
+                    if not isinstance(error, InputError):
+                        raise
+                else:
+                    take(result)
         finally:
             self._startNext()
 
@@ -239,26 +215,15 @@ class BackgroundWork:
     def _startNext(self) -> None:
         """Start waiting work after postponed functions: both at once would share Python's lock."""
         if self._waiting and self._underWay is None and not self._slices:
-            waiting = self._waiting.popleft()
-            self._underWay = Job(waiting.work), waiting
-
-    def _deliver(self, job: Job[Any], ended: _Waiting) -> None:
-        try:
-            result = job.result()
-        except Exception as error:
-            ended.refuse(error)
-            if not isinstance(error, InputError):
-                raise
-        else:
-            ended.take(result)
+            work, take, refuse = self._waiting.popleft()
+            self._underWay = Job(work), take, refuse
 
 
 def inBackground(work: Callable[[Progress], T], progress: Progress) -> T:
     """Return what `work` returns, calling `progress` many times a second meanwhile.
 
-    Args:
-        work: called with a function to report its progress to, which raises once `progress` has.
-        progress: may let the application draw, and may raise to cancel.
+    `work` is called with a function to report its progress to. `progress` may let the application
+    draw, and may raise to cancel: then what is reported to raises, too.
     """
     reported: list[tuple[str, float]] = [("", 0.0)]
     isCanceled = threading.Event()

@@ -48,11 +48,13 @@ class Settings:
 
     def __init__(self, store: Any | None = None) -> None:
         """Use a store with Qt's `value(key)` and `setValue`; without one nothing is kept."""
-        self._store = _Memory() if store is None else store
+        self._store = store
+        self._kept: dict[str, Any] = {}
 
     def get(self, setting: Setting[Value]) -> Value:
         """Return what was chosen; the default if nothing was, or it cannot be read."""
-        value = self._store.value(setting.key)
+        kept = self._kept.get(setting.key)
+        value = kept if self._store is None else self._store.value(setting.key)
         if value is None:
             return setting.usual
         if isinstance(setting.usual, bool):
@@ -64,17 +66,7 @@ class Settings:
             return setting.usual
 
     def set(self, setting: Setting[Value], value: Value) -> None:
-        self._store.setValue(setting.key, value)
-
-
-class _Memory:
-    """A store that lasts only as long as the program."""
-
-    def __init__(self) -> None:
-        self._values: dict[str, Any] = {}
-
-    def value(self, key: str) -> Any | None:
-        return self._values.get(key)
-
-    def setValue(self, key: str, value: Any) -> None:
-        self._values[key] = value
+        if self._store is None:
+            self._kept[setting.key] = value
+        else:
+            self._store.setValue(setting.key, value)

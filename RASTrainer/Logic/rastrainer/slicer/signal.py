@@ -12,26 +12,21 @@ MAX_REMEMBERED = 100
 
 
 class Signal:
-    """A list of callables; each is called with what `emit` is given."""
+    """Callables, called in the order of `listeners` with what `emit` is given."""
 
     def __init__(self) -> None:
-        self._listeners: list[Callable[..., Any]] = []
+        self.listeners: list[Callable[..., Any]] = []
 
     def connect(self, listener: Callable[..., Any]) -> None:
-        self._listeners.append(listener)
+        self.listeners.append(listener)
 
     def disconnect(self, listener: Callable[..., Any]) -> None:
         """Stop calling `listener`; one that is not connected is no error."""
-        if listener in self._listeners:
-            self._listeners.remove(listener)
-
-    @property
-    def listeners(self) -> tuple[Callable[..., Any], ...]:
-        """The connected callables, in this order."""
-        return tuple(self._listeners)
+        if listener in self.listeners:
+            self.listeners.remove(listener)
 
     def emit(self, *values: Any) -> None:
-        for listener in self.listeners:
+        for listener in tuple(self.listeners):
             listener(*values)
 
 
@@ -67,5 +62,5 @@ class ErrorGuard:
 
     def emit(self, what: str, signal: Signal, *values: Any) -> None:
         """Call every listener of a signal, even if some fail."""
-        for listener in signal.listeners:
+        for listener in tuple(signal.listeners):
             self.run(what, listener, *values)

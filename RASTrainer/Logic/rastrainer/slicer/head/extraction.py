@@ -31,10 +31,7 @@ otherwise they alone would count as tissue."""
 class Tissue:
     """What is tissue in an image.
 
-    Attributes:
-        level: (i, j, k) float within ±1, positive in tissue; its zero lies between the voxels.
-        threshold: that parts it from air, in the image's own values.
-        isCt: whether the values are Hounsfield units.
+    `level` (i, j, k) is within ±1, positive in tissue, its zero between the voxels.
     """
 
     level: np.ndarray
@@ -45,17 +42,17 @@ class Tissue:
 def findTissue(values: np.ndarray, threshold: float | None, noise: float) -> Tissue:
     """Return the head's tissue, alone.
 
-    Args:
-        values: (i, j, k) float.
-        threshold: None finds it: −475 HU of a CT, else by Otsu's method.
-        noise: standard deviation of the smoothing, in voxels.
+    Without a threshold it is −475 HU of a CT, else found by Otsu's method. `noise` is the standard
+    deviation of the smoothing, in voxels.
     """
     isCt = isHounsfield(values)
     # Normalized values of an MRI begin below 0.
     air = CT_AIR if isCt else min(0.0, float(np.quantile(values[::2, ::2, ::2], AIR_QUANTILE)))
     smooth = ndimage.gaussian_filter(np.maximum(values, air) - air, noise, mode="nearest")
     if threshold is None:
-        found = CT_SKIN - CT_AIR if isCt else mask.otsuThreshold(_withoutTail(smooth))
+        high = TAIL_FACTOR * float(np.quantile(smooth[::2, ::2, ::2], TAIL_QUANTILE))
+        bounded = np.minimum(smooth, high) if high > 0 else smooth
+        found = CT_SKIN - CT_AIR if isCt else mask.otsuThreshold(bounded)
     else:
         found = threshold - air
     if threshold is None and found <= 0:
@@ -67,11 +64,6 @@ def findTissue(values: np.ndarray, threshold: float | None, noise: float) -> Tis
     head = mask.largestBody(mask.withoutCavities(level > 0))
     level = np.where(head | (level <= 0), level, -1.0).astype(np.float32)
     return Tissue(level, found + air, isCt)
-
-
-def _withoutTail(values: np.ndarray) -> np.ndarray:
-    high = TAIL_FACTOR * float(np.quantile(values[::2, ::2, ::2], TAIL_QUANTILE))
-    return np.minimum(values, high) if 0 < high < values.max() else values
 
 
 TREND_LENGTH = 5
@@ -137,13 +129,7 @@ LONGEST_HEAD_MM = 200.0
 
 
 def findHead(volume: Volume, settings: HeadSettings, progress: Progress) -> HeadBody:
-    """Return the head of a volume.
-
-    Args:
-        volume: T1-weighted MRI or CT of a head.
-        settings: deviations from the defaults.
-        progress: called with each step's name and the share of the work done; may raise to cancel.
-    """
+    """Return the head of a T1-weighted MRI or CT."""
     progress("Reading the volume", 0.0)
     grid = onRasGrid(volume, SPACING_MM)
     progress("Finding the skin", 0.1)
@@ -159,7 +145,13 @@ def findHead(volume: Volume, settings: HeadSettings, progress: Progress) -> Head
             f"this range, not at {base:.0f} mm."
         )
     below = max(0, int((base - lowest) / SPACING_MM) - 1)
-    around = _around(found.level > 0, below)
+    # The part of the image that the head needs; what is below and much air costs time.
+    spans = []
+    for axis, count in enumerate(found.level.shape):
+        others = tuple(other for other in range(3) if other != axis)
+        inside = np.flatnonzero((found.level > 0).any(axis=others))
+        spans.append((max(0, inside[0] - MARGIN), min(count, inside[-1] + 1 + MARGIN)))
+    around = slice(*spans[0]), slice(*spans[1]), slice(below, spans[2][1])
     level = continued(found.level[around], MARGIN)
     progress("Filling cavities", 0.3)
     body = _body(level > 0, settings, progress)
@@ -171,7 +163,9 @@ def findHead(volume: Volume, settings: HeadSettings, progress: Progress) -> Head
 def skinOf(head: HeadBody, settings: HeadSettings, progress: Progress) -> HeadMesh:
     """Return the skin as one closed surface of genus 0 with a flat base."""
     progress("Making the surface", 0.8)
-    skin = surface.surfaceOf(_agreeing(head.level, head.body), head.origin, SPACING_MM)
+    # Changed only where it disagrees with the body.
+    level = np.where(head.body, np.maximum(head.level, 0.05), np.minimum(head.level, -0.05))
+    skin = surface.surfaceOf(level, head.origin, SPACING_MM)
     skin, wanted = surface.smoothed(skin), settings.triangles
     for _ in range(MAX_DECIMATIONS):
         mesh = surface.meshOf(surface.decimated(skin, wanted, head.baseMm))
@@ -183,19 +177,17 @@ def skinOf(head: HeadBody, settings: HeadSettings, progress: Progress) -> HeadMe
             break
         # Another number of triangles also avoids what decimation has torn.
         wanted -= max(0, over) + BASE_RESERVE
-    _check(mesh)
+    if not _isSound(mesh):
+        raise InputError(
+            "No head was found: its surface could not be closed; try another threshold or base."
+        )
+    if len(mesh.triangles) > MAX_TRIANGLES:
+        raise InputError(
+            f"The head's surface has {len(mesh.triangles)} triangles, more than {MAX_TRIANGLES}; "
+            "aim at fewer."
+        )
     progress("Done", 1.0)
     return mesh
-
-
-def _around(inside: np.ndarray, below: int) -> tuple[slice, slice, slice]:
-    """Return the part of the image that the head needs; what is below and much air costs time."""
-    spans = []
-    for axis, count in enumerate(inside.shape):
-        others = tuple(other for other in range(3) if other != axis)
-        set_ = np.flatnonzero(inside.any(axis=others))
-        spans.append((max(0, set_[0] - MARGIN), min(count, set_[-1] + 1 + MARGIN)))
-    return slice(*spans[0]), slice(*spans[1]), slice(below, spans[2][1])
 
 
 def _body(inside: np.ndarray, settings: HeadSettings, progress: Progress) -> np.ndarray:
@@ -206,36 +198,14 @@ def _body(inside: np.ndarray, settings: HeadSettings, progress: Progress) -> np.
     deep = mask.depthInside(hull, depth) > depth
     wanted = mask.withoutCavities(inside | deep)
     progress("Closing tunnels", 0.55)
-    ball = _ballLike(wanted, settings)
-    progress("Closing tunnels", 0.7)
-    return mask.carved(ball, wanted)
-
-
-def _ballLike(wanted: np.ndarray, settings: HeadSettings) -> np.ndarray:
     for radius in settings.openingMm * np.array([0.5, 1.0, 2.0, 4.0]):
         body = mask.withoutCavities(mask.closedByBall(wanted, radius / SPACING_MM))
         contour = surface.meshOf(surface.surfaceOf(np.where(body, 1.0, -1.0), np.zeros(3), 1.0))
         if contour.euler_characteristic == 2:
-            return body
+            progress("Closing tunnels", 0.7)
+            return mask.carved(body, wanted)
     raise InputError("No head was found: the shape above the threshold has too many tunnels.")
-
-
-def _agreeing(level: np.ndarray, body: np.ndarray) -> np.ndarray:
-    """Return the level set, changed only where it disagrees with the body."""
-    return np.where(body, np.maximum(level, 0.05), np.minimum(level, -0.05))
 
 
 def _isSound(mesh: HeadMesh) -> bool:
     return mesh.is_closed and mesh.euler_characteristic == 2
-
-
-def _check(mesh: HeadMesh) -> None:
-    if not _isSound(mesh):
-        raise InputError(
-            "No head was found: its surface could not be closed; try another threshold or base."
-        )
-    if len(mesh.triangles) > MAX_TRIANGLES:
-        raise InputError(
-            f"The head's surface has {len(mesh.triangles)} triangles, more than {MAX_TRIANGLES}; "
-            "aim at fewer."
-        )

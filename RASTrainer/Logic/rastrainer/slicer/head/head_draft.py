@@ -45,23 +45,21 @@ def makeDraft(
     headMade: Callable[[HeadDraft, list[str]], None] = lambda _draft, _warnings: None,
     hasVolume: bool = True,
 ) -> tuple[HeadDraft, list[str]]:
-    """Return a head and warnings, one sentence each.
+    """Return a head and warnings, one sentence each, from a T1-weighted MRI or CT of a head.
 
-    Args:
-        volume: T1-weighted MRI or CT of a head.
-        settings: deviations from the defaults.
-        hasSkull: whether the skull is wanted too.
-        progress: called with each step's name and the share of the work done; may raise to cancel.
-        segment: the head; None finds it in the volume.
-        headMade: given the draft without its skull and the warnings, before the skull is made.
-        hasVolume: whether the images are to be part of the draft.
+    Without a `segment`, the head is found in the volume. `headMade` is given the draft without its
+    skull and the warnings, before the skull is made.
     """
-    volume, settings, warnings = _usable(volume, settings or HeadSettings())
-    found, mesh, more = _findSkin(
+    volume, found, mesh, warnings = _findSkin(
         volume, settings, lambda step, share: progress(step, 0.8 * share), segment
     )
-    warnings += more
-    draft = HeadDraft(mesh, _headMethod(found, segment is not None))
+    kind = "CT" if found.isCt else "MRI"
+    how = f"threshold {found.threshold:.5g}" if segment is None else "segment edited by hand"
+    method = (
+        f"Surface of the skin from {kind} by rastrainer, {how}, cavities filled, cut flat at "
+        f"{found.baseMm:.1f} mm (S)."
+    )
+    draft = HeadDraft(mesh, method)
     if hasVolume:
         progress("Preparing the images", 0.8)
         images, method = imageOf(volume, found)
@@ -69,7 +67,11 @@ def makeDraft(
     headMade(draft, warnings)
     if hasSkull:
         progress("Making the skull", 0.85)
-        method = f"{draft.method} {_skullMethod(found)}"
+        shell = f"a shell from {SCALP_MM:g} to {SCALP_MM + BONE_MM:g} mm below the skin"
+        method = f"Skull: an approximation, {shell}; MRI shows no bone."
+        if found.isCt:
+            method = "Skull: bone of the CT."
+        method = f"{draft.method} {method}"
         skull = skullOf(volume, found)
         draft = replace(draft, method=method, skull=skull, is_skull_approximate=not found.isCt)
     progress("Done", 1.0)
@@ -83,51 +85,26 @@ def findSkin(
     segment: SegmentImage | None = None,
 ) -> tuple[HeadBody, HeadMesh, list[str]]:
     """Return a head as voxels and as a surface, and warnings; otherwise as `makeDraft`."""
-    volume, settings, warnings = _usable(volume, settings or HeadSettings())
-    found, mesh, more = _findSkin(volume, settings, progress, segment)
-    return found, mesh, warnings + more
-
-
-def _usable(volume: Volume, settings: HeadSettings) -> tuple[Volume, HeadSettings, list[str]]:
-    """Return a copy of a volume with measured values alone, settings for these, and warnings."""
-    volume = asFloat(volume)
-    warnings = [*volume.warnings, *checkVolume(volume)]
-    volume, offset, more = cleaned(volume)
-    if settings.threshold is not None:
-        settings = replace(settings, threshold=settings.threshold + offset)
-    return volume, settings, warnings + more
+    return _findSkin(volume, settings, progress, segment)[1:]
 
 
 def _findSkin(
-    volume: Volume, settings: HeadSettings, progress: Progress, segment: SegmentImage | None
-) -> tuple[HeadBody, HeadMesh, list[str]]:
+    volume: Volume, settings: HeadSettings | None, progress: Progress, segment: SegmentImage | None
+) -> tuple[Volume, HeadBody, HeadMesh, list[str]]:
+    """Return a copy of the volume with measured values alone, and what `findSkin` does."""
+    volume, settings = asFloat(volume), settings or HeadSettings()
+    warnings = [*volume.warnings, *checkVolume(volume)]
+    volume, offset, more = cleaned(volume)
     if segment is not None:
-        settings = forSegment(settings)
-    searched = volume if segment is None else volumeOfSegment(segment)
-    found = findHead(searched, settings, progress)
-    if segment is not None:
+        found = findHead(volumeOfSegment(segment), forSegment(settings), progress)
         found = replace(found, isCt=isHounsfield(volume.values))
+    else:
+        if settings.threshold is not None:
+            settings = replace(settings, threshold=settings.threshold + offset)
+        found = findHead(volume, settings, progress)
     mesh = skinOf(found, settings, progress)
     checkHead(mesh)
-    return found, mesh, skullWarnings(volume, found)
-
-
-def _headMethod(found: HeadBody, isSegment: bool) -> str:
-    kind = "CT" if found.isCt else "MRI"
-    how = "segment edited by hand" if isSegment else f"threshold {found.threshold:.5g}"
-    return (
-        f"Surface of the skin from {kind} by rastrainer, {how}, cavities filled, cut flat at "
-        f"{found.baseMm:.1f} mm (S)."
-    )
-
-
-def _skullMethod(found: HeadBody) -> str:
-    if found.isCt:
-        return "Skull: bone of the CT."
-    return (
-        f"Skull: an approximation, a shell from {SCALP_MM:g} to {SCALP_MM + BONE_MM:g} mm below "
-        "the skin; MRI shows no bone."
-    )
+    return volume, found, mesh, warnings + more + skullWarnings(volume, found)
 
 
 FEWEST_VOXELS = 16
@@ -156,10 +133,6 @@ def checkVolume(volume: Volume) -> list[str]:
         raise InputError("The volume contains values that are not numbers (NaN or infinite).")
     if values.min() == values.max():
         raise InputError("The volume is empty: all its voxels have the same value.")
-    return _checkSpacing(volume)
-
-
-def _checkSpacing(volume: Volume) -> list[str]:
     axes = volume.ijkToRas[:3, :3]
     spacing = np.linalg.norm(axes, axis=0)
     if not np.isfinite(volume.ijkToRas).all() or spacing.min() <= 0:
@@ -212,12 +185,8 @@ _MAX_GRAY = 255.0
 def imageOf(volume: Volume, head: HeadBody) -> tuple[HeadVolume, str]:
     """Return a head's images on a grid of 1 mm along RAS, and a sentence on how they were made.
 
-    MRI becomes uint8: from the darkest value of the volume to the brightest of the head, unless
-    its values are such numbers already. CT becomes int16, Hounsfield units.
-
-    Args:
-        volume: what the head was found in.
-        head: as `findHead` has found it.
+    MRI becomes uint8: from the darkest value of the volume to the brightest of the head, unless its
+    values are such numbers already. CT becomes int16, Hounsfield units.
     """
     near = mask.squaredDistances(head.body, KEPT_MM / SPACING_MM) <= (KEPT_MM / SPACING_MM) ** 2
     near[:, :, : max(0, int(np.floor((head.baseMm - head.origin[2]) / SPACING_MM)))] = False
@@ -231,19 +200,16 @@ def imageOf(volume: Volume, head: HeadBody) -> tuple[HeadVolume, str]:
         low, high = HOUNSFIELD
         method = f"Images: CT, 1 mm, Hounsfield units from {low:g} to {high:g}."
         return HeadVolume(units, gridToRas, CT_WINDOW, CT_LEVEL), method
-    grays, method = _grays(values, volume.values, body)
+    source = volume.values
+    low, high = float(source.min()), float(np.quantile(values[body], BRIGHTEST_QUANTILE))
+    method = f"Images: MRI, 1 mm, values from {low:.6g} to {high:.6g} as 0 to 255."
+    if low >= 0 and source.max() <= _MAX_GRAY and np.array_equal(source, np.rint(source)):
+        method = "Images: MRI, 1 mm, its own values, 0 to 255."
+    else:
+        values = np.clip((values - low) * (_MAX_GRAY / max(high - low, 1e-30)), 0.0, _MAX_GRAY)
+    grays = np.rint(values).astype(np.uint8)
     white = max(2.0, float(np.quantile(grays[body], WHITE_QUANTILE)))
     return HeadVolume(grays, gridToRas, white, white / 2.0), method
-
-
-def _grays(values: np.ndarray, source: np.ndarray, body: np.ndarray) -> tuple[np.ndarray, str]:
-    """Return an MRI's values as uint8, and a sentence on what they mean."""
-    low, high = float(source.min()), float(np.quantile(values[body], BRIGHTEST_QUANTILE))
-    if low >= 0 and source.max() <= _MAX_GRAY and np.array_equal(source, np.rint(source)):
-        return np.rint(values).astype(np.uint8), "Images: MRI, 1 mm, its own values, 0 to 255."
-    scaled = np.clip((values - low) * (_MAX_GRAY / max(high - low, 1e-30)), 0.0, _MAX_GRAY)
-    method = f"Images: MRI, 1 mm, values from {low:.6g} to {high:.6g} as 0 to 255."
-    return np.rint(scaled).astype(np.uint8), method
 
 
 CT_NOISE_MM = 0.7

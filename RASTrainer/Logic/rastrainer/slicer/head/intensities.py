@@ -36,12 +36,9 @@ def isHounsfield(values: np.ndarray) -> bool:
 
 
 def cleaned(volume: Volume) -> tuple[Volume, float, list[str]]:
-    """Return a volume whose values are all measured ones, in Hounsfield units if it is a CT.
+    """Return a volume of measured values alone, changed in place, an offset, and warnings.
 
-    Returns:
-        volume: its values are changed in place.
-        offset: what was added to all values.
-        warnings: of what the user should check, one sentence each.
+    A CT is in Hounsfield units; the offset is what was added to all values.
     """
     values = volume.values
     _replaceFill(values)
@@ -55,7 +52,11 @@ def cleaned(volume: Volume) -> tuple[Volume, float, list[str]]:
             "is no CT, do not use the head."
         )
         return volume, -STORED_ZERO, [warning]
-    _clipOutliers(values)
+    # An MRI's few values that have overflowed leave few gray levels for tissue.
+    low, high = np.quantile(values[::2, ::2, ::2], (_OUTLIERS, 1.0 - _OUTLIERS))
+    if high > low:
+        values[values < low - _FAR_BELOW * (high - low)] = low
+        np.minimum(values, high + _FAR_ABOVE * (high - low), out=values)
     return volume, 0.0, []
 
 
@@ -118,14 +119,6 @@ def _middle(values: np.ndarray, above: float) -> np.ndarray:
 _OUTLIERS, _FAR_BELOW, _FAR_ABOVE = 0.01, 0.5, 4.0
 """The share of voxels at each end that may be outliers, and how far these lie, in multiples of the
 range between: less deep below than high above, where vessels and metal are."""
-
-
-def _clipOutliers(values: np.ndarray) -> None:
-    """Clip an MRI's few values that have overflowed: they leave few gray levels for tissue."""
-    low, high = np.quantile(values[::2, ::2, ::2], (_OUTLIERS, 1.0 - _OUTLIERS))
-    if high > low:
-        values[values < low - _FAR_BELOW * (high - low)] = low
-        np.minimum(values, high + _FAR_ABOVE * (high - low), out=values)
 
 
 _STEP = 2

@@ -81,8 +81,7 @@ def depthInside(mask: np.ndarray, most: float) -> np.ndarray:
 def squaredDistances(mask: np.ndarray, most: float) -> np.ndarray:
     """Return the squared distance of each voxel to the mask, uint16, exact up to `most` voxels.
 
-    Farther voxels have more than `most` squared. Axis by axis, which is much faster than
-    `ndimage.distance_transform_edt`, whose result is exact however far a voxel is.
+    Axis by axis, which is much faster than `ndimage.distance_transform_edt`.
     """
     reach = int(most)
     squared = np.where(mask, np.uint16(0), np.uint16((reach + 1) ** 2))
@@ -129,9 +128,8 @@ _BY_CORNER = [_touching(offset, 3) for offset in _OFFSETS]
 def isSimple(neighbors: int) -> bool:
     """Return whether the middle voxel of 3×3×3 may be removed without a change of topology.
 
-    Args:
-        neighbors: the 26 neighbors that are set, one bit each; the body is connected through faces,
-            its outside through faces, edges and corners.
+    `neighbors` are the 26 that are set, one bit each; the body is connected through faces, its
+    outside through faces, edges and corners.
     """
     inside = neighbors & _FACES_AND_EDGES
     outside = _ALL & ~neighbors
@@ -152,13 +150,9 @@ def _isOne(members: int, wanted: int, touching: list[int]) -> bool:
 
 
 def carved(body: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Return `body` carved toward `wanted`, with the topology of `body`.
+    """Return `body` (i, j, k) carved toward `wanted` within it, with the topology of `body`.
 
     The voxels farthest from `wanted` go first, so that membranes stay where tunnels are narrow.
-
-    Args:
-        body: (i, j, k) bool, contains `wanted`.
-        wanted: (i, j, k) bool.
     """
     # A border of one voxel lets every voxel have 26 neighbors; the neck continues below.
     sides, below = [(1, 1), (1, 1), (0, 1)], [(0, 0), (0, 0), (1, 0)]
@@ -167,46 +161,25 @@ def carved(body: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     keep[:, :, 0] = True
     voxels = bytearray(padded.tobytes())
     candidates = padded & ~keep
-    distance = _squaredDistances(keep, candidates)
-    border = candidates & ndimage.binary_dilation(~padded)
-    _removeSimple(voxels, candidates.ravel(), distance.ravel(), border, _steps(padded.shape))
-    result = np.frombuffer(voxels, dtype=bool).reshape(padded.shape)
-    return result[1:-1, 1:-1, 1:-1].copy()
-
-
-def _squaredDistances(keep: np.ndarray, candidates: np.ndarray) -> np.ndarray:
-    """Return squared distances to what is kept, exact for all but the most distant candidates."""
     for reach in _REACHES:
         squared = squaredDistances(keep, reach)
         if squared[candidates].max(initial=0) <= reach**2:
             break
-    return squared
-
-
-def _steps(shape: tuple[int, ...]) -> list[int]:
-    """Return how far each of the 26 neighbors is in the flat array."""
-    strides = (shape[1] * shape[2], shape[2], 1)
-    return [sum(a * b for a, b in zip(offset, strides, strict=True)) for offset in _OFFSETS]
-
-
-def _removeSimple(
-    voxels: bytearray,
-    candidates: np.ndarray,
-    distance: np.ndarray,
-    border: np.ndarray,
-    steps: list[int],
-) -> None:
-    waiting = set(np.flatnonzero(border).tolist())
+    isCandidate, distance = candidates.ravel(), squared.ravel()
+    strides = (padded.shape[1] * padded.shape[2], padded.shape[2], 1)
+    steps = [sum(a * b for a, b in zip(offset, strides, strict=True)) for offset in _OFFSETS]
+    waiting = set(np.flatnonzero(candidates & ndimage.binary_dilation(~padded)).tolist())
     queue = [(-int(distance[index]), index) for index in waiting]
     heapq.heapify(queue)
     while queue:
         _, index = heapq.heappop(queue)
         waiting.discard(index)
         around = [index + step for step in steps]
-        if not isSimple(sum(1 << bit for bit, other in enumerate(around) if voxels[other])):
-            continue
-        voxels[index] = 0
-        for other in around:
-            if voxels[other] and candidates[other] and other not in waiting:
-                waiting.add(other)
-                heapq.heappush(queue, (-int(distance[other]), other))
+        if isSimple(sum(1 << bit for bit, other in enumerate(around) if voxels[other])):
+            voxels[index] = 0
+            for other in around:
+                if voxels[other] and isCandidate[other] and other not in waiting:
+                    waiting.add(other)
+                    heapq.heappush(queue, (-int(distance[other]), other))
+    result = np.frombuffer(voxels, dtype=bool).reshape(padded.shape)
+    return result[1:-1, 1:-1, 1:-1].copy()

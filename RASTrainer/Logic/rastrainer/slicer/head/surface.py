@@ -19,13 +19,7 @@ APART_MM = 0.5
 
 
 def surfaceOf(level: np.ndarray, originMm: np.ndarray, spacingMm: float) -> vtk.vtkPolyData:
-    """Return the largest closed surface around the positive part of a level set.
-
-    Args:
-        level: (i, j, k) float, positive inside, on a grid along the axes of RAS.
-        originMm: (3,) float, RAS position of voxel 0, 0, 0.
-        spacingMm: of the grid.
-    """
+    """Return the largest closed surface around the positive part of a level set (i, j, k)."""
     padded = np.pad(level, 1, constant_values=-1.0)
     image = vtk.vtkImageData()
     image.SetDimensions(padded.shape)
@@ -64,17 +58,14 @@ def decimated(surface: vtk.vtkPolyData, triangleCount: int, aboveMm: float) -> v
     decimation = vtk.vtkQuadricDecimation()
     decimation.SetInputData(surface)
     decimation.SetTargetReduction(1.0 - triangleCount / countAbove)
-    return _withoutFins(_output(decimation))
-
-
-def _withoutFins(surface: vtk.vtkPolyData) -> vtk.vtkPolyData:
-    """Remove triangles that hang on an edge which two others share: decimation may leave some."""
-    openSides = (meshOf(surface).side_uses == 1).sum(axis=1)
-    surface.BuildCells()
+    thin = _output(decimation)
+    # Decimation may leave fins: triangles that hang on an edge which two others share.
+    openSides = (meshOf(thin).side_uses == 1).sum(axis=1)
+    thin.BuildCells()
     for fin in np.flatnonzero(openSides == 2):
-        surface.DeleteCell(fin)
-    surface.RemoveDeletedCells()
-    return surface
+        thin.DeleteCell(fin)
+    thin.RemoveDeletedCells()
+    return thin
 
 
 def cutFlat(mesh: HeadMesh, heightMm: float) -> HeadMesh:
@@ -159,7 +150,6 @@ def _largestPart(vertices: np.ndarray, triangles: np.ndarray) -> HeadMesh:
 
 
 def meshOf(surface: vtk.vtkPolyData) -> HeadMesh:
-    """Return the surface's vertices and triangles."""
     return HeadMesh(
         vtk_to_numpy(surface.GetPoints().GetData()).astype(np.float32),
         vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3).astype(np.int32),

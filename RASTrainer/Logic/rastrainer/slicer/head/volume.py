@@ -20,22 +20,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Volume:
-    """A scalar image.
-
-    Attributes:
-        values: (i, j, k) float.
-        ijkToRas: (4, 4) float, maps voxel indices to patient coordinates, mm.
-        warnings: what its file leaves open, one sentence each.
-    """
+    """A scalar image (i, j, k), its place in the patient, mm, and what its file leaves open."""
 
     values: np.ndarray
     ijkToRas: np.ndarray
     warnings: tuple[str, ...] = ()
-
-
-def volumeFromNode(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
-    """Return the image of a volume node where its transforms place it; see `imageOfNode`."""
-    return asFloat(imageOfNode(node))
 
 
 def imageOfNode(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
@@ -43,7 +32,15 @@ def imageOfNode(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
 
     Its values are of the node's own type; `asFloat` copies them, in any thread.
     """
-    _checkOrientation(node)
+    storage = node.GetStorageNode()
+    path = storage.GetFullNameFromFileName() if storage is not None else ""
+    missing = missingOrientation(Path(path)) if path else ""
+    if missing:
+        raise InputError(
+            f"The file of the volume {node.GetName()} does not state the patient's orientation "
+            f"({missing}): left and right, front and back are unknown. Make sure that the slice "
+            "views show them as they are, then save the volume as NRRD, which states it."
+        )
     image = node.GetImageData()
     if image is None:
         raise InputError(f"The volume {node.GetName()} holds no image.")
@@ -54,18 +51,6 @@ def imageOfNode(node: slicer.vtkMRMLScalarVolumeNode) -> Volume:
         raise InputError("The volume must have one value a voxel, not none and not a color.")
     values = vtk_to_numpy(array).reshape(image.GetDimensions()[::-1]).transpose(2, 1, 0)
     return Volume(values, toWorld(node) @ matrixOf(matrix))
-
-
-def _checkOrientation(node: slicer.vtkMRMLScalarVolumeNode) -> None:
-    storage = node.GetStorageNode()
-    path = storage.GetFullNameFromFileName() if storage is not None else ""
-    missing = missingOrientation(Path(path)) if path else ""
-    if missing:
-        raise InputError(
-            f"The file of the volume {node.GetName()} does not state the patient's orientation "
-            f"({missing}): left and right, front and back are unknown. Make sure that the slice "
-            "views show them as they are, then save the volume as NRRD, which states it."
-        )
 
 
 def asFloat(volume: Volume) -> Volume:
@@ -86,7 +71,6 @@ def toWorld(node: slicer.vtkMRMLTransformableNode) -> np.ndarray:
 
 
 def matrixOf(matrix: vtk.vtkMatrix4x4) -> np.ndarray:
-    """Return VTK's matrix as (4, 4) float."""
     return np.array([[matrix.GetElement(row, column) for column in range(4)] for row in range(4)])
 
 
@@ -104,7 +88,13 @@ def onRasGrid(volume: Volume, spacingMm: float) -> Volume:
     origin[2] = heights.mean()
     gridToRas = np.diag([spacingMm] * 3 + [1.0])
     gridToRas[:3, 3] = origin
-    volume = _repeated(volume, axis, end, float(np.ptp(heights)))
+    downMm = float(np.ptp(heights))
+    count = int(np.ceil(downMm / abs(volume.ijkToRas[2, axis]) - 1e-6))
+    widths = [(0, 0)] * 3
+    widths[axis] = (count, 0) if end == 0 else (0, count)
+    matrix = volume.ijkToRas.copy()
+    matrix[:3, 3] -= widths[axis][0] * matrix[:3, axis]
+    volume = Volume(np.pad(volume.values, widths, mode="edge"), matrix)
     shape = tuple(int(n) for n in np.floor((top - origin) / spacingMm + 1e-6) + 1)
     return Volume(sampled(volume, gridToRas, shape), gridToRas)
 
@@ -132,16 +122,6 @@ def lowestSlice(volume: Volume) -> tuple[int, int]:
     """Return the axis that is nearest to the vertical, and the index of its lower end."""
     axis = int(np.abs(volume.ijkToRas[2, :3]).argmax())
     return axis, 0 if volume.ijkToRas[2, axis] > 0 else volume.values.shape[axis] - 1
-
-
-def _repeated(volume: Volume, axis: int, end: int, downMm: float) -> Volume:
-    """Return the volume with the slice at one end repeated over a height."""
-    count = int(np.ceil(downMm / abs(volume.ijkToRas[2, axis]) - 1e-6))
-    widths = [(0, 0)] * 3
-    widths[axis] = (count, 0) if end == 0 else (0, count)
-    matrix = volume.ijkToRas.copy()
-    matrix[:3, 3] -= widths[axis][0] * matrix[:3, axis]
-    return Volume(np.pad(volume.values, widths, mode="edge"), matrix)
 
 
 SPACING_MM = 1.0
@@ -176,13 +156,8 @@ class HeadSettings:
 class HeadBody:
     """A head as voxels of 1 mm along RAS, before it becomes a surface.
 
-    Attributes:
-        level: (i, j, k) float, positive inside, its zero between the voxels where the skin is.
-        body: (i, j, k) bool, without cavities and tunnels.
-        origin: (3,) float, RAS mm, of voxel 0, 0, 0.
-        baseMm: height (S) of the flat base.
-        threshold: that parts air from skin, in the volume's own values.
-        isCt: whether the values are Hounsfield units.
+    `level` (i, j, k) is positive inside, its zero where the skin is; `body` is without cavities and
+    tunnels; `origin` is RAS mm of voxel 0, 0, 0; `threshold` parts air from skin.
     """
 
     level: np.ndarray
@@ -194,11 +169,7 @@ class HeadBody:
 
     @cached_property
     def labels(self) -> tuple[np.ndarray, np.ndarray]:
-        """The body as a segment has it, and where its first voxel is.
-
-        (k, j, i) uint8, 1 inside, down to 3 mm below the base; (3,) float, RAS mm. Computed once,
-        which takes a moment.
-        """
+        """The body as a segment has it, (k, j, i) uint8, and where its first voxel is, RAS mm."""
         below = max(0, round((self.baseMm - BELOW_BASE_MM - self.origin[2]) / SPACING_MM))
         voxels = np.ascontiguousarray(self.body[:, :, below:].transpose(2, 1, 0), np.uint8)
         return voxels, self.origin + np.array([0.0, 0.0, below * SPACING_MM])
@@ -269,7 +240,13 @@ def readSegment(node: Any, segmentId: str) -> SegmentImage:
     toRas = toWorld(node) @ matrixOf(matrix)
     toRas[:3, 3] += toRas[:3, :3] @ first
     labels = vtk_to_numpy(array).reshape(image.GetDimensions()[::-1]).transpose(2, 1, 0)
-    return SegmentImage(Volume(labels, toRas), _baseOf(node, segmentId))
+    baseMm, tag = -np.inf, vtk.reference("")
+    if node.GetSegmentation().GetSegment(segmentId).GetTag(BASE_TAG, tag):
+        bounds = [0.0] * 6
+        node.GetSegmentation().GetBounds(bounds)
+        middle = [np.mean(bounds[:2]), np.mean(bounds[2:4]), float(tag.get()), 1.0]
+        baseMm = float((toWorld(node) @ middle)[2])
+    return SegmentImage(Volume(labels, toRas), baseMm)
 
 
 def volumeOfSegment(segment: SegmentImage) -> Volume:
@@ -283,45 +260,23 @@ def volumeOfSegment(segment: SegmentImage) -> Volume:
     if not inside.any():
         raise InputError("The segment of the head is empty.")
     bare = Volume(inside.astype(np.float32), segment.labels.ijkToRas)
-    return _fromBase(onRasGrid(_inAir(bare), SPACING_MM), segment.baseMm)
-
-
-def forSegment(settings: HeadSettings) -> HeadSettings:
-    return replace(settings, threshold=_HALF, noiseMm=EDITED_NOISE_MM)
-
-
-def _inAir(bare: Volume) -> Volume:
-    """Return a segment with air around it, but below, where the neck continues.
-
-    The segment's image ends where the segment does.
-    """
     widths = np.full((3, 2), _AIR)
     axis, end = lowestSlice(bare)
     widths[axis, 0 if end == 0 else 1] = 0
     matrix = bare.ijkToRas.copy()
     matrix[:3, 3] -= matrix[:3, :3] @ widths[:, 0]
-    return Volume(np.pad(bare.values, widths), matrix)
-
-
-def _baseOf(node: Any, segmentId: str) -> float:
-    """Return the height (S) of the base that was shown with a segment, −∞ where none was."""
-    tag = vtk.reference("")
-    if not node.GetSegmentation().GetSegment(segmentId).GetTag(BASE_TAG, tag):
-        return -np.inf
-    bounds = [0.0] * 6
-    node.GetSegmentation().GetBounds(bounds)
-    middle = [np.mean(bounds[:2]), np.mean(bounds[2:4]), float(tag.get()), 1.0]
-    return float((toWorld(node) @ middle)[2])
-
-
-def _fromBase(grid: Volume, baseMm: float) -> Volume:
-    """Return a segment's volume without what is more than a voxel below its base."""
-    lowest = grid.ijkToRas[2, 3]
-    heights = lowest + SPACING_MM * np.arange(grid.values.shape[2])
-    isWanted = (grid.values > _HALF).any(axis=(0, 1)) & (heights > baseMm - 1.5 * SPACING_MM)
+    grid = onRasGrid(Volume(np.pad(bare.values, widths), matrix), SPACING_MM)
+    # Without what is more than a voxel below its base.
+    heights = grid.ijkToRas[2, 3] + SPACING_MM * np.arange(grid.values.shape[2])
+    isBelow = heights <= segment.baseMm - 1.5 * SPACING_MM
+    isWanted = (grid.values > _HALF).any(axis=(0, 1)) & ~isBelow
     if np.count_nonzero(isWanted) < 2:
         raise InputError("The segment of the head is empty above its base.")
     start = int(isWanted.argmax())
     matrix = grid.ijkToRas.copy()
     matrix[2, 3] += start * SPACING_MM
     return Volume(grid.values[:, :, start:], matrix)
+
+
+def forSegment(settings: HeadSettings) -> HeadSettings:
+    return replace(settings, threshold=_HALF, noiseMm=EDITED_NOISE_MM)

@@ -31,18 +31,10 @@ _CONTRADICTION = 0.7
 
 @dataclass(frozen=True)
 class _Nifti:
-    """The header of NIfTI-1 or Analyze 7.5 (nifti1.h).
+    """The header of NIfTI-1, or of Analyze 7.5, which knows no orientation (nifti1.h).
 
-    Attributes:
-        isAnalyze: whether it is Analyze, which knows no orientation.
-        sizes: of all dimensions.
-        kind, bits: of a voxel.
-        begins: where the voxels begin.
-        spacing: (3,) float.
-        codes: of the qform and the sform; 0 means that there is none.
-        rotation: (3,) float, b, c, d of the qform's quaternion.
-        flip: of the qform's last axis, 1 or −1.
-        sform: (3, 3) float.
+    `codes` are of qform and sform, 0 for none; `rotation` is b, c, d of the qform's quaternion,
+    `flip` of its last axis, 1 or −1.
     """
 
     isAnalyze: bool
@@ -79,7 +71,13 @@ def checkHeader(path: Path) -> None:
     if begin[:4] in (struct.pack("<i", _NIFTI_2), struct.pack(">i", _NIFTI_2)):
         raise _unusable(path, "is NIfTI-2", "save it as NIfTI-1 or NRRD")
     if begin.startswith(b"NRRD"):
-        _checkNrrd(path, begin)
+        fields = _nrrd(begin)
+        sizes = [int(size) for size in fields.get("sizes", "").split() if size.isdecimal()]
+        kinds = fields.get("kinds", "").lower()
+        if len(sizes) == 4 and any(kind in kinds for kind in ("color", "vector", "complex")):
+            several = f"has {fields['sizes']} values, several in a voxel"
+            raise _unusable(path, several, "use one with gray values")
+        _checkSizes(path, tuple(sizes))
     nifti = _nifti(begin)
     if nifti is not None:
         _checkNifti(path, nifti)
@@ -199,17 +197,6 @@ def _nrrd(begin: bytes) -> dict[str, str]:
         for name, separator, value in lines
         if separator and not name.startswith("#") and not value.startswith("=")
     }
-
-
-def _checkNrrd(path: Path, begin: bytes) -> None:
-    fields = _nrrd(begin)
-    sizes = [int(size) for size in fields.get("sizes", "").split() if size.isdecimal()]
-    kinds = fields.get("kinds", "").lower()
-    if len(sizes) == 4 and any(kind in kinds for kind in ("color", "vector", "complex")):
-        raise _unusable(
-            path, f"has {fields['sizes']} values, several in a voxel", "use one with gray values"
-        )
-    _checkSizes(path, tuple(sizes))
 
 
 def _checkSizes(path: Path, sizes: tuple[int, ...]) -> None:

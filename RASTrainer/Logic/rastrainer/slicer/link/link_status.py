@@ -29,65 +29,34 @@ class Peer(str, Enum):
 
 @dataclass(frozen=True)
 class ProbeResult:
-    """Who answered.
-
-    Attributes:
-        peer: who it is.
-        ip: tested IPv4 address; empty if the host has none.
-        version: of the simulator's protocol; 0 where it is no simulator.
-    """
+    """Who answered at an IPv4 address; the version is that of a simulator's protocol."""
 
     peer: Peer
     ip: str = ""
     version: int = 0
 
 
-def sentenceOf(peer: Peer, address: str) -> str:
-    """Return who answers at the address, such as `127.0.0.1:18944`, in a sentence."""
-    if peer is Peer.NOBODY:
-        return _("No simulator answers at {address}.").format(address=address)
-    if peer is Peer.UNKNOWN_HOST:
-        return _("There is no computer by that name: {address}.").format(address=address)
-    if peer is Peer.WITHOUT_IPV4:
-        return _("Slicer connects by IPv4 only, and {address} is an IPv6 address.").format(
-            address=address
-        )
-    if peer is Peer.SIMULATOR:
-        return _("A RASTrainer simulator answers at {address}.").format(address=address)
-    if peer is Peer.SILENT:
-        return _(
-            "What answers at {address} accepts the connection and sends nothing: "
-            "it is not the OpenIGTLink port of a simulator."
-        ).format(address=address)
-    return _(
-        "What answers at {address} is {what}, not the OpenIGTLink port of a simulator."
-    ).format(address=address, what=_nameOf(peer))
-
-
-def remedyOf(peer: Peer) -> str:
-    """Return what to do about it; empty if it is a simulator."""
-    if peer is Peer.NOBODY:
-        return _("Start the simulator, or correct the host and port.")
-    if peer is Peer.UNKNOWN_HOST:
-        return _("Correct the host, or enter its IPv4 address, such as 127.0.0.1.")
-    if peer is Peer.WITHOUT_IPV4:
-        return _("Enter its IPv4 address; this computer's own is 127.0.0.1.")
-    if peer is Peer.SIMULATOR:
-        return ""
-    return _(
-        "Enter the port that the simulator shows for OpenIGTLink: 18944 unless it has another."
-    )
-
-
-def _nameOf(peer: Peer) -> str:
-    if peer is Peer.WEB_PAGE:
-        return _("a web page (HTTP)")
-    if peer is Peer.ENCRYPTED:
-        return _("an encrypted port (TLS), such as that of a web page")
-    if peer is Peer.OTHER_OPENIGTLINK:
-        return _("another OpenIGTLink program")
-    return _("another program")
-
+_NAMES = {
+    Peer.WEB_PAGE: _("a web page (HTTP)"),
+    Peer.ENCRYPTED: _("an encrypted port (TLS), such as that of a web page"),
+    Peer.OTHER_OPENIGTLINK: _("another OpenIGTLink program"),
+    Peer.OTHER_PROGRAM: _("another program"),
+}
+_ABSENT = {
+    Peer.NOBODY: (
+        _("No simulator answers at {address}."),
+        _("Start the simulator, or correct the host and port."),
+    ),
+    Peer.UNKNOWN_HOST: (
+        _("There is no computer by that name: {address}."),
+        _("Correct the host, or enter its IPv4 address, such as 127.0.0.1."),
+    ),
+    Peer.WITHOUT_IPV4: (
+        _("Slicer connects by IPv4 only, and {address} is an IPv6 address."),
+        _("Enter its IPv4 address; this computer's own is 127.0.0.1."),
+    ),
+}
+"""Where no program answers: a sentence about it, and one about what to do."""
 
 STALE_AFTER_S = 3.5
 RECONNECT_AFTER_S = 10.0
@@ -117,24 +86,17 @@ class LinkStatus:
     remedy: str = ""
 
 
-@dataclass(frozen=True)
+@dataclass
 class LinkObservation:
-    """Observed facts about the link.
+    """What is known of a connection.
 
-    Attributes:
-        address: as the user gave it, such as `127.0.0.1:18944`.
-        isWanted: the user has requested a connection.
-        isListening: the simulator is to connect to this side.
-        finding: what answers there; None before the test has a result.
-        isOpen: there is a TCP connection.
-        silenceS: seconds since the last heartbeat, or since the connection was opened, without
-            those in which Slicer itself was held up.
-        hasHeartbeat: a heartbeat has come over this connection.
-        peerVersion: version of the simulator's protocol; None as long as it is not known.
+    The `address` is as the user gave it, empty if no connection is wanted. `silenceS` are seconds
+    since the last heartbeat, or since the connection was opened, without those in which Slicer
+    itself was held up; `hasHeartbeat` says that one has come over this connection.
     """
 
-    address: str
-    isWanted: bool
+    address: str = ""
+    isInstalled: bool = True
     isListening: bool = False
     finding: ProbeResult | None = None
     isOpen: bool = False
@@ -145,23 +107,43 @@ class LinkObservation:
 
 def judge(link: LinkObservation) -> LinkStatus:
     """Return the state of the link in words."""
-    if not link.isWanted:
+    if not link.address:
         return LinkStatus(LinkState.OFF, _("Not connected."), _("Press Start and connect."))
+    if not link.isInstalled:
+        return notInstalled()
     if not link.isOpen:
-        return _noSimulatorYet() if link.isListening else _looking(link)
+        return _judgeClosed(link)
     if link.peerVersion not in (None, PROTOCOL_VERSION):
         return _wrongVersion(link.peerVersion)
-    if link.silenceS > STALE_AFTER_S:
-        return _stale(link)
-    if not link.hasHeartbeat:
+    if link.silenceS > STALE_AFTER_S and link.hasHeartbeat:
         return LinkStatus(
-            LinkState.GREETING,
-            _("{address} answers; waiting for its first heartbeat.").format(address=link.address),
+            LinkState.STALE,
+            _("The simulator has been silent for {seconds:.0f} s.").format(seconds=link.silenceS),
+            _("Wait for it to come back; if it does not, restart the simulator. No touch is lost."),
         )
-    return LinkStatus(
-        LinkState.CONNECTED,
-        _("Connected to the simulator at {address}.").format(address=link.address),
-    )
+    if link.silenceS > STALE_AFTER_S:
+        sentence = _("What answers at {address} is not a RASTrainer simulator.")
+        remedy = _("Correct the host and port.")
+        return LinkStatus(LinkState.STALE, sentence.format(address=link.address), remedy)
+    if not link.hasHeartbeat:
+        sentence = _("{address} answers; waiting for its first heartbeat.")
+        return LinkStatus(LinkState.GREETING, sentence.format(address=link.address))
+    sentence = _("Connected to the simulator at {address}.")
+    return LinkStatus(LinkState.CONNECTED, sentence.format(address=link.address))
+
+
+def _judgeClosed(link: LinkObservation) -> LinkStatus:
+    if link.isListening:
+        return LinkStatus(
+            LinkState.ABSENT,
+            _("No simulator has connected yet."),
+            _("Start it so that it connects to this computer."),
+        )
+    if link.finding is not None:
+        status = judgeFinding(link.finding, link.address)
+        if status.state is not LinkState.CONNECTED:
+            return status
+    return lookingAt(link.address)
 
 
 def notInstalled() -> LinkStatus:
@@ -175,36 +157,33 @@ def notInstalled() -> LinkStatus:
 
 def judgeFinding(finding: ProbeResult, address: str) -> LinkStatus:
     """Return in words who answers at an address where no connection is wanted."""
-    if finding.peer is not Peer.SIMULATOR:
-        isAbsent = finding.peer in (Peer.NOBODY, Peer.UNKNOWN_HOST, Peer.WITHOUT_IPV4)
+    if finding.peer in _ABSENT:
+        sentence, remedy = _ABSENT[finding.peer]
+        return LinkStatus(LinkState.ABSENT, sentence.format(address=address), remedy)
+    if finding.peer is Peer.SIMULATOR and finding.version == PROTOCOL_VERSION:
+        sentence = _("A RASTrainer simulator answers at {address}.")
         return LinkStatus(
-            LinkState.ABSENT if isAbsent else LinkState.OTHER_PROGRAM,
-            sentenceOf(finding.peer, address),
-            remedyOf(finding.peer),
+            LinkState.CONNECTED, sentence.format(address=address), _("Press Connect.")
         )
-    if finding.version != PROTOCOL_VERSION:
+    if finding.peer is Peer.SIMULATOR:
         return _wrongVersion(finding.version)
-    return LinkStatus(LinkState.CONNECTED, sentenceOf(finding.peer, address), _("Press Connect."))
+    sentence = _("What answers at {address} is {what}, not the OpenIGTLink port of a simulator.")
+    if finding.peer is Peer.SILENT:
+        sentence = _(
+            "What answers at {address} accepts the connection and sends nothing: "
+            "it is not the OpenIGTLink port of a simulator."
+        )
+    return LinkStatus(
+        LinkState.OTHER_PROGRAM,
+        sentence.format(address=address, what=_NAMES.get(finding.peer, "")),
+        _("Enter the port that the simulator shows for OpenIGTLink: 18944 unless it has another."),
+    )
 
 
 def lookingAt(address: str) -> LinkStatus:
     """Return the status during the test of what answers."""
     sentence = _("Looking for a simulator at {address}.").format(address=address)
     return LinkStatus(LinkState.LOOKING, sentence)
-
-
-def _looking(link: LinkObservation) -> LinkStatus:
-    status = None if link.finding is None else judgeFinding(link.finding, link.address)
-    isFound = status is not None and status.state is LinkState.CONNECTED
-    return lookingAt(link.address) if status is None or isFound else status
-
-
-def _noSimulatorYet() -> LinkStatus:
-    return LinkStatus(
-        LinkState.ABSENT,
-        _("No simulator has connected yet."),
-        _("Start it so that it connects to this computer."),
-    )
 
 
 def _wrongVersion(theirs: int) -> LinkStatus:
@@ -214,20 +193,4 @@ def _wrongVersion(theirs: int) -> LinkStatus:
             theirs=theirs, ours=PROTOCOL_VERSION
         ),
         _("Update the module.") if theirs > PROTOCOL_VERSION else _("Update the simulator."),
-    )
-
-
-def _stale(link: LinkObservation) -> LinkStatus:
-    if not link.hasHeartbeat:
-        return LinkStatus(
-            LinkState.STALE,
-            _("What answers at {address} is not a RASTrainer simulator.").format(
-                address=link.address
-            ),
-            _("Correct the host and port."),
-        )
-    return LinkStatus(
-        LinkState.STALE,
-        _("The simulator has been silent for {seconds:.0f} s.").format(seconds=link.silenceS),
-        _("Wait for it to come back; if it does not, restart the simulator. No touch is lost."),
     )

@@ -12,7 +12,7 @@ from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario, playable_methods
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.connection import ConnectorKit
-from rastrainer.slicer.link.link import REST_S, SOON_S, CallSoon, Link, neverSoon
+from rastrainer.slicer.link.link import REST_S, SOON_S, CallSoon, Link
 from rastrainer.slicer.logic.delivery_queue import AbortedTrialLogic
 from rastrainer.slicer.logic.landmark_logic import LandmarkLogic
 from rastrainer.slicer.logic.module_paths import ModulePaths
@@ -37,7 +37,7 @@ from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.slicer.logic.views import BorrowedLayout, SliceFollower
 from rastrainer.slicer.program.child_process import OwnProcess
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
-from rastrainer.slicer.scene.scenario_nodes import scenarioLoader
+from rastrainer.slicer.scene.scenario_nodes import SceneFileLoader
 from rastrainer.slicer.scene.scene_watch import SceneWatch
 from rastrainer.slicer.scene.trial_scene import followPlacement
 from rastrainer.slicer.settings import Settings
@@ -102,7 +102,7 @@ class ModuleSession:
         places: ModulePaths,
         findKit: Callable[[], ConnectorKit | None],
         settings: Settings | None = None,
-        callSoon: CallSoon = neverSoon,
+        callSoon: CallSoon = lambda _work: None,
     ) -> None:
         """Open a session.
 
@@ -131,7 +131,7 @@ class ModuleSession:
         self.simulator = SimulatorLogic(self.link, setup, places.records, self.settings)
         self.trainees = TraineeLogic(self.openStudy, places.records, self.openStudyPatiently)
         self.scenario = ScenarioLogic(scene, cache, places.assets / ROBOT, run, self.work)
-        self.files = scenarioLoader(scene, self.work)
+        self.files = SceneFileLoader(scene, self.work)
         self.scenarioMaker = ScenarioMaker(scene, self.simulator, cache, places.library, run)
         self.scenarioFiles = ScenarioFiles(self.simulator, cache, places.library)
         self.training = TrainingLogic(scene, self.link, cache.find, later=self.work.changeScene)
@@ -287,7 +287,7 @@ class ModuleSession:
         """Forget references into the old scene; a running trial is shown again."""
         self.work.forgetScene()
         self.layout.forgetScene()
-        self.plan.points.forget()
+        self.plan.points.changes.clear()
         self.landmarks.points.forget()
         self.replay.forgetScene()
         self.slices.forgetScene()
@@ -320,7 +320,7 @@ class ModuleSession:
 
     def _showTrainees(self) -> None:
         """Let each panel show what is new in the study, in a separate turn."""
-        for listener in self.trainees.changed.listeners:
+        for listener in tuple(self.trainees.changed.listeners):
             self.work.later(listener)
 
     def _takeScored(self, analysis: TrialAnalysis) -> None:

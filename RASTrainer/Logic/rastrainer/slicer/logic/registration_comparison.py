@@ -13,7 +13,7 @@ from rastrainer.registration.fits import RIGID
 from rastrainer.registration.localization_error import LocalizationError
 from rastrainer.registration.registration import Registration, register_all_kinds
 from rastrainer.registration.target_error import TargetError, expected_tre, target_error
-from rastrainer.slicer.scene.registration_input import Choices, Pairs, Remedy, SkinNormals, remedies
+from rastrainer.slicer.scene.registration_input import Choices, Pairs, Remedy, SkinNormals, remedyOf
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +88,8 @@ def compareFits(request: ComparisonRequest) -> Comparison:
     if request.headPoints is not None:
         with contextlib.suppress(InputError):
             headErrors = expected_tre(shown, request.headPoints, localizations[shown.kind])
-    found = remedies(fits[RIGID], choices)
+    rigid = fits[RIGID]
+    found = tuple(remedyOf(warning, rigid, choices) for warning in rigid.warnings)
     return Comparison(pairs, fits, localizations, errors, leaveOneOut, found, headErrors)
 
 

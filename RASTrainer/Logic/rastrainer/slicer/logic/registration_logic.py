@@ -25,7 +25,7 @@ from rastrainer.slicer.scene.error_colors import (
     removeHeadColors,
     showResidualArrows,
 )
-from rastrainer.slicer.scene.nodes import Role, findNode, localPoints, surfaceOf, worldPoints
+from rastrainer.slicer.scene.nodes import Role, findNode, surfaceOf, worldPoints
 from rastrainer.slicer.scene.registration_input import (
     Choices,
     Pairs,
@@ -182,7 +182,8 @@ class RegistrationLogic:
     def _snapshot(self) -> tuple:
         moving, fixed = self.moving(), self.fixed()
         tasks = [node and node.GetAttribute(TASK_ATTRIBUTE) for node in (moving, fixed)]
-        lists = snapshot(moving, localPoints), snapshot(fixed), snapshot(self.target())
+        movingList = snapshot(moving, slicer.util.arrayFromMarkupsControlPoints)
+        lists = movingList, snapshot(fixed), snapshot(self.target())
         return *lists, *tasks, surfaceOf(self._head())
 
     def _compute(self) -> None:

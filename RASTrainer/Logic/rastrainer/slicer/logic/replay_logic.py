@@ -26,7 +26,6 @@ from rastrainer.slicer.scene.trial_replay import (
     isReplayOf,
     moment,
     showReplay,
-    stopReplay,
 )
 from rastrainer.slicer.scene.trial_scene import setTouchesVisible, showTouches
 from rastrainer.slicer.signal import Signal
@@ -199,7 +198,8 @@ class ReplayLogic:
         record, rigid = trial.record, trial.registrations.get(RIGID)
         if rigid is None:
             raise InputError(_("It is not known where the head was: the trial was not registered."))
-        stopReplay(self._scene)
+        if (browser := findReplay(self._scene)) is not None:
+            browser.SetPlaybackActive(False)
         isThere = isReplayOf(self._scene, record.trial_id)
         track, chain, scenario, outcome = inBackground(
             lambda report: (

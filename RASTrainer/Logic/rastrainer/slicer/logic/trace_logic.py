@@ -30,7 +30,7 @@ from rastrainer.slicer.scene.nodes import (
     setPoints,
     surfaceOf,
 )
-from rastrainer.slicer.scene.requested_files import requestedFile
+from rastrainer.slicer.scene.scenario_nodes import requestedFile
 from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 from rastrainer.trial.touch_registration import FollowedTrace, GivenPoints, TraceFollower

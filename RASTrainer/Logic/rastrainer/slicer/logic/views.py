@@ -24,7 +24,6 @@ from rastrainer.slicer.scene.nodes import (
     nodesOfClass,
     worldPoints,
 )
-from rastrainer.slicer.scene.trial_scene import matrixOf
 
 LAYOUT_TAG = "vtkMRMLLayoutNode"
 WITH_TABLE = slicer.vtkMRMLLayoutNode.SlicerLayoutFourUpTableView
@@ -309,10 +308,10 @@ def poseOnHead(scene: Any, device: str) -> np.ndarray | None:
     toHead = findNode(scene, TRANSFORM, Role.WORLD_TO_HEAD)
     if pose is None or toHead is None:
         return None
-    toWorld = matrixOf(pose)
+    toWorld = slicer.util.arrayFromTransformMatrix(pose)
     if np.array_equal(toWorld, np.eye(4)):
         return None  # No pose has come yet.
-    return matrixOf(toHead) @ toWorld
+    return slicer.util.arrayFromTransformMatrix(toHead) @ toWorld
 
 
 def _nextPoint(status: TrialStatus, fixed: Any | None) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ import numpy as np
 import slicer
 import vtk
 
+from rastrainer import transforms
 from rastrainer.registration.registration import Registration
 from rastrainer.slicer.scene.nodes import (
     Role,
@@ -35,7 +36,6 @@ OPACITY_ATTRIBUTE = "RASTrainer.opacity"
 
 
 def showScalars(model: Any, name: str, ends: tuple[float, float]) -> None:
-    """Color a `vtkMRMLModelNode` by point data of that name, whose colors have these ends."""
     display = model.GetDisplayNode()
     with changedOnce(display):
         display.SetActiveScalar(name, vtk.vtkAssignAttribute.POINT_DATA)
@@ -46,10 +46,9 @@ def showScalars(model: Any, name: str, ends: tuple[float, float]) -> None:
 
 
 def showLegend(node: Any, title: str, rank: int) -> Any | None:
-    """Show the legend of a colored `vtkMRMLDisplayableNode`, unless one of higher rank is shown.
+    """Show the legend of a colored node in 3D, unless one of higher rank is shown.
 
-    The slices stay free of it. Returns the legend, or None where the scene knows no legends: only
-    Slicer's module Colors brings them.
+    Returns None where the scene knows no legends: only Slicer's module Colors brings them.
     """
     if not node.GetScene().IsNodeClassRegistered(CLASS_NAME):
         return None
@@ -77,23 +76,22 @@ def hideLegend(node: Any) -> None:
 
 def _showHighest(scene: Any) -> None:
     found = nodesOfClass(scene, CLASS_NAME)
-    ranks = {legend: int(legend.GetAttribute(RANK_ATTRIBUTE) or 0) for legend in found}
     # What has no rank is none of ours; a legend may have outlived what it belongs to.
     ours = [legend for legend in found if legend.GetAttribute(RANK_ATTRIBUTE) is not None]
-    wanted = [legend for legend in ours if ranks[legend] and _isSeen(legend.GetDisplayableNode())]
+    ranks = {legend: int(legend.GetAttribute(RANK_ATTRIBUTE)) for legend in ours}
+    nodes = {legend: legend.GetDisplayableNode() for legend in ours if ranks[legend]}
+    wanted = [legend for legend, node in nodes.items() if node and node.GetDisplayVisibility()]
     highest = max(wanted, key=lambda legend: ranks[legend], default=None)
     for legend in ours:
         legend.SetVisibility(legend is highest)
 
 
-def _isSeen(node: Any | None) -> bool:
-    return node is not None and bool(node.GetDisplayVisibility())
-
-
 def colorHead(model: Any, errors: np.ndarray) -> None:
     """Color a `vtkMRMLModelNode`, the head, by the expected TRE (v,) at each of its points, mm."""
-    ends = colorRange(float(errors.min()), float(errors.max()))
-    colorSkin(model, TRE_SCALARS, errors, ends, "TRE (mm)")
+    # Round ends, in tenths of a mm, never equal.
+    low = float(np.floor(10.0 * errors.min())) / 10.0
+    high = float(np.ceil(10.0 * errors.max())) / 10.0
+    colorSkin(model, TRE_SCALARS, errors, (low, max(high, low + 0.1)), "TRE (mm)")
 
 
 def colorSkin(
@@ -115,14 +113,7 @@ def colorSkin(
     showLegend(model, title, HEAD_RANK)
 
 
-def colorRange(low: float, high: float) -> tuple[float, float]:
-    """Return round ends of the colors, in tenths of a mm, never equal."""
-    bottom, top = np.floor(10.0 * low) / 10.0, np.ceil(10.0 * high) / 10.0
-    return float(bottom), float(max(top, bottom + 0.1))
-
-
 def removeHeadColors(model: Any, name: str = TRE_SCALARS) -> None:
-    """Show the head in its own color again, if it is colored by this value."""
     display = model.GetDisplayNode()
     if display is not None and display.GetActiveScalarName() == name:
         display.SetScalarVisibility(False)
@@ -156,18 +147,23 @@ def glyphsPolyData(
 ) -> vtk.vtkPolyData:
     """Return a ball on each fiducial and an arrow along its residual, in RAS mm.
 
-    Args:
-        registration: whose residuals are shown.
-        rows: which of its points; all when left out.
-
-    Its point data hold the residual in mm under the name `residual (mm)`.
+    Its point data hold the residual in mm under the name `residual (mm)`. `rows` are those of the
+    points that are wanted; all when left out.
     """
     append = vtk.vtkAppendPolyData()
     tips = arrowTips(registration)
     for row in range(len(registration.labels)) if rows is None else rows:
         fixed, residual = registration.fixed_mm[row], float(registration.residuals_mm[row])
-        append.AddInputData(_withScalar(_ball(fixed), residual))
-        append.AddInputData(_withScalar(arrowPolyData(fixed, tips[row] - fixed), residual))
+        ball = vtk.vtkSphereSource()
+        ball.SetCenter(fixed)
+        ball.SetRadius(2.2)
+        ball.SetThetaResolution(20)
+        ball.SetPhiResolution(20)
+        ball.Update()
+        for data in (ball.GetOutput(), arrowPolyData(fixed, tips[row] - fixed)):
+            values = np.full(data.GetNumberOfPoints(), residual)
+            data.GetPointData().SetScalars(vtkArray(values, RESIDUAL_SCALARS))
+            append.AddInputData(data)
     append.Update()
     return append.GetOutput()
 
@@ -196,24 +192,8 @@ def residualRange(registration: Registration) -> tuple[float, float]:
     return 0.0, max(2.0, float(np.ceil(registration.residuals_mm.max())))
 
 
-def _ball(center: np.ndarray) -> vtk.vtkPolyData:
-    sphere = vtk.vtkSphereSource()
-    sphere.SetCenter(center)
-    sphere.SetRadius(2.2)
-    sphere.SetThetaResolution(20)
-    sphere.SetPhiResolution(20)
-    sphere.Update()
-    return sphere.GetOutput()
-
-
 def arrowPolyData(start: np.ndarray, vector: np.ndarray, thickness: float = 1.0) -> vtk.vtkPolyData:
-    """Return an arrow whose shaft has the same thickness whatever its length.
-
-    Args:
-        start: (3,) float, mm.
-        vector: (3,) float, mm.
-        thickness: factor on shaft and tip.
-    """
+    """Return an arrow of length `vector` (3,), mm, whose `thickness` does not depend on it."""
     length = max(float(np.linalg.norm(vector)), 1e-6)
     arrow = vtk.vtkArrowSource()
     arrow.SetTipResolution(16)
@@ -221,34 +201,15 @@ def arrowPolyData(start: np.ndarray, vector: np.ndarray, thickness: float = 1.0)
     arrow.SetTipLength(min(4.5 * thickness, 0.5 * length) / length)
     arrow.SetTipRadius(2.0 * thickness / length)
     arrow.SetShaftRadius(0.8 * thickness / length)
+    # Its axes: along the arrow, and any two across.
+    direction = vector / length
+    across = np.cross(direction, np.eye(3)[int(np.argmin(np.abs(direction)))])
+    across /= np.linalg.norm(across)
+    axes = np.column_stack([direction, across, np.cross(direction, across)])
     place = vtk.vtkTransform()
-    place.Translate(start)
-    place.Concatenate(_turnFromX(vector / length))
-    place.Scale(length, length, length)
+    place.Concatenate(transforms.rigid(length * axes, start).ravel())
     placed = vtk.vtkTransformPolyDataFilter()
     placed.SetTransform(place)
     placed.SetInputConnection(arrow.GetOutputPort())
     placed.Update()
     return placed.GetOutput()
-
-
-def _withScalar(data: vtk.vtkPolyData, value: float) -> vtk.vtkPolyData:
-    scalars = vtk.vtkDoubleArray()
-    scalars.SetName(RESIDUAL_SCALARS)
-    scalars.SetNumberOfTuples(data.GetNumberOfPoints())
-    scalars.Fill(value)
-    data.GetPointData().SetScalars(scalars)
-    return data
-
-
-def _turnFromX(direction: np.ndarray) -> vtk.vtkMatrix4x4:
-    """Return a rotation that takes the x axis to a unit vector."""
-    helper = np.eye(3)[int(np.argmin(np.abs(direction)))]
-    across = np.cross(direction, helper)
-    across /= np.linalg.norm(across)
-    axes = np.column_stack([direction, across, np.cross(direction, across)])
-    matrix = vtk.vtkMatrix4x4()
-    for row in range(3):
-        for column in range(3):
-            matrix.SetElement(row, column, axes[row, column])
-    return matrix

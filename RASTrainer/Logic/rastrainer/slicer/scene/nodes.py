@@ -146,36 +146,20 @@ def isUsed(node: Any, index: int) -> bool:
     return isPlaced and bool(node.GetNthControlPointSelected(index))
 
 
-def localPoints(node: Any) -> np.ndarray:
-    """Return the points as they were received or placed, (n, 3) float, mm, in the node's frame."""
-    return slicer.util.arrayFromMarkupsControlPoints(node)
-
-
 def worldPoints(node: Any) -> np.ndarray:
     """Return the points where Slicer shows them, (n, 3) float, RAS mm."""
     return slicer.util.arrayFromMarkupsControlPoints(node, world=True)
 
 
 def usedPoints(node: Any, points: np.ndarray, labels: tuple[str, ...]) -> PointList:
-    """Return the points of a list that Slicer would use; the others are left out.
-
-    Args:
-        node: the list.
-        points: (n, 3) float, mm, in the frame to be used.
-        labels: of all points.
-    """
+    """Return those of points (n, 3), mm, and their labels that Slicer would use."""
     unused = {row: label for row, label in enumerate(labels) if not isUsed(node, row)}
     rows = [row for row in range(len(labels)) if row not in unused]
     return PointList(tuple(labels[row] for row in rows), points[rows], unused)
 
 
 def setPoints(node: Any, labels: Sequence[str], points: np.ndarray) -> None:
-    """Replace the points of a `vtkMRMLMarkupsNode`.
-
-    Args:
-        labels: one for each point.
-        points: (n, 3) float, mm, in the node's own frame.
-    """
+    """Replace the points of a `vtkMRMLMarkupsNode` by (n, 3) float, mm, in its own frame."""
     with changedOnce(node):
         node.RemoveAllControlPoints()
         slicer.util.updateMarkupsControlPointsFromArray(node, np.asarray(points, dtype=float))
@@ -247,21 +231,10 @@ def drawAsPoints(node: Any) -> None:
 def trianglesPolyData(
     points: np.ndarray, triangles: np.ndarray, normals: np.ndarray
 ) -> vtk.vtkPolyData:
-    """Return a surface.
-
-    Args:
-        points: (n, 3) float.
-        triangles: (m, 3) int, counterclockwise seen from outside.
-        normals: (n, 3) float, outward unit normals.
-    """
-    from vtk.util.numpy_support import numpy_to_vtkIdTypeArray
-
-    corners = np.ascontiguousarray(triangles, dtype=np.int64).ravel()
-    cells = vtk.vtkCellArray()
-    cells.SetData(3, numpy_to_vtkIdTypeArray(corners, deep=True))
+    """Return a surface of points (n, 3), triangles (m, 3) int, and unit normals (n, 3)."""
     surface = vtk.vtkPolyData()
     surface.SetPoints(_vtkPoints(points))
-    surface.SetPolys(cells)
+    surface.SetPolys(_cells(triangles))
     surface.GetPointData().SetNormals(vtkArray(normals.astype(np.float32), "Normals"))
     return surface
 
@@ -283,22 +256,20 @@ def _vtkPoints(places: np.ndarray) -> vtk.vtkPoints:
 
 def pointCloud(places: np.ndarray) -> vtk.vtkPolyData:
     """Return places (n, 3) as points, each of them a vertex cell."""
-    cells = vtk.vtkCellArray()
-    for number in range(len(places)):
-        cells.InsertNextCell(1, (number,))
     cloud = vtk.vtkPolyData()
     cloud.SetPoints(_vtkPoints(places))
-    cloud.SetVerts(cells)
+    cloud.SetVerts(_cells(np.arange(len(places))[:, None]))
     return cloud
 
 
-def findIncomingNode(connector: Any, device: str) -> Any | None:
-    """Return the node that the connector fills for a device, or None."""
-    for index in range(connector.GetNumberOfIncomingMRMLNodes()):
-        node = connector.GetIncomingMRMLNode(index)
-        if node is not None and node.GetAttribute(ORIGINAL_NAME) == device:
-            return node
-    return None
+def _cells(corners: np.ndarray) -> vtk.vtkCellArray:
+    """Return cells of equal size, (n, k) int."""
+    from vtk.util.numpy_support import numpy_to_vtkIdTypeArray
+
+    cells = vtk.vtkCellArray()
+    rows = np.ascontiguousarray(corners, dtype=np.int64).ravel()
+    cells.SetData(corners.shape[1], numpy_to_vtkIdTypeArray(rows, deep=True))
+    return cells
 
 
 def _node(scene: Any, className: str, role: str, name: str) -> Any:

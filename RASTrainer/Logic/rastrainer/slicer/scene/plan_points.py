@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import vtk
@@ -17,7 +16,6 @@ INTERACTION = "vtkMRMLInteractionNodeSingleton"
 
 
 def startPlacing(scene: Any, node: Any) -> None:
-    """Let the next clicks in the views place points of a markup."""
     selection, interaction = scene.GetNodeByID(SELECTION), scene.GetNodeByID(INTERACTION)
     selection.SetReferenceActivePlaceNodeClassName(node.GetClassName())
     selection.SetActivePlaceNodeID(node.GetID())
@@ -37,23 +35,19 @@ LIST, LINE = "vtkMRMLMarkupsFiducialNode", "vtkMRMLMarkupsLineNode"
 ENDS = 2
 
 
-@dataclass(frozen=True)
-class _Change:
-    """A change of a node. `undoChange` undoes it and returns whether there was anything to undo."""
-
-    nodeId: str
-    undoChange: Callable[[Any], bool]
-
-
 class PlanPoints:
     """Adds points to plans and removes them; each change can be undone, the last one first.
 
     Placing more points never erases placed ones.
+
+    Attributes:
+        changes: the changes that can be undone: the node's ID, and a function that undoes the
+            change of the node, and returns whether there was anything to undo.
     """
 
     def __init__(self, scene: Any) -> None:
         self._scene = scene
-        self._changes: list[_Change] = []
+        self.changes: list[tuple[str, Callable[[Any], bool]]] = []
 
     def newTarget(self) -> Any:
         node = findOrAddNode(self._scene, LIST, Role.PLAN_TARGET, _("Planned target"))
@@ -85,25 +79,16 @@ class PlanPoints:
             node.InsertControlPoint(min(index, node.GetNumberOfControlPoints()), position, label)
             return True
 
-        self._changes.append(_Change(node.GetID(), insert))
-
-    @property
-    def canUndo(self) -> bool:
-        """Whether the user has placed or removed points that can be undone."""
-        return bool(self._changes)
+        self.changes.append((node.GetID(), insert))
 
     def undo(self) -> None:
         """Undo the last placing or removal whose node still exists."""
         stopPlacing(self._scene)
-        while self._changes:
-            change = self._changes.pop()
-            node = self._scene.GetNodeByID(change.nodeId)
-            if node is not None and change.undoChange(node):
+        while self.changes:
+            nodeId, undoChange = self.changes.pop()
+            node = self._scene.GetNodeByID(nodeId)
+            if node is not None and undoChange(node):
                 return
-
-    def forget(self) -> None:
-        """Forget what could be undone: the scene was closed."""
-        self._changes.clear()
 
     def _readyToPlace(self, node: Any) -> Any:
         display = node.GetDisplayNode()
@@ -117,7 +102,7 @@ class PlanPoints:
                 node.RemoveNthControlPoint(index)
             return bool(added)
 
-        self._changes.append(_Change(node.GetID(), removeNew))
+        self.changes.append((node.GetID(), removeNew))
         return node
 
 

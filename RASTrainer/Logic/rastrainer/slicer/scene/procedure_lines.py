@@ -6,9 +6,8 @@ it is saved with the scene.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import vtk
@@ -37,7 +36,7 @@ from rastrainer.slicer.scene.nodes import (
 )
 from rastrainer.slicer.scene.plan_points import ENDS, LINE, LIST, TARGET_COLOR, placedRows
 from rastrainer.slicer.scene.scenario_nodes import meshPolyData
-from rastrainer.slicer.scene.tables import Column, showTable
+from rastrainer.slicer.scene.tables import showTable
 from rastrainer.slicer.translation import _
 
 MODEL, SEGMENTATION = "vtkMRMLModelNode", "vtkMRMLSegmentationNode"
@@ -66,15 +65,17 @@ def raiseLine(scene: Any, line: Any) -> None:
 def newPlanLine(scene: Any) -> Any:
     """Return a line of the plan that lacks its entry or target, for the next clicks."""
     unfinished = [line for line in planLines(scene) if len(placedRows(line)) < ENDS]
-    return unfinished[0] if unfinished else _addLine(scene, scene.GenerateUniqueName(_("Line")))
+    return (
+        unfinished[0]
+        if unfinished
+        else _newLine(scene, Role.PLAN_LINE, scene.GenerateUniqueName(_("Line")))
+    )
 
 
-@dataclass(frozen=True)
-class RemovedLine:
+class RemovedLine(NamedTuple):
     """A line that was removed from the plan.
 
     Attributes:
-        name: of the line.
         ends: (n, 3) float, RAS mm; n is 2 unless it was not placed completely.
         instrument: diameter and safety distance, mm.
         place: position among the lines of the plan, from 0.
@@ -97,7 +98,7 @@ def removeLine(scene: Any, line: Any) -> RemovedLine:
 def restoreLine(scene: Any, removed: RemovedLine) -> None:
     """Restore a removed line at its position among the others."""
     lines = planLines(scene)
-    line = _addLine(scene, removed.name)
+    line = _newLine(scene, Role.PLAN_LINE, removed.name)
     setInstrument(line, *removed.instrument)
     setPoints(line, (_("Entry"), _("Target"))[: len(removed.ends)], removed.ends)
     lines.insert(removed.place, line)
@@ -112,7 +113,6 @@ def instrumentOf(line: Any) -> tuple[float, float]:
 
 
 def setInstrument(line: Any, diameterMm: float, safetyMm: float) -> None:
-    """Note diameter and safety distance of a line's instrument, mm."""
     line.SetAttribute(DIAMETER_ATTRIBUTE, f"{diameterMm:g}")
     line.SetAttribute(SAFETY_ATTRIBUTE, f"{safetyMm:g}")
 
@@ -131,11 +131,7 @@ def showPlan(
     noGo: dict[str, HeadMesh],
     checkpoints: tuple[Checkpoint, ...],
 ) -> None:
-    """Replace the plan in the scene by another one, to be changed there.
-
-    Models that were shown for the earlier plan are removed; what the user has marked is no longer
-    marked.
-    """
+    """Replace the plan in the scene by another one, to be changed there."""
     for line in planLines(scene):
         scene.RemoveNode(line)
     for node in noGoNodes(scene):
@@ -143,7 +139,7 @@ def showPlan(
         if node.GetAttribute(ROLE_ATTRIBUTE) == Role.NO_GO:
             scene.RemoveNode(node)
     for trajectory in trajectories:
-        line = _addLine(scene, trajectory.name)
+        line = _newLine(scene, Role.PLAN_LINE, trajectory.name)
         setInstrument(line, trajectory.diameter_mm, trajectory.safety_mm)
         setPoints(
             line, (_("Entry"), _("Target")), np.array([trajectory.entry_ras, trajectory.target_ras])
@@ -163,7 +159,6 @@ def showPlan(
 
 
 def checkpointList(scene: Any) -> Any:
-    """Return the list of the plan's checkpoints, an empty one where there is none yet."""
     return findOrAddNode(scene, LIST, Role.CHECKPOINTS, _("Checkpoints"))
 
 
@@ -173,26 +168,11 @@ def noGoNodes(scene: Any) -> list[Any]:
 
 
 def isNoGo(node: Any) -> bool:
-    """Return whether a model or segmentation is a no-go structure."""
     return node.GetAttribute(NO_GO_ATTRIBUTE) == "yes"
 
 
 def setNoGo(node: Any, isNoGoNow: bool) -> None:
-    """Make a model or segmentation a no-go structure, or none."""
-    if isNoGoNow:
-        node.SetAttribute(NO_GO_ATTRIBUTE, "yes")
-    else:
-        node.RemoveAttribute(NO_GO_ATTRIBUTE)
-
-
-def _addLine(scene: Any, name: str) -> Any:
-    line = scene.AddNewNodeByClass(LINE, name)
-    line.SetAttribute(ROLE_ATTRIBUTE, Role.PLAN_LINE)
-    line.CreateDefaultDisplayNodes()
-    line.GetDisplayNode().SetSelectedColor(TARGET_COLOR)
-    line.GetDisplayNode().SetOccludedVisibility(True)
-    setInstrument(line, USUAL_DIAMETER_MM, USUAL_SAFETY_MM)
-    return line
+    node.SetAttribute(NO_GO_ATTRIBUTE, "yes" if isNoGoNow else None)
 
 
 def _noteOrder(lines: list[Any]) -> None:
@@ -218,72 +198,68 @@ def showPlannedLines(scene: Any, procedure: Procedure | None) -> None:
 
     What was shown of an earlier procedure's errors goes. With None, nothing stays.
     """
-    forgetProcedureErrors(scene)
+    for role in (Role.REGISTERED_LINE, Role.TRUE_LINE):
+        _showLines(scene, role, "{}", {})
+    for role in (Role.ERRORS_BY_REGISTRATION, Role.ERRORS_BY_HAND):
+        removeNode(scene, MODEL, role)
+    removeNode(scene, "vtkMRMLTableNode", Role.PROCEDURE_ERRORS)
     planned = [] if procedure is None else procedure.trajectories
-    ends = [np.array([each.entry_ras, each.target_ras]) for each in planned]
-    _showLines(scene, Role.PLANNED_LINE, "{}", [each.name for each in planned], ends)
+    lines = {each.name: (each.entry_ras, each.target_ras) for each in planned}
+    _showLines(scene, Role.PLANNED_LINE, "{}", lines)
 
 
 def showProcedureErrors(scene: Any, analysis: ProcedureAnalysis, lines: Sequence[TrueLine]) -> Any:
     """Show all lines of a procedure, arrows of its errors, and their table, which is returned.
 
-    The registered lines are where the plan, as it was shown, truly lay in the head. The true lines
-    go from the guide's tip to the instrument's. At entry and target, arrows lead from the planned
-    point to where the registration put it, and from there on to what was reached; they are true to
-    scale. All of it is in RAS mm.
+    The registered lines are where the plan, as it was shown, truly lay in the head. At entry and
+    target, arrows lead from the planned point to where the registration put it, and from there on
+    to what was reached; they are true to scale.
     """
-    names = [line.trajectory for line in lines]
-    planned = [line.planned for line in lines]
-    _showLines(scene, Role.PLANNED_LINE, "{}", names, planned)
-    _showLines(scene, Role.REGISTERED_LINE, _("{}, registered"), names, [x.shown for x in lines])
-    _showLines(scene, Role.TRUE_LINE, _("{}, true"), names, [line.placed for line in lines])
-    _showArrows(scene, analysis.trajectories, planned)
+    planned = {line.trajectory: line.planned for line in lines}
+    _showLines(scene, Role.PLANNED_LINE, "{}", planned)
+    shown = {line.trajectory: line.shown for line in lines}
+    _showLines(scene, Role.REGISTERED_LINE, _("{}, registered"), shown)
+    placed = {line.trajectory: line.placed for line in lines}
+    _showLines(scene, Role.TRUE_LINE, _("{}, true"), placed)
+    _showArrows(scene, analysis.trajectories, list(planned.values()))
     return _showTable(scene, analysis.trajectories)
 
 
-def forgetProcedureErrors(scene: Any) -> None:
-    """Remove what was shown of a procedure once its truth was known."""
-    for role in (Role.REGISTERED_LINE, Role.TRUE_LINE):
-        for node in nodesOf(scene, LINE, role):
-            scene.RemoveNode(node)
-    for role in (Role.ERRORS_BY_REGISTRATION, Role.ERRORS_BY_HAND):
-        removeNode(scene, MODEL, role)
-    removeNode(scene, "vtkMRMLTableNode", Role.PROCEDURE_ERRORS)
-
-
 _COLORS = {
+    Role.PLAN_LINE: TARGET_COLOR,
     Role.PLANNED_LINE: PLANNED_COLOR,
     Role.REGISTERED_LINE: REGISTERED_COLOR,
     Role.TRUE_LINE: PLACED_COLOR,
 }
 
 
-def _showLines(
-    scene: Any, role: str, title: str, names: Sequence[str], ends: Sequence[np.ndarray]
-) -> None:
-    """Show lines of a role, one for each name; ends are (2, 3) float, RAS mm."""
+def _showLines(scene: Any, role: str, title: str, lines: Mapping[str, Any]) -> None:
+    """Show lines of a role, in place of others; ends are (2, 3) float, RAS mm, by name."""
     nodes = nodesOf(scene, LINE, role)
-    for node in nodes[len(names) :]:
+    for node in nodes[len(lines) :]:
         scene.RemoveNode(node)
-    for row, name in enumerate(names):
+    for row, (name, ends) in enumerate(lines.items()):
         node = nodes[row] if row < len(nodes) else _newLine(scene, role)
         if node.GetName() != title.format(name):
             node.SetName(title.format(name))
         node.SetAttribute(TRAJECTORY_ATTRIBUTE, name)
         # Only the planned lines show a label, at their entries.
-        setPoints(node, (name, ""), ends[row])
+        setPoints(node, (name, ""), np.array(ends))
 
 
-def _newLine(scene: Any, role: str) -> Any:
-    node = scene.AddNewNodeByClass(LINE)
+def _newLine(scene: Any, role: str, name: str = "") -> Any:
+    node = scene.AddNewNodeByClass(LINE, name)
     node.SetAttribute(ROLE_ATTRIBUTE, role)
     node.CreateDefaultDisplayNodes()
-    node.SetLocked(True)
     display = node.GetDisplayNode()
     display.SetSelectedColor(_COLORS[role])
+    display.SetOccludedVisibility(True)
+    if role == Role.PLAN_LINE:
+        setInstrument(node, USUAL_DIAMETER_MM, USUAL_SAFETY_MM)
+        return node
+    node.SetLocked(True)
     display.SetPropertiesLabelVisibility(False)
     display.SetPointLabelsVisibility(role == Role.PLANNED_LINE)
-    display.SetOccludedVisibility(True)
     display.SetGlyphScale(1.0)
     display.SetTextScale(2.5)
     return node
@@ -315,43 +291,28 @@ def _showArrows(
 
 
 def _showTable(scene: Any, each: Sequence[TrajectoryErrors]) -> Any:
-    def parts(title: str, splits: Sequence[SplitError]) -> list[Column]:
-        return [
-            Column(f"{title} (mm)", [split.mm for split in splits]),
-            Column(f"{title}, by registration (mm)", [s.by_registration_mm for s in splits]),
-            Column(f"{title}, by hand or robot (mm)", [split.by_hand_mm for split in splits]),
-        ]
+    def parts(title: str, splits: Sequence[SplitError]) -> dict[str, list[float]]:
+        return {
+            f"{title} (mm)": [split.mm for split in splits],
+            f"{title}, by registration (mm)": [split.by_registration_mm for split in splits],
+            f"{title}, by hand or robot (mm)": [split.by_hand_mm for split in splits],
+        }
 
-    shownDepths = [errors.depth_error_by_registration_mm for errors in each]
     shownAngles = [errors.angular_deviation_by_registration_deg for errors in each]
-    return showTable(
-        scene,
-        Role.PROCEDURE_ERRORS,
-        "Procedure errors",
-        [
-            Column("trajectory", [errors.trajectory for errors in each], isText=True),
-            Column(
-                "aligned by",
-                ["robot" if errors.self_aligned else "hand" for errors in each],
-                isText=True,
-            ),
-            *parts("entry point error", [errors.entry_point_error for errors in each]),
-            *parts("target point error", [errors.target_point_error for errors in each]),
-            Column("radial error (mm)", [errors.radial_error.mm for errors in each]),
-            Column("depth error (mm)", [errors.depth_error_mm for errors in each]),
-            Column(
-                "depth error, by registration (mm)",
-                shownDepths,
-            ),
-            Column("depth error, by hand (mm)", [errors.depth_error_by_hand_mm for errors in each]),
-            Column("angular deviation (°)", [errors.angular_deviation_deg for errors in each]),
-            Column("angle by registration (°)", shownAngles),
-            Column("angle by hand or robot (°)", [e.angular_deviation_by_hand_deg for e in each]),
-            Column("plunge depth (mm)", [errors.plunge_mm for errors in each]),
-            Column(
-                "distance kept (mm)",
-                [min(errors.kept_mm.values(), default=None) for errors in each],
-            ),
-            Column("alignments", [float(errors.alignments) for errors in each]),
-        ],
-    )
+    columns: dict[str, Sequence[Any]] = {
+        "trajectory": [errors.trajectory for errors in each],
+        "aligned by": ["robot" if errors.self_aligned else "hand" for errors in each],
+        **parts("entry point error", [errors.entry_point_error for errors in each]),
+        **parts("target point error", [errors.target_point_error for errors in each]),
+        "radial error (mm)": [errors.radial_error.mm for errors in each],
+        "depth error (mm)": [errors.depth_error_mm for errors in each],
+        "depth error, by registration (mm)": [e.depth_error_by_registration_mm for e in each],
+        "depth error, by hand (mm)": [errors.depth_error_by_hand_mm for errors in each],
+        "angular deviation (°)": [errors.angular_deviation_deg for errors in each],
+        "angle by registration (°)": shownAngles,
+        "angle by hand or robot (°)": [e.angular_deviation_by_hand_deg for e in each],
+        "plunge depth (mm)": [errors.plunge_mm for errors in each],
+        "distance kept (mm)": [min(e.kept_mm.values(), default=None) for e in each],
+        "alignments": [float(errors.alignments) for errors in each],
+    }
+    return showTable(scene, Role.PROCEDURE_ERRORS, "Procedure errors", columns)

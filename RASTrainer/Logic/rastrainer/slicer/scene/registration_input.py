@@ -22,7 +22,6 @@ from rastrainer.registration.warnings import SAME_PLACE, RegistrationWarning, fi
 from rastrainer.slicer.scene.nodes import (
     isUsed,
     labelsOf,
-    localPoints,
     surfaceOf,
     usedPoints,
     worldPoints,
@@ -49,11 +48,9 @@ class Choices:
     fle: tuple[tuple[str, float], ...] = ()
 
     def without(self, labels: tuple[str, ...]) -> Choices:
-        """Return the choices with some more pairs left out."""
         return replace(self, excluded=self.excluded | set(labels))
 
     def localized(self, label: str, fleMm: float) -> Choices:
-        """Return the choices with the localization error of a point, on top of before."""
         sizes = {**dict(self.fle), label: fleMm}
         if fleMm == USUAL_FLE_MM:
             del sizes[label]
@@ -103,7 +100,10 @@ def readPairs(moving: Any, fixed: Any, choices: Choices) -> Pairs:
             raise InputError(_("Choose the list of {which} points.").format(which=words))
         if node.GetNumberOfControlPoints() == 0:
             raise InputError(_("The list of {which} points is empty.").format(which=words))
-    movingList = usedPoints(moving, localPoints(moving), _renamed(labelsOf(moving), choices))
+    names = dict(choices.renamed)
+    movingLabels = tuple(names.get(label, label) for label in labelsOf(moving))
+    movingPoints = slicer.util.arrayFromMarkupsControlPoints(moving)
+    movingList = usedPoints(moving, movingPoints, movingLabels)
     fixedList = usedPoints(fixed, worldPoints(fixed), labelsOf(fixed))
     leftOut = (*movingList.left_out_names, *fixedList.left_out_names)
     missing: tuple[str, ...] = ()
@@ -133,50 +133,32 @@ def snapshot(node: Any, pointsOf: Callable[[Any], np.ndarray] = worldPoints) -> 
     return node.GetID(), labelsOf(node), pointsOf(node).tobytes(), used
 
 
-def _renamed(labels: tuple[str, ...], choices: Choices) -> tuple[str, ...]:
-    names = dict(choices.renamed)
-    return tuple(names.get(label, label) for label in labels)
-
-
 @dataclass(frozen=True)
 class Remedy:
-    """A warning with its button.
-
-    Attributes:
-        warning: with its sentence and its points.
-        title: of the button; empty where only the points themselves can be mended.
-        choices: of the pairs once the button is pressed.
-    """
+    """A warning with its button, whose title is empty where the points must be mended."""
 
     warning: RegistrationWarning
     title: str
     choices: Choices
 
 
-def remedies(registration: Registration, choices: Choices) -> tuple[Remedy, ...]:
-    """Return each warning of a rigid registration with what one click can do about it."""
-    return tuple(_remedy(warning, registration, choices) for warning in registration.warnings)
-
-
-def _remedy(warning: RegistrationWarning, registration: Registration, choices: Choices) -> Remedy:
-    if warning.code == "outlier":
-        return _leaveOut(warning, warning.points, choices)
-    if warning.code == "duplicate":
-        # The first of them may stay: one point at a place is no duplicate.
-        return _leaveOut(warning, _laterTwins(warning, registration), choices)
+def remedyOf(warning: RegistrationWarning, registration: Registration, choices: Choices) -> Remedy:
+    """Return a warning of a rigid registration with what one click can do about it."""
     if warning.code == "order":
         order = find_order(registration.moving_mm, registration.fixed_mm)
-        if order is not None:
-            labels = registration.labels
-            names = {labels[source]: labels[row] for row, source in enumerate(order)}
-            changed = {old: new for old, new in names.items() if old != new}
-            return Remedy(warning, _("Put in order"), choices.rename(changed))
-    return Remedy(warning, "", choices)
-
-
-def _leaveOut(warning: RegistrationWarning, labels: tuple[str, ...], choices: Choices) -> Remedy:
-    title = _("Leave out {labels}").format(labels=", ".join(labels))
-    return Remedy(warning, title, choices.without(labels))
+        if order is None:
+            return Remedy(warning, "", choices)
+        labels = registration.labels
+        names = {labels[source]: labels[row] for row, source in enumerate(order)}
+        changed = {old: new for old, new in names.items() if old != new}
+        return Remedy(warning, _("Put in order"), choices.rename(changed))
+    if warning.code not in ("outlier", "duplicate"):
+        return Remedy(warning, "", choices)
+    # The first of duplicates may stay: one point at a place is no duplicate.
+    isOutlier = warning.code == "outlier"
+    leftOut = warning.points if isOutlier else _laterTwins(warning, registration)
+    title = _("Leave out {labels}").format(labels=", ".join(leftOut))
+    return Remedy(warning, title, choices.without(leftOut))
 
 
 def _laterTwins(warning: RegistrationWarning, registration: Registration) -> tuple[str, ...]:
@@ -211,14 +193,19 @@ class SkinNormals:
     def findNormals(self, points: np.ndarray) -> None:
         """Look for the normals at points (n, 3), RAS mm: seconds for the first on a head."""
         for point in points:
-            if point.tobytes() not in self._known:
-                self._known[point.tobytes()] = self._normalAt(point)
+            if point.tobytes() in self._known:
+                continue
+            normal = None
+            if self._mesh is not None:
+                nearest = nearest_on_mesh(self._mesh, point)
+                if nearest.distance <= SAME_HEAD_MM:
+                    normal = normal_at(self._mesh, nearest)
+            self._known[point.tobytes()] = normal
 
     def localizationError(self, registration: Registration) -> LocalizationError | None:
         """Return the localization error of touches on the skin, separately along and across it.
 
-        None where the fixed points do not all lie on the surface, or are too few: then nothing is
-        known but an error that is alike in all directions.
+        None where the fixed points do not all lie on the surface, or are too few.
         """
         self.findNormals(registration.fixed_mm)
         normals = [self._known[point.tobytes()] for point in registration.fixed_mm]
@@ -228,12 +215,6 @@ class SkinNormals:
             return error_along_surface(registration, np.array(normals))
         except InputError:
             return None
-
-    def _normalAt(self, point: np.ndarray) -> np.ndarray | None:
-        if self._mesh is None:
-            return None
-        nearest = nearest_on_mesh(self._mesh, point)
-        return normal_at(self._mesh, nearest) if nearest.distance <= SAME_HEAD_MM else None
 
 
 class SkinReader:
@@ -247,16 +228,14 @@ class SkinReader:
         """Return the skin of a `vtkMRMLModelNode`; None where there is no surface yet."""
         surface = surfaceOf(model)
         if surface != self._surface:
-            self._surface = surface
-            self._skin = SkinNormals(_meshOf(model)) if surface else None
+            from vtk.util.numpy_support import vtk_to_numpy
+
+            self._surface, self._skin = surface, None
+            if surface and model is not None:
+                mesh, cells = None, model.GetPolyData().GetPolys()
+                if cells.GetNumberOfCells() and cells.IsHomogeneous() == 3:
+                    triangles = vtk_to_numpy(cells.GetConnectivityArray()).reshape(-1, 3).copy()
+                    points = slicer.util.arrayFromModelPoints(model).astype(float)
+                    mesh = HeadMesh(points, triangles)
+                self._skin = SkinNormals(mesh)
         return self._skin
-
-
-def _meshOf(model: Any) -> HeadMesh | None:
-    from vtk.util.numpy_support import vtk_to_numpy
-
-    cells = model.GetPolyData().GetPolys()
-    if not cells.GetNumberOfCells() or cells.IsHomogeneous() != 3:
-        return None
-    triangles = vtk_to_numpy(cells.GetConnectivityArray()).reshape(-1, 3)
-    return HeadMesh(slicer.util.arrayFromModelPoints(model).astype(float), triangles.copy())

@@ -22,16 +22,11 @@ COLORS = "color"
 
 
 def missingLinks(scene: Any) -> list[int]:
-    """Return the numbers of the links that are not in the scene."""
     return [n for n in range(len(DeviceName.LINK_TO_WORLD)) if robotNode(scene, n) is None]
 
 
 def addLink(scene: Any, number: int, mesh: LinkMesh) -> None:
-    """Show a link of the robot.
-
-    Its model is transformed by the node that the connection fills (`Link0ToWorld` …). Without a
-    pose so far it is at the robot's base.
-    """
+    """Show a link of the robot, transformed by the node that the connection fills."""
     poseNode(scene, DeviceName.LINK_TO_WORLD[number])
     # Everything is set before the scene is told, and each view draws it once.
     display = slicer.vtkMRMLModelDisplayNode()
@@ -42,7 +37,7 @@ def addLink(scene: Any, number: int, mesh: LinkMesh) -> None:
     scene.AddNode(display)
     node = slicer.vtkMRMLModelNode()
     node.SetName(f"Robot link {number}")
-    node.SetAttribute(ROLE_ATTRIBUTE, _role(number))
+    node.SetAttribute(ROLE_ATTRIBUTE, f"{Role.ROBOT} link {number}")
     # It is rebuilt from the module's files, so a saved scene need not contain it.
     node.SetSaveWithScene(False)
     node.SetSelectable(False)
@@ -69,7 +64,6 @@ def placeRobot(scene: Any, worldTransform: Any | None) -> None:
 
 
 def setRobotVisible(scene: Any, visible: bool) -> None:
-    """Show or hide the robot, as far as it is in the scene."""
     for number in range(len(DeviceName.LINK_TO_WORLD)):
         node = robotNode(scene, number)
         if node is not None and node.GetDisplayNode() is not None:
@@ -78,8 +72,4 @@ def setRobotVisible(scene: Any, visible: bool) -> None:
 
 def robotNode(scene: Any, number: int) -> Any | None:
     """Return the model of a link, 0 to 7, or None; the tool belongs to link 7."""
-    return findNode(scene, "vtkMRMLModelNode", _role(number))
-
-
-def _role(number: int) -> str:
-    return f"{Role.ROBOT} link {number}"
+    return findNode(scene, "vtkMRMLModelNode", f"{Role.ROBOT} link {number}")

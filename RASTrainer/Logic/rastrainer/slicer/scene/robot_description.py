@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -31,11 +30,7 @@ def readUrdf(path: Path) -> Element:
 
 
 def attribute(element: Element, child: str, name: str) -> str:
-    """Return an attribute of an element's child.
-
-    Raises:
-        ValueError: there is no such child, or it lacks the attribute.
-    """
+    """Return an attribute of an element's child; raise ValueError if there is none."""
     found = element.find(child)
     value = None if found is None else found.get(name)
     if value is None:
@@ -44,20 +39,12 @@ def attribute(element: Element, child: str, name: str) -> str:
 
 
 def numbers(text: str) -> np.ndarray:
-    """Return numbers between blanks, (n,) float.
-
-    Raises:
-        ValueError: the text contains something else.
-    """
+    """Return numbers between blanks, (n,) float; raise ValueError for something else."""
     return np.array([float(word) for word in text.split()])
 
 
 def originOf(element: Element) -> np.ndarray:
-    """Return the pose (4, 4) float, mm, of an origin: about x by roll, y by pitch, z by yaw.
-
-    Raises:
-        ValueError: the origin is malformed.
-    """
+    """Return the pose (4, 4) float, mm, of an origin: about x by roll, y by pitch, z by yaw."""
     origin = element.find("origin")
     if origin is None:
         return np.eye(4)
@@ -85,11 +72,6 @@ class ArmChain:
 
     origins: np.ndarray
     axes: np.ndarray
-
-    @property
-    def moving(self) -> int:
-        """How many joints move."""
-        return int(self.axes.any(axis=1).sum())
 
     def toolToWorld(self, q: np.ndarray) -> np.ndarray:
         """Return the poses (m, 4, 4) float, mm, of the tool at joint angles q (m, n) float, rad.
@@ -128,20 +110,17 @@ def readArmChain(urdf: Path) -> ArmChain:
         while link in joints:
             joint = joints.pop(link)
             origins.append(originOf(joint))
-            axes.append(_axis(joint))
+            axis = np.zeros(3)
+            if joint.get("type") == "revolute":
+                axis = numbers(attribute(joint, "axis", "xyz"))
+                axis /= np.linalg.norm(axis)
+            elif joint.get("type") != "fixed":
+                raise ValueError
+            axes.append(axis)
             link = attribute(joint, "child", "link")
     except ValueError:
         raise InputError(f"The URDF {urdf} is not a chain of revolute and fixed joints.") from None
     return ArmChain(np.array(origins), np.array(axes))
-
-
-def _axis(joint: Element) -> np.ndarray:
-    if joint.get("type") == "fixed":
-        return np.zeros(3)
-    if joint.get("type") != "revolute":
-        raise ValueError
-    axis = numbers(attribute(joint, "axis", "xyz"))
-    return axis / np.linalg.norm(axis)
 
 
 URDF = "iiwa7.urdf"
@@ -179,62 +158,50 @@ def readLinkMeshes(folder: Path, progress: Progress = no_progress) -> tuple[Link
 
     VTK's filters take half a second: `READ_LINKS` names this for a separate process.
     """
+    root = readUrdf(folder / URDF)
+    try:
+        shells = _shells(root, folder)
+    except (KeyError, ValueError) as error:
+        raise InputError(f"The URDF {folder / URDF} cannot be used: {error}.") from None
     meshes: list[LinkMesh] = []
-    for shells in _readShells(folder):
-        progress("", len(meshes) / len(DeviceName.LINK_TO_WORLD))
-        meshes.append(_merged(shells))
+    for ofLink in shells:
+        progress("", len(meshes) / len(shells))
+        parts, first = [], 0
+        for shell in ofLink:
+            points, normals, triangles = _smooth(shell)
+            colors = np.broadcast_to(np.round(255 * shell.color).astype(np.uint8), points.shape)
+            parts.append((points, normals, colors, triangles + first))
+            first += len(points)
+        meshes.append(LinkMesh(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True))))
     return tuple(meshes)
 
 
-def _readShells(folder: Path) -> list[list[Shell]]:
+def _shells(root: Element, folder: Path) -> list[list[Shell]]:
     """Return the visual meshes of links 0 to 7; what is fixed to a link belongs to it."""
-    root = readUrdf(folder / URDF)
-    try:
-        return _shellsOfLinks(root, folder)
-    except (KeyError, ValueError) as error:
-        raise InputError(f"The URDF {folder / URDF} cannot be used: {error}.") from None
-
-
-def _shellsOfLinks(root: Element, folder: Path) -> list[list[Shell]]:
     colors = {
         material.get("name"): numbers(attribute(material, "color", "rgba"))[:3]
         for material in root.findall("material")
     }
-    links = {link.get("name", ""): link for link in root.findall("link")}
     fixed = {
         attribute(joint, "child", "link"): (attribute(joint, "parent", "link"), originOf(joint))
         for joint in root.findall("joint")
         if joint.get("type") == "fixed"
     }
     shells: list[list[Shell]] = [[] for _ in DeviceName.LINK_TO_WORLD]
-    for name, link in links.items():
-        owner, pose = name, np.eye(4)
+    for link in root.findall("link"):
+        owner, pose = link.get("name", ""), np.eye(4)
         while owner in fixed:
             parent, toParent = fixed[owner]
             owner, pose = parent, toParent @ pose
-        if owner[-1:].isdecimal() and int(owner[-1]) < len(shells):
-            shells[int(owner[-1])] += _shellsOf(link, folder, colors, pose)
+        if not owner[-1:].isdecimal() or int(owner[-1]) >= len(shells):
+            continue
+        for visual in link.findall("visual"):
+            material = visual.find("material")
+            if material is not None and visual.find("geometry/mesh") is not None:
+                path = folder / attribute(visual, "geometry/mesh", "filename")
+                color = colors[material.get("name")]
+                shells[int(owner[-1])].append(Shell(path, color, pose @ originOf(visual)))
     return shells
-
-
-def _shellsOf(
-    link: Element, folder: Path, colors: dict[str | None, np.ndarray], pose: np.ndarray
-) -> Iterator[Shell]:
-    for visual in link.findall("visual"):
-        material = visual.find("material")
-        if material is not None and visual.find("geometry/mesh") is not None:
-            path = folder / attribute(visual, "geometry/mesh", "filename")
-            yield Shell(path, colors[material.get("name")], pose @ originOf(visual))
-
-
-def _merged(shells: list[Shell]) -> LinkMesh:
-    parts, first = [], 0
-    for shell in shells:
-        points, normals, triangles = _smooth(shell)
-        colors = np.broadcast_to(np.round(255 * shell.color).astype(np.uint8), points.shape)
-        parts.append((points, normals, colors, triangles + first))
-        first += len(points)
-    return LinkMesh(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
 
 
 def _smooth(shell: Shell) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

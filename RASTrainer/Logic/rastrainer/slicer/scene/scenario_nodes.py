@@ -14,13 +14,15 @@ import numpy as np
 import slicer
 import vtk
 
+from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.volume import read_nrrd
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario, task_by_method
 from rastrainer.slicer.background_work import BackgroundWork, CallLater, callNow
 from rastrainer.slicer.scene.nodes import (
+    CONTENT_ATTRIBUTE,
+    SCENARIO_ATTRIBUTE,
     TASK_ATTRIBUTE,
     Role,
     changedOnce,
@@ -31,21 +33,15 @@ from rastrainer.slicer.scene.nodes import (
     noteShown,
     removeNode,
     setPoints,
+    stampOf,
     trianglesPolyData,
     vtkArray,
 )
-from rastrainer.slicer.scene.requested_files import (
-    FileContent,
-    FileLoader,
-    isFileShown,
-    requestedFile,
-    requestFile,
-)
+from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 
 
 def meshPolyData(mesh: HeadMesh) -> vtk.vtkPolyData:
-    """Return a surface with smooth normals."""
     return trianglesPolyData(mesh.vertices, mesh.triangles, mesh.vertex_normals)
 
 
@@ -63,7 +59,7 @@ TARGET_COLOR = (0.2, 0.75, 0.35)
 def showScenario(scene: Any, scenario: Scenario, later: CallLater = callNow) -> None:
     """Show head, skull, targets and trajectory, one after the other by `later`.
 
-    Called again, nothing is made twice. Meshes and images come still later, by a `scenarioLoader`.
+    Called again, nothing is made twice. Meshes and images come still later, by a `SceneFileLoader`.
     The first point of the list of targets is the scenario's own, at which the target error is
     reported.
     """
@@ -87,7 +83,14 @@ def showTask(
     )
     name, digest = taskKey(scenario.name, task.name), sha256(task.fiducials.tobytes()).hexdigest()
     if not isShown(node, TASK_ATTRIBUTE, name, digest):
-        _fillFiducials(node, task)
+        display = node.GetDisplayNode()
+        with changedOnce(node), changedOnce(display):
+            node.SetName(f"{task.title} fiducials")
+            setPoints(node, task.labels, task.fiducials)
+            node.SetLocked(True)
+            display.SetSelectedColor(FIDUCIAL_COLOR)
+            display.SetGlyphScale(2.0)
+            display.SetTextScale(3.5)
         noteShown(node, TASK_ATTRIBUTE, name, digest)
     return node
 
@@ -95,17 +98,6 @@ def showTask(
 def taskKey(scenarioName: str, taskName: str) -> str:
     """Return what `TASK_ATTRIBUTE` says of a list of points that belongs to a task."""
     return f"{scenarioName}/{taskName}"
-
-
-def _fillFiducials(node: Any, task: Task) -> None:
-    display = node.GetDisplayNode()
-    with changedOnce(node), changedOnce(display):
-        node.SetName(f"{task.title} fiducials")
-        setPoints(node, task.labels, task.fiducials)
-        node.SetLocked(True)
-        display.SetSelectedColor(FIDUCIAL_COLOR)
-        display.SetGlyphScale(2.0)
-        display.SetTextScale(3.5)
 
 
 def _showHead(scene: Any, scenario: Scenario) -> None:
@@ -165,7 +157,6 @@ def _showTrajectory(scene: Any, scenario: Scenario) -> None:
 
 
 def showAsPlanned(node: Any) -> None:
-    """Show a markups node as part of the plan, which is not moved by hand."""
     node.SetLocked(True)
     node.GetDisplayNode().SetSelectedColor(TARGET_COLOR)
 
@@ -201,45 +192,114 @@ def showAsBackground(scene: Any, volume: Any, later: CallLater = callNow) -> Non
         later(partial(composite.SetBackgroundVolumeID, volume.GetID()))
 
 
-def scenarioLoader(scene: Any, work: BackgroundWork) -> FileLoader:
-    """Return what fills the nodes of `showScenario`, in the background of `work`."""
-    contents = (
-        FileContent(
-            MODEL, Role.HEAD_MODEL, _readMesh, _fillModel, _("No head is shown: {problem}")
-        ),
-        FileContent(MODEL, Role.SKULL, _readMesh, _fillModel, _("No skull is shown: {problem}")),
-        FileContent(
-            VOLUME,
-            Role.HEAD_VOLUME,
-            read_nrrd,
-            _fillVolume,
-            _("There are no images in the slice views: {problem}"),
-        ),
-    )
-    loader = FileLoader(scene, work, contents)
-
-    def showIfImages(node: Any) -> None:
-        if node.IsA(VOLUME):
-            showAsBackground(scene, node, work.later)
-
-    loader.shown.connect(showIfImages)
-    return loader
+FILE_ATTRIBUTE = "RASTrainer.file"
+"""Of a node that is not filled yet: the file that it is to show."""
 
 
-def _readMesh(path: Path) -> HeadMesh:
+def isFileShown(node: Any | None, scenario: str, path: Path | None) -> bool:
+    """Return whether a node shows, or is going to, a scenario's file as it is on the disk."""
+    if node is None or path is None:
+        return False
+    return isShown(node, SCENARIO_ATTRIBUTE, scenario, stampOf(path))
+
+
+def requestFile(node: Any, scenario: str, path: Path) -> None:
+    noteShown(node, SCENARIO_ATTRIBUTE, scenario, stampOf(path))
+    node.SetAttribute(FILE_ATTRIBUTE, str(path))
+
+
+def requestedFile(node: Any | None) -> tuple[str, ...]:
+    """Return which file a node is to show, empty where it is filled or not there."""
+    if node is None or not node.GetAttribute(FILE_ATTRIBUTE):
+        return ()
+    attributes = (node.GetAttribute(name) or "" for name in (CONTENT_ATTRIBUTE, FILE_ATTRIBUTE))
+    return (node.GetID(), *attributes)
+
+
+_SHOWN = (
+    (MODEL, Role.HEAD_MODEL, _("No head is shown: {problem}")),
+    (MODEL, Role.SKULL, _("No skull is shown: {problem}")),
+    (VOLUME, Role.HEAD_VOLUME, _("There are no images in the slice views: {problem}")),
+)
+"""Class and role of each node that shows a file, and what to say of one that cannot be used."""
+
+
+class SceneFileLoader:
+    """Fills the nodes of `showScenario` from files: read in the background, one shown in a turn.
+
+    A node holds what was in the file itself, so that a saved scene carries it. It has no file of
+    its own: Slicer's *Save* would offer to write over the scenario's.
+
+    Attributes:
+        shown: emits each node that has been filled, in a later turn.
+        problemFound: emits a sentence if a file cannot be used; its node is removed.
+    """
+
+    def __init__(self, scene: Any, work: BackgroundWork) -> None:
+        self.shown = Signal()
+        self.problemFound = Signal()
+        self._scene = scene
+        self._work = work
+        self._requested: dict[str, tuple[str, ...]] = {}
+
+    def process(self) -> None:
+        """Start reading requested files; called about ten times a second."""
+        for className, role, problem in _SHOWN:
+            requested = requestedFile(findNode(self._scene, className, role))
+            if requested != self._requested.get(role, ()):
+                self._requested[role] = requested
+                if requested:
+                    self._work.do(
+                        partial(_readFile, className, Path(requested[-1])),
+                        partial(self._take, role, requested),
+                        partial(self._refuse, role, requested, problem),
+                    )
+
+    def _take(self, role: str, requested: tuple[str, ...], found: Any) -> None:
+        node = self._awaiting(role, requested)
+        if node is None:
+            return
+        node.RemoveAttribute(FILE_ATTRIBUTE)
+        className, nodeId = node.GetClassName(), node.GetID()
+        if isinstance(found, HeadMesh):
+            node.SetAndObservePolyData(meshPolyData(found))
+        else:
+            values, ijkToRas = found
+            data = vtk.vtkImageData()
+            data.SetDimensions(values.shape)
+            data.GetPointData().SetScalars(vtkArray(values.ravel(order="F")))
+            node.SetIJKToRASMatrix(slicer.util.vtkMatrixFromArray(ijkToRas))
+            node.SetAndObserveImageData(data)
+
+        def emitShown() -> None:
+            node = findNode(self._scene, className, role)
+            if node is not None and node.GetID() == nodeId:
+                if node.IsA(VOLUME):
+                    showAsBackground(self._scene, node, self._work.later)
+                self.shown.emit(node)
+
+        self._work.later(emitShown)
+
+    def _refuse(
+        self, role: str, requested: tuple[str, ...], problem: str, error: Exception
+    ) -> None:
+        node = self._awaiting(role, requested)
+        if node is not None:
+            self._scene.RemoveNode(node)
+            if isinstance(error, InputError):
+                self.problemFound.emit(problem.format(problem=error))
+
+    def _awaiting(self, role: str, requested: tuple[str, ...]) -> Any | None:
+        """Return the node that still requests this file; None where there is none."""
+        # In a cleared scene the next node has the same ID, and may request the same at once.
+        self._requested[role] = ()
+        node = self._scene.GetNodeByID(requested[0])
+        return node if requestedFile(node) == requested else None
+
+
+def _readFile(className: str, path: Path) -> HeadMesh | tuple[np.ndarray, np.ndarray]:
+    if className == VOLUME:
+        return read_nrrd(path)
     mesh = read_head_mesh(path)
     mesh.vertex_normals  # noqa: B018 (computed here, in the background, and kept)
     return mesh
-
-
-def _fillModel(node: Any, mesh: HeadMesh) -> None:
-    node.SetAndObservePolyData(meshPolyData(mesh))
-
-
-def _fillVolume(node: Any, image: tuple[np.ndarray, np.ndarray]) -> None:
-    values, ijkToRas = image
-    data = vtk.vtkImageData()
-    data.SetDimensions(values.shape)
-    data.GetPointData().SetScalars(vtkArray(values.ravel(order="F")))
-    node.SetIJKToRASMatrix(slicer.util.vtkMatrixFromArray(ijkToRas))
-    node.SetAndObserveImageData(data)

@@ -12,7 +12,7 @@ from rastrainer.number_text import fixed
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.slicer.scene.nodes import Role
-from rastrainer.slicer.scene.tables import Column, showTable
+from rastrainer.slicer.scene.tables import showTable
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
@@ -44,7 +44,6 @@ class Row:
 
     @property
     def text(self) -> str:
-        """The value with its unit, as people read it."""
         if self.value is None:
             return "–"
         digits = 0 if self.unit == "" and float(self.value).is_integer() else 2
@@ -60,14 +59,7 @@ class Row:
 class GroupComparison:
     """A value beside those of a group.
 
-    Attributes:
-        title: what is compared.
-        unit: of the value.
-        value: of the trial.
-        group: of whom the others are.
-        count: how many others there are, at least one.
-        median: of the others.
-        betterThan: share of the others that the trial is better than, 0 to 1.
+    `betterThan` is the share of the others that the trial is better than, 0 to 1.
     """
 
     title: str
@@ -82,25 +74,19 @@ class GroupComparison:
 def scoreRows(trial: StoredTrial) -> list[Row]:
     """Return the score of a trial with its results, and its parts."""
     score, rigid = trial.score, trial.registrations.get(RIGID)
-    rows = []
-    if score is not None:
-        rows += _parts(score)
+    rows = [] if score is None else _parts(score)
     paused = trial.record.motion.get("pause_time_s", 0.0)
     note = _("{s:.0f} s of pauses are left out").format(s=paused) if paused else ""
     rows.append(Row(_("Completion time"), trial.record.completion_time_s, "s", note))
     if rigid is not None:
-        fre = _("does not predict TRE")
-        rows += [
-            Row(_("FRE (RMSE)"), rigid.fre_mm, "mm", fre),
-            Row(
-                _("Expected TRE"),
-                rigid.expected_tre_mm,
-                "mm",
-                _interval(rigid.tre_interval_mm),
-                INTERVAL_NOTE,
-            ),
-        ]
-    rows += [] if trial.procedure is None else _procedureRows(trial.procedure)
+        rows.append(Row(_("FRE (RMSE)"), rigid.fre_mm, "mm", _("does not predict TRE")))
+        interval = ""
+        if rigid.tre_interval_mm is not None:
+            interval = _("95 %: {:.2f} to {:.2f} mm").format(*rigid.tre_interval_mm)
+        expected = rigid.expected_tre_mm
+        rows.append(Row(_("Expected TRE"), expected, "mm", interval, INTERVAL_NOTE))
+    if trial.procedure is not None:
+        rows += _procedureRows(trial.procedure)
     rows.append(
         Row(_("True TRE at the target"), trial.true_tre_mm, "mm", _("only a simulator knows it"))
     )
@@ -108,7 +94,6 @@ def scoreRows(trial: StoredTrial) -> list[Row]:
 
 
 def _procedureRows(procedure: ProcedureOutcome) -> list[Row]:
-    """Return the score of a procedure, beside that of the touches, and its errors."""
     score, analysis = procedure.score, procedure.analysis
     version = _("Version {v}") if score.acceptable else _("not acceptable; version {v}")
     split = _("registration {registration} mm, hand {hand} mm")
@@ -129,48 +114,31 @@ def _procedureRows(procedure: ProcedureOutcome) -> list[Row]:
 
 
 def _parts(score: TrialScore) -> list[Row]:
-    """Return a score and its parts."""
     version = _("Version {v}") if score.acceptable else _("not acceptable; version {v}")
-    rows = [
-        Row(_("Score"), score.score, "/ 100", version.format(v=score.version)),
-        Row(_("… its part for time"), 100 * score.time_desirability, "%"),
-        Row(
-            _("… its part for accuracy"),
-            100 * score.accuracy_desirability,
-            "%",
-            _accuracyNote(score),
-        ),
-    ]
     measures, limit_mm = score.measures, score.reference.limit_mm
+    isAccurate, limit = score.is_accurate, _limit(COMMON_BIAS_LIMIT_MM, "mm")
+    accuracy = _("within the limit of {limit:g} mm"), _("beyond the limit of {limit:g} mm")
+    # Trials without fiducials lack the common bias.
+    bias = []
+    if score.is_unbiased is not None:
+        isAccurate = isAccurate and score.is_unbiased
+        accuracy = _("within the limits"), _("beyond a limit")
+    if measures.common_bias_mm is not None:
+        bias = [Row(_("Bias that all touches share"), measures.common_bias_mm, "mm", limit)]
+    accuracyNote = accuracy[0 if isAccurate else 1].format(limit=limit_mm)
     error = "; ".join([_("RMS over targets and brain"), _limit(limit_mm, "mm")])
     safety = _("within the limits") if score.is_safe else _("beyond a limit")
     return [
-        *rows,
+        Row(_("Score"), score.score, "/ 100", version.format(v=score.version)),
+        Row(_("… its part for time"), 100 * score.time_desirability, "%"),
+        Row(_("… its part for accuracy"), 100 * score.accuracy_desirability, "%", accuracyNote),
         Row(_("… its part for safety"), 100 * score.safety_desirability, "%", safety),
         Row(_("True TRE in the brain"), measures.tre_mm, "mm", error),
-        *_bias(measures.common_bias_mm),
+        *bias,
         Row(_("Unintended contact"), measures.contact_time_s, "s", _limit(CONTACT_LIMIT_S, "s")),
         Row(_("… its path"), measures.contact_path_mm, "mm", _limit(CONTACT_PATH_LIMIT_MM, "mm")),
         Row(_("Pressing depth"), measures.pressing_depth_mm, "mm", _limit(DEPTH_LIMIT_MM, "mm")),
     ]
-
-
-def _accuracyNote(score: TrialScore) -> str:
-    if score.is_unbiased is None:
-        note = _("within the limit of {limit:g} mm")
-        if not score.is_accurate:
-            note = _("beyond the limit of {limit:g} mm")
-        return note.format(limit=score.reference.limit_mm)
-    is_within = score.is_accurate and score.is_unbiased
-    return _("within the limits") if is_within else _("beyond a limit")
-
-
-def _bias(bias_mm: float | None) -> list[Row]:
-    """Return the row of the common bias, which trials without fiducials lack."""
-    if bias_mm is None:
-        return []
-    limit = _limit(COMMON_BIAS_LIMIT_MM, "mm")
-    return [Row(_("Bias that all touches share"), bias_mm, "mm", limit)]
 
 
 def _limit(value: float, unit: str) -> str:
@@ -178,12 +146,7 @@ def _limit(value: float, unit: str) -> str:
 
 
 def ctpsRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:
-    """Return the scores of the publication, none where they cannot be computed.
-
-    Args:
-        trial: with its results.
-        cohort: trials that CTPS compares with; those of the trial's own mode count.
-    """
+    """Return the published scores; CTPS compares with the cohort's trials of the same mode."""
     rigid = trial.registrations.get(RIGID)
     found = None if rigid is None else published_score(trial.record, rigid.fre_mm, cohort)
     if found is None:
@@ -195,7 +158,6 @@ def ctpsRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:
 
 
 def motionRows(trial: StoredTrial) -> list[Row]:
-    """Return the motion metrics of a trial, each with its definition."""
     return [
         Row(metric.title, trial.record.motion[name], metric.unit, metric.definition)
         for name, metric in MOTION_METRICS.items()
@@ -208,12 +170,8 @@ def standings(
 ) -> list[GroupComparison]:
     """Compare a trial with the trainee's own others, with everyone else's, and with a cohort.
 
-    Only trials of the same task and mode are compared, and only scores of the same method.
-
-    Args:
-        study: of the trial.
-        trial: with its results.
-        cohort: of another study, such as the published one; its times and FRE are known.
+    Only trials of the same task and mode are compared, and only scores of the same method. Of a
+    cohort, such as the published one, times and FRE are known.
     """
     record = trial.record
     outcomes = study.outcomes(record.task, record.mode)
@@ -233,49 +191,37 @@ def standings(
     return found + _comparedWithCohort(trial, cohort)
 
 
-def showScore(scene: Any, rows: Sequence[Row]) -> Any:
-    """Show scores and their parts in a `vtkMRMLTableNode` and return it."""
-    return _showRows(scene, Role.SCORE, "Score", rows)
-
-
-def showMotion(scene: Any, rows: Sequence[Row]) -> Any:
-    return _showRows(scene, Role.MOTION, "Motion metrics", rows)
-
-
 def showStandings(scene: Any, found: Sequence[GroupComparison]) -> Any:
     """Show comparisons in a `vtkMRMLTableNode` and return it."""
     return showTable(
         scene,
         Role.COMPARISON,
         "Comparison",
-        [
-            Column("measure", [s.title for s in found], isText=True),
-            Column("unit", [s.unit for s in found], isText=True),
-            Column("value", [s.value for s in found]),
-            Column("compared with", [s.group for s in found], isText=True),
-            Column("trials", [s.count for s in found]),
-            Column("median", [s.median for s in found]),
-            Column("better than (share)", [s.betterThan for s in found]),
-        ],
+        {
+            "measure": [s.title for s in found],
+            "unit": [s.unit for s in found],
+            "value": [s.value for s in found],
+            "compared with": [s.group for s in found],
+            "trials": [s.count for s in found],
+            "median": [s.median for s in found],
+            "better than (share)": [s.betterThan for s in found],
+        },
     )
 
 
-def _showRows(scene: Any, role: str, name: str, rows: Sequence[Row]) -> Any:
+def showRows(scene: Any, role: str, name: str, rows: Sequence[Row]) -> Any:
+    """Show scores with their parts, or motion metrics, in a `vtkMRMLTableNode`; return it."""
     return showTable(
         scene,
         role,
         name,
-        [
-            Column("measure", [row.title for row in rows], isText=True),
-            Column("value", [row.value for row in rows]),
-            Column("unit", [row.unit for row in rows], isText=True),
-            Column("note", [row.note for row in rows], isText=True),
-        ],
+        {
+            "measure": [row.title for row in rows],
+            "value": [row.value for row in rows],
+            "unit": [row.unit for row in rows],
+            "note": [row.note for row in rows],
+        },
     )
-
-
-def _interval(ends: tuple[float, float] | None) -> str:
-    return "" if ends is None else _("95 %: {:.2f} to {:.2f} mm").format(*ends)
 
 
 def _standing(

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +12,7 @@ import vtk
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
-from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, Role, changedOnce, findNode, findOrAddNode
+from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, Role, changedOnce, findOrAddNode
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.values import StoredTrial
 
@@ -21,48 +20,36 @@ if TYPE_CHECKING:
     from rastrainer.study.tre_calibration import TreCalibration
 
 
-@dataclass(frozen=True)
-class Column:
-    """One column of a table: texts, or numbers where None is unknown."""
-
-    name: str
-    values: Sequence[str] | Sequence[float | None] | np.ndarray
-    isText: bool = False
-
-
-def showTable(scene: Any, role: str, name: str, columns: Sequence[Column]) -> Any:
-    """Put columns into the `vtkMRMLTableNode` of a role and return it."""
-    node = findOrAddNode(scene, "vtkMRMLTableNode", role, name)
-    with changedOnce(node):
-        node.RemoveAllColumns()
-        node.SetUseColumnTitleAsColumnHeader(True)
-        for column in columns:
-            node.AddColumn(_array(column))
-        node.SetLocked(True)
-    return node
-
-
 FEWEST_ROWS = 2
 """Of a table that is plotted: VTK logs an error for each painted line with fewer points, with or
 without a pen, and Slicer plots all series as lines."""
 
 
-def showPlotTable(scene: Any, role: str, name: str, columns: Sequence[Column]) -> Any:
-    """Put columns that are plotted into a `vtkMRMLTableNode`; rows without values may follow."""
-    missing = FEWEST_ROWS - min(len(column.values) for column in columns)
-    padded = [
-        Column(each.name, [*each.values, *[("" if each.isText else None)] * missing], each.isText)
-        for each in columns
-    ]
-    return showTable(scene, role, name, padded)
+def showTable(
+    scene: Any,
+    role: str,
+    name: str,
+    columns: Mapping[str, Sequence[Any] | np.ndarray],
+    fewestRows: int = 0,
+) -> Any:
+    """Put columns, texts or numbers or None, into the `vtkMRMLTableNode` of a role; return it.
 
-
-def _array(column: Column) -> vtk.vtkAbstractArray:
-    array = vtk.vtkStringArray() if column.isText else vtk.vtkDoubleArray()
-    array.SetName(column.name)
-    for value in column.values:
-        array.InsertNextValue(value if column.isText else math.nan if value is None else value)
-    return array
+    Rows without values follow where there are fewer than `fewestRows`.
+    """
+    node = findOrAddNode(scene, "vtkMRMLTableNode", role, name)
+    with changedOnce(node):
+        node.RemoveAllColumns()
+        node.SetUseColumnTitleAsColumnHeader(True)
+        for title, values in columns.items():
+            isText = isinstance(next(iter(values), None), str)
+            array = vtk.vtkStringArray() if isText else vtk.vtkDoubleArray()
+            array.SetName(title)
+            for value in (*values, *[None] * (fewestRows - len(values))):
+                unknown = "" if isText else math.nan
+                array.InsertNextValue(unknown if value is None else value)
+            node.AddColumn(array)
+        node.SetLocked(True)
+    return node
 
 
 def showResiduals(
@@ -70,10 +57,7 @@ def showResiduals(
 ) -> Any:
     """Show the residual of each fiducial in a `vtkMRMLTableNode` and return it.
 
-    Args:
-        registration: whose residuals are shown.
-        leaveOneOut: (n,) float, mm, how far each touch lies from where the other pairs put it;
-            None where there are too few pairs.
+    `leaveOneOut` (n,), mm, is how far each touch lies from where the other pairs put it.
     """
     vectors = registration.residual_vectors_mm
     leftOut = [None] * len(registration.labels) if leaveOneOut is None else leaveOneOut
@@ -81,39 +65,34 @@ def showResiduals(
         scene,
         Role.RESIDUALS,
         "Residuals",
-        [
-            Column("fiducial", registration.labels, isText=True),
-            Column("residual (mm)", registration.residuals_mm),
-            Column("residual R (mm)", vectors[:, 0]),
-            Column("residual A (mm)", vectors[:, 1]),
-            Column("residual S (mm)", vectors[:, 2]),
-            Column("without it (mm)", leftOut),
-        ],
+        {
+            "fiducial": registration.labels,
+            "residual (mm)": registration.residuals_mm,
+            "residual R (mm)": vectors[:, 0],
+            "residual A (mm)": vectors[:, 1],
+            "residual S (mm)": vectors[:, 2],
+            "without it (mm)": leftOut,
+        },
     )
 
 
 def showFits(
     scene: Any, fits: Sequence[Registration], targetErrors: Sequence[TargetError | None]
 ) -> Any:
-    """Compare fits of the same points in a `vtkMRMLTableNode` and return it.
-
-    Args:
-        fits: one a row.
-        targetErrors: of each fit, what to expect at the target; None where it is not known.
-    """
+    """Compare fits of the same points, and what to expect at the target, in a table node."""
     known = [(e.expected_mm, *e.interval_mm) if e else (None, None, None) for e in targetErrors]
     return showTable(
         scene,
         Role.FITS,
         "Fits",
-        [
-            Column("fit", [fit.kind for fit in fits], isText=True),
-            Column("FRE (mm)", [fit.fre_mm for fit in fits]),
-            Column("largest residual (mm)", [fit.residuals_mm.max() for fit in fits]),
-            Column("expected TRE (mm)", [expected for expected, _low, _high in known]),
-            Column("TRE from, 95 % (mm)", [low for _expected, low, _high in known]),
-            Column("TRE to, 95 % (mm)", [high for _expected, _low, high in known]),
-        ],
+        {
+            "fit": [fit.kind for fit in fits],
+            "FRE (mm)": [fit.fre_mm for fit in fits],
+            "largest residual (mm)": [fit.residuals_mm.max() for fit in fits],
+            "expected TRE (mm)": [expected for expected, _low, _high in known],
+            "TRE from, 95 % (mm)": [low for _expected, low, _high in known],
+            "TRE to, 95 % (mm)": [high for _expected, _low, high in known],
+        },
     )
 
 
@@ -138,85 +117,61 @@ def showHistory(scene: Any, pseudonym: str, trials: Sequence[StoredTrial]) -> An
         scene,
         Role.HISTORY,
         f"History of {pseudonym}",
-        [
-            Column(TRIAL_COLUMN, range(1, len(trials) + 1)),
-            Column("started (UTC)", [record.started_utc[:19] for record in records], isText=True),
-            Column("task", [record.task for record in records], isText=True),
-            Column("mode", [record.mode for record in records], isText=True),
-            Column(TIME_COLUMN, [record.completion_time_s for record in records]),
-            Column("FRE (mm)", [fit.fre_mm if fit else None for fit in rigid]),
-            Column("expected TRE (mm)", [fit.expected_tre_mm if fit else None for fit in rigid]),
-            Column("true TRE (mm)", [trial.true_tre_mm for trial in trials]),
-            Column(SCORE_COLUMN, [t.score.score if t.score else None for t in trials]),
-            Column("method", [record.method.value for record in records], isText=True),
-        ],
+        {
+            TRIAL_COLUMN: range(1, len(trials) + 1),
+            "started (UTC)": [record.started_utc[:19] for record in records],
+            "task": [record.task for record in records],
+            "mode": [record.mode for record in records],
+            TIME_COLUMN: [record.completion_time_s for record in records],
+            "FRE (mm)": [fit.fre_mm if fit else None for fit in rigid],
+            "expected TRE (mm)": [fit.expected_tre_mm if fit else None for fit in rigid],
+            "true TRE (mm)": [trial.true_tre_mm for trial in trials],
+            SCORE_COLUMN: [t.score.score if t.score else None for t in trials],
+            "method": [record.method.value for record in records],
+        },
     )
 
 
 def showLearningCurve(scene: Any, pseudonym: str, trials: Sequence[StoredTrial]) -> Any:
     """Plot score and time over the trials in a `vtkMRMLPlotChartNode` and return it."""
     showHistory(scene, pseudonym, trials)
-    table = showPlotTable(
-        scene,
-        Role.LEARNING_CURVE,
-        f"Learning curve of {pseudonym}",
-        [
-            Column(TRIAL_COLUMN, range(1, len(trials) + 1)),
-            Column(SCORE_COLUMN, [t.score.score if t.score else None for t in trials]),
-            Column(TIME_COLUMN, [trial.record.completion_time_s for trial in trials]),
-        ],
-    )
-    chart = findOrAddNode(
-        scene, "vtkMRMLPlotChartNode", Role.LEARNING_CURVE, f"Learning curve of {pseudonym}"
-    )
-    chart.SetName(f"Learning curve of {pseudonym}")
-    chart.RemoveAllPlotSeriesNodeIDs()
-    for column, (title, color) in _SERIES.items():
-        series = plotSeries(scene, table, Role.LEARNING_CURVE, TRIAL_COLUMN, column, title, color)
-        chart.AddAndObservePlotSeriesNodeID(series.GetID())
-    chart.SetTitle(_curveTitle(pseudonym, trials))
+    times = [trial.record.completion_time_s for trial in trials]
+    columns = {
+        TRIAL_COLUMN: range(1, len(trials) + 1),
+        SCORE_COLUMN: [trial.score.score if trial.score else None for trial in trials],
+        TIME_COLUMN: times,
+    }
+    title = f"Learning curve of {pseudonym}"
+    table = showTable(scene, Role.LEARNING_CURVE, title, columns, FEWEST_ROWS)
+    chart = _emptyChart(scene, Role.LEARNING_CURVE, title)
+    for column, (name, color) in _SERIES.items():
+        _addSeries(chart, table, TRIAL_COLUMN, column, name, color)
+    methods = sorted({trial.record.method.value for trial in trials if trial.score})
+    if len(methods) > 1:
+        title += f" (scores by {' and '.join(methods)} cannot be compared)"
+    chart.SetTitle(title)
     chart.SetXAxisTitle("Trial")
     chart.SetYAxisTitle("Score, and completion time in s")
-    chart.SetXAxisRangeAuto(False)
     chart.SetXAxisRange(0.0, max(FEWEST_SHOWN, len(trials) + 1.0))
-    chart.SetYAxisRangeAuto(False)
-    times = (trial.record.completion_time_s for trial in trials)
     chart.SetYAxisRange(0.0, 1.05 * max((BEST_SCORE, *times)))
     return chart
 
 
-def _curveTitle(pseudonym: str, trials: Sequence[StoredTrial]) -> str:
-    methods = sorted({trial.record.method.value for trial in trials if trial.score})
-    title = f"Learning curve of {pseudonym}"
-    if len(methods) < 2:
-        return title
-    return f"{title} (scores by {' and '.join(methods)} cannot be compared)"
+def _emptyChart(scene: Any, role: str, name: str) -> Any:
+    chart = findOrAddNode(scene, "vtkMRMLPlotChartNode", role, name)
+    chart.SetName(name)
+    chart.RemoveAllPlotSeriesNodeIDs()
+    chart.SetXAxisRangeAuto(False)
+    chart.SetYAxisRangeAuto(False)
+    return chart
 
 
-def plotSeries(
-    scene: Any,
-    table: Any,
-    role: str,
-    across: str,
-    column: str,
-    title: str,
-    color: tuple[float, float, float],
+def _addSeries(
+    chart: Any, table: Any, across: str, column: str, title: str, color: tuple[float, float, float]
 ) -> Any:
-    """Return the `vtkMRMLPlotSeriesNode` of a role that draws a column over another one.
-
-    Args:
-        table: a `vtkMRMLTableNode` with both columns.
-        role: of the chart.
-        across: the column of x.
-        column: the column of y.
-        title: in the plot's legend.
-        color: RGB from 0 to 1.
-    """
-    seriesRole = f"{role} {column}"
-    node = findNode(scene, "vtkMRMLPlotSeriesNode", seriesRole)
-    if node is None:
-        node = scene.AddNewNodeByClass("vtkMRMLPlotSeriesNode", title)
-        node.SetAttribute(ROLE_ATTRIBUTE, seriesRole)
+    """Draw a column of a table over another one, `across`; return the `vtkMRMLPlotSeriesNode`."""
+    role = f"{chart.GetAttribute(ROLE_ATTRIBUTE)} {column}"
+    node = findOrAddNode(chart.GetScene(), "vtkMRMLPlotSeriesNode", role, title)
     node.SetAndObserveTableNodeID(table.GetID())
     node.SetPlotType(node.PlotTypeScatter)
     node.SetXColumnName(across)
@@ -224,6 +179,7 @@ def plotSeries(
     node.SetColor(color)
     node.SetLineStyle(node.LineStyleSolid)
     node.SetMarkerStyle(node.MarkerStyleCircle)
+    chart.AddAndObservePlotSeriesNodeID(node.GetID())
     return node
 
 
@@ -244,59 +200,39 @@ _LINES = {
 
 def showCalibration(scene: Any, found: TreCalibration) -> Any:
     """Plot true over expected TRE in a `vtkMRMLPlotChartNode` and return it."""
-    end = 1.1 * max((point.expected_mm for point in found.points), default=1.0)
-    table, identity = _showCalibrationTable(scene, found), _showIdentity(scene, end)
-    chart = findOrAddNode(
-        scene, "vtkMRMLPlotChartNode", Role.CALIBRATION, "True against expected TRE"
-    )
-    chart.RemoveAllPlotSeriesNodeIDs()
+    from rastrainer.study.tre_calibration import share_text
+
+    points, role = found.points, Role.CALIBRATION
+    columns: dict[str, Sequence[Any]] = {
+        "trainee": [point.trainee for point in points],
+        "mode": [point.mode for point in points],
+        "task": [point.task for point in points],
+        EXPECTED: [point.expected_mm for point in points],
+        LOW: [point.interval_mm[0] for point in points],
+        HIGH: [point.interval_mm[1] for point in points],
+        INSIDE: [point.true_mm if point.is_inside else None for point in points],
+        OUTSIDE: [None if point.is_inside else point.true_mm for point in points],
+    }
+    table = showTable(scene, role, "True and expected TRE", columns, FEWEST_ROWS)
+    end = 1.1 * max((point.expected_mm for point in points), default=1.0)
+    ends = {EXPECTED: [0.0, end], TRUE: [0.0, end]}
+    identity = showTable(scene, f"{role} line", "True equals expected TRE", ends)
+    chart = _emptyChart(scene, role, "True against expected TRE")
     for column, (title, color) in {**_LINES, **_DOTS}.items():
         source = identity if column == TRUE else table
-        series = plotSeries(scene, source, Role.CALIBRATION, EXPECTED, column, title, color)
+        series = _addSeries(chart, source, EXPECTED, column, title, color)
         isLine = column in _LINES
         series.SetLineStyle(series.LineStyleDash if isLine else series.LineStyleNone)
         series.SetMarkerStyle(series.MarkerStyleNone if isLine else series.MarkerStyleCircle)
-        chart.AddAndObservePlotSeriesNodeID(series.GetID())
-    chart.SetTitle(_calibrationTitle(found))
+    title = _("True against expected TRE")
+    if found.inside is not None:
+        counted = _("True against expected TRE: {count} of {total} inside, {share}")
+        inside, total = found.inside.count, found.inside.total
+        title = counted.format(count=inside, total=total, share=share_text(found.inside))
+    chart.SetTitle(title)
     chart.SetXAxisTitle(_("Expected TRE (mm)"))
     chart.SetYAxisTitle(_("True TRE (mm)"))
-    highest = [max(point.true_mm, point.interval_mm[1]) for point in found.points]
-    chart.SetXAxisRangeAuto(False)
     chart.SetXAxisRange(0.0, end)
-    chart.SetYAxisRangeAuto(False)
+    highest = [max(point.true_mm, point.interval_mm[1]) for point in points]
     chart.SetYAxisRange(0.0, ROOM * max(highest, default=1.0))
     return chart
-
-
-def _showCalibrationTable(scene: Any, found: TreCalibration) -> Any:
-    points = found.points
-    return showPlotTable(
-        scene,
-        Role.CALIBRATION,
-        "True and expected TRE",
-        [
-            Column("trainee", [point.trainee for point in points], isText=True),
-            Column("mode", [point.mode for point in points], isText=True),
-            Column("task", [point.task for point in points], isText=True),
-            Column(EXPECTED, [point.expected_mm for point in points]),
-            Column(LOW, [point.interval_mm[0] for point in points]),
-            Column(HIGH, [point.interval_mm[1] for point in points]),
-            Column(INSIDE, [point.true_mm if point.is_inside else None for point in points]),
-            Column(OUTSIDE, [None if point.is_inside else point.true_mm for point in points]),
-        ],
-    )
-
-
-def _showIdentity(scene: Any, end: float) -> Any:
-    columns = [Column(name, [0.0, end]) for name in (EXPECTED, TRUE)]
-    return showTable(scene, f"{Role.CALIBRATION} line", "True equals expected TRE", columns)
-
-
-def _calibrationTitle(found: TreCalibration) -> str:
-    from rastrainer.study.tre_calibration import share_text
-
-    if found.inside is None:
-        return _("True against expected TRE")
-    return _("True against expected TRE: {count} of {total} inside, {share}").format(
-        count=found.inside.count, total=found.inside.total, share=share_text(found.inside)
-    )

@@ -36,8 +36,10 @@ SAME_ROBOT_MM = 0.01
 TOOL_COLOR = (0.2, 0.45, 0.85)
 TOOL_LENGTH_MM, TOOL_RADIUS_MM = 120.0, 2.0
 
-_PLACE, _TOOL, _TIP = "place", "tool", "tool model"
-_TOUCHES, _TRACE, _CLEARANCE = "touches", "trace", "clearance"
+_BROWSER, _PLACE, _TOOL, _TIP, _TOUCHES, _TRACE, _CLEARANCE = (
+    f"{Role.REPLAY} {part}"
+    for part in ("browser", "place", "tool", "tool model", "touches", "trace", "clearance")
+)
 POINTS_A_STATE = 10
 """Points of a trace that are added each time."""
 
@@ -52,22 +54,21 @@ def showReplay(
 ) -> Any:
     """Put a trial into the scene as a Sequence, replacing the previous one.
 
-    It uses separate nodes, so that a running simulator does not disturb it.
-
-    Args:
-        name: of the trial, for people.
-        track: from its journal.
-        chain: of the robot that it was recorded with.
-        worldToHead: (4, 4) float, mm, registration of the trial.
-        rest: called with the share of the work done after each slice; it may let the application
-            draw, and may raise to cancel: then nothing is left behind.
-
-    Returns:
-        The `vtkMRMLSequenceBrowserNode`, at the first sample.
+    It uses separate nodes, so that a running simulator does not disturb it. `rest` is called with
+    the share of the work done after each slice; it may let the application draw, and may raise to
+    cancel: then nothing is left behind. Returns the `vtkMRMLSequenceBrowserNode`, at the first
+    sample.
     """
     trajectory = track.trajectory
-    rows = _rows(trajectory.times_s)
-    poses = chain.toolToWorld(track.q[rows]) if chain.moving == track.q.shape[1] else None
+    # About ten samples a second, the first and the last.
+    times = trajectory.times_s
+    wanted = np.arange(times[0], times[-1], 1.0 / SAMPLE_HZ)
+    rows = np.unique([*np.searchsorted(times, wanted), len(times) - 1])
+    poses = (
+        chain.toolToWorld(track.q[rows])
+        if chain.axes.any(axis=1).sum() == track.q.shape[1]
+        else None
+    )
     tips = trajectory.tip_mm[rows]
     if poses is None or np.abs(poses[:, :3, 3] - tips).max() > SAME_ROBOT_MM:
         raise InputError("The trial was recorded with another robot than the one that is here.")
@@ -88,16 +89,20 @@ def _fillScene(
     worldToHead: np.ndarray,
     rest: Callable[[float], None],
 ) -> Any:
-    placed = _node(scene, "vtkMRMLLinearTransformNode", _PLACE, f"{name}: WorldToHead")
+    placed = findOrAddNode(scene, "vtkMRMLLinearTransformNode", _PLACE, f"{name}: WorldToHead")
     placed.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(worldToHead))
-    tool = _node(scene, "vtkMRMLLinearTransformNode", _TOOL, f"{name}: tool")
-    touches = _node(scene, "vtkMRMLMarkupsFiducialNode", _TOUCHES, f"{name}: touches")
-    clearance = _node(scene, "vtkMRMLTextNode", _CLEARANCE, f"{name}: clearance")
+    tool = findOrAddNode(scene, "vtkMRMLLinearTransformNode", _TOOL, f"{name}: tool")
+    touches = findOrAddNode(scene, "vtkMRMLMarkupsFiducialNode", _TOUCHES, f"{name}: touches")
+    clearance = findOrAddNode(scene, "vtkMRMLTextNode", _CLEARANCE, f"{name}: clearance")
     _showTool(scene, f"{name}: tool model", tool)
-    _prepareTouches(touches)
+    touches.SetLocked(True)
+    display = touches.GetDisplayNode()
+    display.SetSelectedColor(TOUCH_COLOR)
+    display.SetGlyphScale(2.5)
+    display.SetTextScale(3.5)
     tool.SetAndObserveTransformNodeID(placed.GetID())
     touches.SetAndObserveTransformNodeID(placed.GetID())
-    browser = _node(scene, "vtkMRMLSequenceBrowserNode", "browser", f"Replay of {name}")
+    browser = findOrAddNode(scene, "vtkMRMLSequenceBrowserNode", _BROWSER, f"Replay of {name}")
     browser.SetIndexDisplayMode(browser.IndexDisplayAsIndexValue)
     browser.SetPlaybackRateFps(SAMPLE_HZ)
     rest(0.0)
@@ -105,19 +110,19 @@ def _fillScene(
     times = trajectory.times_s[rows]
     total, done = 2 * len(rows) + len(trajectory.touches) + 1, 0
     shown = [
-        (tool, zip(times, _toolStates(tool, poses), strict=True)),
-        (touches, _touchStates(touches, trajectory)),
-        (clearance, zip(times, _clearanceStates(trajectory.clearance_mm[rows]), strict=True)),
+        (tool, _toolStates(times, poses)),
+        (touches, _touchStates(trajectory)),
+        (clearance, _clearanceStates(times, trajectory.clearance_mm[rows])),
     ]
     if trajectory.traced:
-        trace = _node(scene, "vtkMRMLModelNode", _TRACE, f"{name}: trace")
+        trace = findOrAddNode(scene, "vtkMRMLModelNode", _TRACE, f"{name}: trace")
         drawAsPoints(trace)
         trace.SetAndObserveTransformNodeID(placed.GetID())
-        shown.append((trace, _traceStates(trace, trajectory)))
+        shown.append((trace, _traceStates(trajectory)))
         total += 1 + -(-len(trajectory.traced) // POINTS_A_STATE)
     for proxy, states in shown:
-        sequence = _node(scene, "vtkMRMLSequenceNode", f"{proxy.GetName()} sequence", "")
-        sequence.SetName(f"{proxy.GetName()} sequence")
+        title = f"{proxy.GetName()} sequence"
+        sequence = findOrAddNode(scene, "vtkMRMLSequenceNode", f"{Role.REPLAY} {title}", title)
         sequence.SetIndexName("time")
         sequence.SetIndexUnit("s")
         sequence.SetIndexType(sequence.NumericIndex)
@@ -161,7 +166,7 @@ def goTo(scene: Any, timeS: float) -> None:
 def moment(scene: Any) -> tuple[float, str] | None:
     """Return the replay's time in s and what is said about the clearance; None without one."""
     browser = findReplay(scene)
-    text = findNode(scene, "vtkMRMLTextNode", _role(_CLEARANCE))
+    text = findNode(scene, "vtkMRMLTextNode", _CLEARANCE)
     if browser is None or text is None or browser.GetMasterSequenceNode() is None:
         return None
     if browser.GetSelectedItemNumber() < 0:
@@ -172,11 +177,10 @@ def moment(scene: Any) -> tuple[float, str] | None:
 
 
 def findReplay(scene: Any) -> Any | None:
-    return findNode(scene, "vtkMRMLSequenceBrowserNode", _role("browser"))
+    return findNode(scene, "vtkMRMLSequenceBrowserNode", _BROWSER)
 
 
 def isReplayOf(scene: Any, trialId: str) -> bool:
-    """Return whether the scene contains the replay of this trial with all its nodes."""
     browser = findReplay(scene)
     parts = (
         ("vtkMRMLLinearTransformNode", _PLACE),
@@ -189,24 +193,15 @@ def isReplayOf(scene: Any, trialId: str) -> bool:
         browser is not None
         and browser.GetAttribute(TRIAL_ATTRIBUTE) == trialId
         and browser.GetMasterSequenceNode() is not None
-        and all(findNode(scene, className, _role(part)) is not None for className, part in parts)
+        and all(findNode(scene, className, part) is not None for className, part in parts)
     )
-
-
-def stopReplay(scene: Any) -> None:
-    browser = findReplay(scene)
-    if browser is not None:
-        browser.SetPlaybackActive(False)
 
 
 def removeReplay(scene: Any, rest: Callable[[float], None] = lambda _share: None) -> None:
     """Remove the replay and all its nodes from the scene; `rest` is as of `showReplay`."""
-    nodes = scene.GetNodes()
-    ours = [nodes.GetItemAsObject(n) for n in range(nodes.GetNumberOfItems())]
-    ours = [n for n in ours if (n.GetAttribute(ROLE_ATTRIBUTE) or "").startswith(_role(""))]
+    ours = _nodesOfReplay(scene, "vtkMRMLNode")
     # First what would show each change of the others.
-    ours.sort(key=lambda node: not node.IsA("vtkMRMLSequenceBrowserNode"))
-    for node in ours:
+    for node in sorted(ours, key=lambda node: not node.IsA("vtkMRMLSequenceBrowserNode")):
         if node.GetScene() is None:
             continue
         if node.IsA("vtkMRMLDisplayableNode") and node.GetDisplayNode() is not None:
@@ -222,9 +217,13 @@ def emptyReplay(scene: Any) -> Iterator[None]:
 
     To be called before the scene is closed, which would delete thousands of them at once.
     """
-    nodes = nodesOfClass(scene, "vtkMRMLSequenceNode")
-    ours = [n for n in nodes if (n.GetAttribute(ROLE_ATTRIBUTE) or "").startswith(_role(""))]
-    return itertools.chain.from_iterable(map(_slicesOf, ours))
+    sequences = _nodesOfReplay(scene, "vtkMRMLSequenceNode")
+    return itertools.chain.from_iterable(map(_slicesOf, sequences))
+
+
+def _nodesOfReplay(scene: Any, className: str) -> list[Any]:
+    nodes = nodesOfClass(scene, className)
+    return [n for n in nodes if (n.GetAttribute(ROLE_ATTRIBUTE) or "").startswith(Role.REPLAY)]
 
 
 def _slicesOf(sequence: Any) -> Iterator[None]:
@@ -236,45 +235,39 @@ def _slicesOf(sequence: Any) -> Iterator[None]:
             yield
 
 
-def _rows(times: np.ndarray) -> np.ndarray:
-    """Return which samples are shown: about ten a second, the first and the last."""
-    wanted = np.arange(times[0], times[-1], 1.0 / SAMPLE_HZ)
-    return np.unique([*np.searchsorted(times, wanted), len(times) - 1])
-
-
-def _toolStates(tool: Any, poses: np.ndarray) -> Any:
-    for pose in poses:
-        state = type(tool)()
+def _toolStates(times: np.ndarray, poses: np.ndarray) -> Iterator[tuple[float, Any]]:
+    for time, pose in zip(times, poses, strict=True):
+        state = slicer.vtkMRMLLinearTransformNode()
         state.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(pose))
-        yield state
+        yield time, state
 
 
-def _touchStates(touches: Any, trajectory: Trajectory) -> Any:
+def _touchStates(trajectory: Trajectory) -> Iterator[tuple[float, Any]]:
     """Yield the touches made so far, at the start and at each touch."""
     made = trajectory.touches
     for count in range(len(made) + 1):
-        state = type(touches)()
+        state = slicer.vtkMRMLMarkupsFiducialNode()
         state.SetLocked(True)
         for touch in made[:count]:
             state.AddControlPoint(vtk.vtkVector3d(*touch.position_mm), touch.label)
         yield made[count - 1].time_s if count else float(trajectory.times_s[0]), state
 
 
-def _traceStates(trace: Any, trajectory: Trajectory) -> Any:
+def _traceStates(trajectory: Trajectory) -> Iterator[tuple[float, Any]]:
     """Yield what has been traced so far, at the start and after some points each."""
     made = trajectory.traced
     places = np.array([point.position_mm for point in made])
     for count in (*range(0, len(made), POINTS_A_STATE), len(made)):
-        state = type(trace)()
+        state = slicer.vtkMRMLModelNode()
         state.SetAndObservePolyData(pointCloud(places[:count]))
         yield made[count - 1].time_s if count else float(trajectory.times_s[0]), state
 
 
-def _clearanceStates(clearance: np.ndarray) -> Any:
-    for value in clearance:
+def _clearanceStates(times: np.ndarray, clearance: np.ndarray) -> Iterator[tuple[float, Any]]:
+    for time, value in zip(times, clearance, strict=True):
         state = slicer.vtkMRMLTextNode()
         state.SetText(f"{fixed(value, 1)} mm")
-        yield state
+        yield time, state
 
 
 def _showTool(scene: Any, name: str, tool: Any) -> None:
@@ -288,23 +281,7 @@ def _showTool(scene: Any, name: str, tool: Any) -> None:
     tube.SetNumberOfSides(16)
     tube.CappingOn()
     tube.Update()
-    model = _node(scene, "vtkMRMLModelNode", _TIP, name)
+    model = findOrAddNode(scene, "vtkMRMLModelNode", _TIP, name)
     model.SetAndObservePolyData(tube.GetOutput())
     model.GetDisplayNode().SetColor(TOOL_COLOR)
     model.SetAndObserveTransformNodeID(tool.GetID())
-
-
-def _prepareTouches(touches: Any) -> None:
-    touches.SetLocked(True)
-    display = touches.GetDisplayNode()
-    display.SetSelectedColor(TOUCH_COLOR)
-    display.SetGlyphScale(2.5)
-    display.SetTextScale(3.5)
-
-
-def _node(scene: Any, className: str, part: str, name: str) -> Any:
-    return findOrAddNode(scene, className, _role(part), name)
-
-
-def _role(part: str) -> str:
-    return f"{Role.REPLAY} {part}"

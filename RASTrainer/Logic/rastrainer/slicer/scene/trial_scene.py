@@ -6,7 +6,6 @@ from functools import partial
 from hashlib import sha256
 from typing import Any
 
-import numpy as np
 import slicer
 
 from rastrainer import transforms
@@ -24,7 +23,6 @@ from rastrainer.slicer.scene.nodes import (
     findNode,
     findOrAddNode,
     labelsOf,
-    localPoints,
     setPoints,
 )
 from rastrainer.slicer.scene.robot import placeRobot
@@ -98,7 +96,9 @@ def checkSameTask(moving: Any | None, fixed: Any | None) -> None:
 
 
 def _stamp(node: Any) -> str:
-    content = repr(labelsOf(node)).encode() + localPoints(node).tobytes()
+    content = (
+        repr(labelsOf(node)).encode() + slicer.util.arrayFromMarkupsControlPoints(node).tobytes()
+    )
     return sha256(content).hexdigest()
 
 
@@ -128,18 +128,15 @@ def showRegistration(scene: Any, registration: Registration, moving: Any, fixed:
 
 
 def rememberLists(transformNode: Any, moving: Any, fixed: Any) -> None:
-    """Store in the transform which lists of points it was computed from."""
     transformNode.SetNodeReferenceID(MOVING_REFERENCE, moving.GetID())
     transformNode.SetNodeReferenceID(FIXED_REFERENCE, fixed.GetID())
 
 
 def movingNode(transformNode: Any) -> Any | None:
-    """Return the list of touched points that the transform was made from, if it still exists."""
     return transformNode.GetNodeReference(MOVING_REFERENCE)
 
 
 def isApplied(transformNode: Any) -> bool:
-    """Return whether the touched points are shown on the head."""
     moving = movingNode(transformNode)
     return moving is not None and moving.GetTransformNodeID() == transformNode.GetID()
 
@@ -152,11 +149,6 @@ def setApplied(transformNode: Any, applied: bool) -> None:
         if moving.GetDisplayNode() is not None:
             # On the head, the fiducials beside them have the same numbers.
             moving.GetDisplayNode().SetPointLabelsVisibility(not applied)
-
-
-def matrixOf(transformNode: Any) -> np.ndarray:
-    """Return the transform to the parent, (4, 4) float, mm."""
-    return slicer.util.arrayFromTransformMatrix(transformNode)
 
 
 PLANNED = "planned"
@@ -180,7 +172,6 @@ def showPlannedPlace(scene: Any, scenario: Scenario, moving: Any, fixed: Any) ->
 
 
 def isPlanned(transform: Any) -> bool:
-    """Return whether the transform is the planned pose rather than a registration."""
     return transform.GetAttribute(KIND_ATTRIBUTE) == PLANNED
 
 
@@ -199,6 +190,9 @@ def showTrial(
     """
     record, rigid = analysis.record, analysis.rigid
     errors = [analysis.target_errors[kind] for kind in analysis.fits]
+    # Touches that do not register alone say nothing about each other.
+    isByTouches = record.method not in TRACED_METHODS
+    isEnough = isByTouches and len(rigid.labels) > MINIMUM_POINTS[RIGID]
 
     def findFixed() -> Any:
         return showTask(scene, scenario, record.task, record.method)
@@ -207,13 +201,6 @@ def showTrial(
     later(findFixed)
     later(partial(showTouches, scene, record))
     later(lambda: showRegistration(scene, rigid, capturedPointsNode(scene), findFixed()))
-    later(lambda: showResiduals(scene, rigid, _leaveOneOut(analysis)))
+    later(lambda: showResiduals(scene, rigid, rigid.leave_one_out_mm() if isEnough else None))
     later(partial(showFits, scene, list(analysis.fits.values()), errors))
     later(partial(showResidualArrows, scene, rigid))
-
-
-def _leaveOneOut(analysis: TrialAnalysis) -> np.ndarray | None:
-    """Return how far each touch lies from where the others put it, mm, if these register alone."""
-    isByTouches = analysis.record.method not in TRACED_METHODS
-    isEnough = len(analysis.rigid.labels) > MINIMUM_POINTS[RIGID]
-    return analysis.rigid.leave_one_out_mm() if isByTouches and isEnough else None
