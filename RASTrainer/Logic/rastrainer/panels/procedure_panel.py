@@ -9,7 +9,7 @@ from rastrainer.commands import CommandName
 from rastrainer.number_text import fixed
 from rastrainer.panels.panel import Panel
 from rastrainer.panels.shown_errors import showErrors
-from rastrainer.panels.widgets import bindChecked, fillTable, setText, setUsable
+from rastrainer.panels.widgets import bind, fillTable, setText, setUsable
 from rastrainer.procedure.errors import TrajectoryErrors
 from rastrainer.protocol import Phase
 from rastrainer.slicer.link.link_status import LinkState
@@ -101,7 +101,7 @@ class ProcedurePanel(Panel):
         super().__init__(ui, session)
         self._logic = session.procedure
         self._shown: ProcedureOutcome | None = None
-        bindChecked(ui.slicesAlongCheckBox, session.settings, SLICES_LIE_ALONG)
+        bind(ui.slicesAlongCheckBox, "checked", session.settings, SLICES_LIE_ALONG)
         ui.slicesAlongCheckBox.connect("toggled(bool)", self._laySlices)
         for step in STEPS:
             getattr(ui, step.button).connect("clicked()", self._action(step))

@@ -11,13 +11,13 @@ from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import buttonTitle
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
-    bindChecked,
+    bind,
     bindChosen,
     chosenData,
     fillTable,
     setChecked,
+    setEnabled,
     setText,
-    setUsable,
     textLabel,
 )
 from rastrainer.registration.fits import AFFINE, RIGID, SIMILARITY
@@ -56,7 +56,7 @@ class RegistrationPanel(Panel):
         connectClick(ui.undoButton, lambda: self._logic.undo(), _("Nothing was undone."))
         ui.appliedCheckBox.connect("toggled(bool)", self._apply)
         ui.headColoredCheckBox.connect("toggled(bool)", self._logic.setHeadColored)
-        bindChecked(ui.headColoredCheckBox, session.settings, IS_HEAD_COLORED)
+        bind(ui.headColoredCheckBox, "checked", session.settings, IS_HEAD_COLORED)
         self._woken = session.woken
         self.listen((self._logic.changed, self._show), (session.sceneChanged, self._showApplied))
         self._show()
@@ -118,27 +118,9 @@ class RegistrationPanel(Panel):
     def _showButtons(self) -> None:
         ui = self._ui
         hasRow = self._logic.shown is not None and ui.residualsTable.currentRow() >= 0
-        setUsable(
-            ui.excludeButton,
-            hasRow,
-            _("Register again without the chosen fiducial."),
-            _("Choose a row of the table first."),
-        )
-        setUsable(
-            ui.fleButton,
-            hasRow,
-            _(
-                "Weight the chosen fiducial by 1/FLE² in the rigid fit. Only ratios matter: "
-                "others have 1 mm, and the size of the errors is estimated from the residuals."
-            ),
-            _("Choose a row of the table first."),
-        )
-        setUsable(
-            ui.undoButton,
-            self._logic.canUndo,
-            _("Undo the last change to the pairs."),
-            _("No pair was changed."),
-        )
+        setEnabled(ui.excludeButton, hasRow, _("Choose a row of the table first."))
+        setEnabled(ui.fleButton, hasRow, _("Choose a row of the table first."))
+        setEnabled(ui.undoButton, self._logic.canUndo, _("No pair was changed."))
 
     def _showResiduals(self, shown: Registration | None) -> None:
         """Show the residuals; the chosen fiducial stays chosen, whichever row it is in now."""

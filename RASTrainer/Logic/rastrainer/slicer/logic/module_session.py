@@ -21,11 +21,7 @@ from rastrainer.slicer.logic.procedure_plan_logic import ProcedurePlanLogic
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
 from rastrainer.slicer.logic.replay_logic import ReplayLogic
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
-from rastrainer.slicer.logic.scenario_logic import (
-    MethodComparisonLogic,
-    ScenarioFiles,
-    ScenarioLogic,
-)
+from rastrainer.slicer.logic.scenario_logic import ScenarioFiles, ScenarioLogic
 from rastrainer.slicer.logic.scenario_maker import ScenarioMaker
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
 from rastrainer.slicer.logic.study_logic import StudyLogic
@@ -61,6 +57,7 @@ class ModuleSession:
         work: background jobs, one after the other.
         simulator: its set-up and process.
         trainees: who trains.
+        scenarios: those that there are.
         scenario: head, tasks and robot in the scene.
         files: loads meshes and images of the displayed scenario.
         scenarioFiles: takes and gives scenarios as files, and keeps plans in them.
@@ -76,7 +73,6 @@ class ModuleSession:
         procedure: that the trial continues with.
         traces: shows the trace of the trial on the head.
         landmarks: of a head, in the scene and in scenarios.
-        methodComparison: has trials simulated and registered by every method.
         procedurePlan: of a procedure, in the scene and in scenarios.
         cohort: trials of the published study, with which CTPS compares.
         studyFile: file of the study that is not kept at an address.
@@ -120,7 +116,7 @@ class ModuleSession:
         self._scene = scene
         self._lockWait = LockWait.interactive()
         find_driver_in(places.simulator)
-        cache = ScenarioCache.below(places.assets / "scenarios", places.library)
+        self.scenarios = cache = ScenarioCache.below(places.assets / "scenarios", places.library)
         self.procedures: tuple[tuple[str, str], ...] = ()
         self.methods: tuple[str, ...] = (RegistrationMethod.FIDUCIALS.value,)
         self.cohort = read_trials(places.assets.joinpath(*PUBLISHED_STUDY))
@@ -165,7 +161,6 @@ class ModuleSession:
         self.procedure = ProcedureLogic(scene, self.link, cache.find, self.work, run)
         self.traces = TraceLogic(scene, self.link, self.work)
         self.landmarks = LandmarkLogic(scene, self.scenarioFiles)
-        self.methodComparison = MethodComparisonLogic(self.simulator)
         self.procedurePlan = ProcedurePlanLogic(scene, self.scenarioFiles)
         self.task = ""
         self.taskTitle = ""
