@@ -138,7 +138,7 @@ def test_aborted_trials_beyond_the_queue_limit_wait_for_the_next_offer(lab):
     for _ in range(2):
         for record in offered:
             lab.link.trialAborted.emit(record)
-        lab.run_until(lambda: not lab.logic._queue._waiting)
+        lab.run_until(lambda: not lab.logic._waiting)
     lab.run_until(lambda: len(lab.kept) >= MAX_WAITING)
     with Study.open(lab.path) as study:
         assert MAX_WAITING <= len(AbortedTrials(study).of("T-001")) <= len(offered)

@@ -2,87 +2,87 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
+from functools import partial
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from rastrainer.commands import CommandName
 from rastrainer.number_text import fixed
-from rastrainer.panels.panel import Panel
-from rastrainer.panels.shown_errors import showErrors
+from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.widgets import bindChecked, fillTable, setText, setUsable
 from rastrainer.procedure.errors import TrajectoryErrors
 from rastrainer.protocol import Phase
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
-from rastrainer.slicer.logic.procedure_logic import ProcedureLogic, ProcedureStatus
+from rastrainer.slicer.logic.procedure_logic import ProcedureStatus
 from rastrainer.slicer.settings import SLICES_LIE_ALONG
 from rastrainer.slicer.translation import _
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 
 
+FEED_MM, FEED_MM_S = 1.0, 2.0
+"""How far one press of a button feeds drill or instrument, and how fast."""
+
+
 class _Step(NamedTuple):
-    """A button: its widget's name, the phases it belongs to, what it does, and its tool tip."""
+    """A button: its widget's name, the phases it belongs to, its command and its tool tip."""
 
     button: str
     phases: tuple[Phase, ...]
-    do: Callable[[ProcedureLogic], None]
+    command: str
     tip: str
+    arguments: Mapping[str, float] = MappingProxyType({})
 
 
-def _sends(name: str) -> Callable[[ProcedureLogic], None]:
-    return lambda logic: logic.command(name)
+def _feeding(button: str, velocityMmS: float, tip: str) -> _Step:
+    arguments = {"velocityMmS": velocityMmS, "durationS": FEED_MM / FEED_MM_S}
+    return _Step(button, (Phase.DRILLING, Phase.INSERTING), CommandName.FEED, tip, arguments)
 
 
-_VERIFY, _ALIGN = (Phase.VERIFYING,), (Phase.ALIGNING,)
-_DRILL, _INSERT = (Phase.DRILLING,), (Phase.INSERTING,)
 STEPS = (
     _Step(
         "acceptButton",
-        _VERIFY,
-        _sends(CommandName.ACCEPT_REGISTRATION),
+        (Phase.VERIFYING,),
+        CommandName.ACCEPT_REGISTRATION,
         _("Continue with the registration in use; what comes next depends on it."),
     ),
     _Step(
         "registerAgainButton",
-        _VERIFY,
-        _sends(CommandName.REGISTER_AGAIN),
+        (Phase.VERIFYING,),
+        CommandName.REGISTER_AGAIN,
         _("Touch all points again."),
     ),
     _Step(
         "alignButton",
-        _ALIGN,
-        _sends(CommandName.ALIGN_GUIDE),
+        (Phase.ALIGNING,),
+        CommandName.ALIGN_GUIDE,
         _("Let the robot bring the guide onto the planned line."),
     ),
-    _Step("lockButton", _ALIGN, _sends(CommandName.LOCK_GUIDE), _("Lock the guide where it is.")),
     _Step(
-        "advanceButton",
-        (*_DRILL, *_INSERT),
-        lambda logic: logic.feed(True),
-        _("Move drill or instrument 1 mm along the guide."),
+        "lockButton",
+        (Phase.ALIGNING,),
+        CommandName.LOCK_GUIDE,
+        _("Lock the guide where it is."),
     ),
-    _Step(
-        "withdrawButton",
-        (*_DRILL, *_INSERT),
-        lambda logic: logic.feed(False),
-        _("Move drill or instrument 1 mm back."),
-    ),
+    _feeding("advanceButton", FEED_MM_S, _("Move drill or instrument 1 mm along the guide.")),
+    _feeding("withdrawButton", -FEED_MM_S, _("Move drill or instrument 1 mm back.")),
     _Step(
         "retractDrillButton",
-        _DRILL,
-        _sends(CommandName.RETRACT_DRILL),
+        (Phase.DRILLING,),
+        CommandName.RETRACT_DRILL,
         _("Take the drill out and align the guide again; only before it has cut bone."),
     ),
     _Step(
         "startInsertionButton",
-        _DRILL,
-        _sends(CommandName.START_INSERTION),
+        (Phase.DRILLING,),
+        CommandName.START_INSERTION,
         _("Replace the drill with the instrument."),
     ),
     _Step(
         "releaseButton",
-        _INSERT,
-        _sends(CommandName.RELEASE_INSTRUMENT),
+        (Phase.INSERTING,),
+        CommandName.RELEASE_INSTRUMENT,
         _("Leave the instrument where it is."),
     ),
 )
@@ -100,15 +100,16 @@ class ProcedurePanel(Panel):
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
         self._logic = session.procedure
-        self._shown: ProcedureOutcome | None = None
         bindChecked(ui.slicesAlongCheckBox, session.settings, SLICES_LIE_ALONG)
         ui.slicesAlongCheckBox.connect("toggled(bool)", self._laySlices)
         for step in STEPS:
-            getattr(ui, step.button).connect("clicked()", self._action(step))
+            send = partial(self._logic.command, step.command, step.arguments)
+            connectClick(getattr(ui, step.button), send, _("The command was not sent."))
         ui.procedureErrorsTable.connect("itemSelectionChanged()", self._jumpToTarget)
         self.listen(
             (self._logic.changed, self.showState),
-            (self._logic.answered, self._showMessage),
+            (self._logic.answered, partial(setText, ui.procedureMessageText)),
+            (self._logic.outcomeChanged, self._showOutcome),
             (session.link.statusChanged, self.showState),
         )
         self._laySlices()
@@ -117,14 +118,17 @@ class ProcedurePanel(Panel):
 
     def showState(self, *_arguments: Any) -> None:
         """Show the progress of the procedure."""
-        ui, status = self._ui, self._logic.status
+        ui, status, isFailed = self._ui, self._logic.status, self._logic.isRegistrationFailed
         isConnected = self._session.link.status.state is LinkState.CONNECTED
         setText(ui.procedureStateText, stateText(status, isConnected))
-        setText(ui.procedureInstructionText, self._instruction() if isConnected else "")
+        advice = instruction(status)
+        if isFailed:
+            advice = _("The touches could not be registered: have all points touched again.")
+        setText(ui.procedureInstructionText, advice if isConnected else "")
         for step in STEPS:
             isReady = status.isRegistered or Phase.VERIFYING not in step.phases
             # If registration fails, the only remedy is to touch again.
-            isReady |= step.button == "registerAgainButton" and self._logic.isRegistrationFailed
+            isReady |= isFailed and step.command == CommandName.REGISTER_AGAIN
             isNow = status.isUnderWay and status.phase in [phase.value for phase in step.phases]
             when = _(" or ").join(WHEN[phase] for phase in step.phases)
             reason = _("Only {when}.").format(when=when)
@@ -133,20 +137,6 @@ class ProcedurePanel(Panel):
             if not isConnected:
                 reason = _("Connect to the simulator first.")
             setUsable(getattr(ui, step.button), isConnected and isNow and isReady, step.tip, reason)
-        if self._logic.outcome is not self._shown:
-            self._showOutcome()
-
-    def _instruction(self) -> str:
-        if self._logic.isRegistrationFailed:
-            return _("The touches could not be registered: have all points touched again.")
-        return instruction(self._logic.status)
-
-    def _action(self, step: _Step) -> Callable[[], None]:
-        def act() -> None:
-            with showErrors(_("The command was not sent.")):
-                step.do(self._logic)
-
-        return act
 
     def _laySlices(self, *_checked: bool) -> None:
         self._session.slices.liesAlong = self._ui.slicesAlongCheckBox.checked
@@ -154,19 +144,15 @@ class ProcedurePanel(Panel):
 
     def _showOutcome(self) -> None:
         ui, outcome = self._ui, self._logic.outcome
-        self._shown = outcome
         each = () if outcome is None else outcome.analysis.trajectories
         fillTable(ui.procedureErrorsTable, map(_row, each), [_tip(errors) for errors in each])
         ui.procedureErrorsTable.visible = outcome is not None
         setText(ui.procedureScoreText, "" if outcome is None else scoreText(outcome))
 
     def _jumpToTarget(self) -> None:
-        row = self._ui.procedureErrorsTable.currentRow()
-        if self._shown is not None and 0 <= row < len(self._shown.analysis.trajectories):
-            self._session.slices.show(self._shown.analysis.trajectories[row].trajectory.target_ras)
-
-    def _showMessage(self, sentence: str) -> None:
-        setText(self._ui.procedureMessageText, sentence)
+        row, outcome = self._ui.procedureErrorsTable.currentRow(), self._logic.outcome
+        if outcome is not None and 0 <= row < len(outcome.analysis.trajectories):
+            self._session.slices.show(outcome.analysis.trajectories[row].trajectory.target_ras)
 
 
 def stateText(status: ProcedureStatus, isConnected: bool) -> str:

@@ -7,24 +7,19 @@ from dataclasses import dataclass
 from typing import Any
 
 from rastrainer.commands import CommandName
-from rastrainer.igtl.client import Reply
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.logic.conversation import Question, Steps, converse
 from rastrainer.slicer.logic.training_logic import knownNumber
 from rastrainer.slicer.program.child_process import Run, runHere
 from rastrainer.slicer.scene.procedure_lines import showPlannedLines, showProcedureErrors
 from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.delivered_trial import REGISTER_OPEN
-from rastrainer.trial.analysis import TrialAnalysis
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.touch_registration import GivenPoints, TouchRegistration
-
-FEED_MM, FEED_MM_S = 1.0, 2.0
-"""How far one press of a button feeds drill or instrument, and how fast."""
-
 
 @dataclass(frozen=True)
 class ProcedureStatus:
@@ -32,10 +27,7 @@ class ProcedureStatus:
 
     Attributes:
         name: of the procedure; empty where the trial has none.
-        phase: of the trial.
         trajectory: number of the current line, from 0.
-        trajectories: how many there are.
-        isRegistered: whether a registration is in use.
         entryDistanceMm: of the planned entry from the guide's axis; None where there is no guide.
         angleDeg: between guide and planned line; None where there is no guide.
         standOffMm: of the guide's tip from the entry; None where there is no guide.
@@ -57,20 +49,18 @@ class ProcedureStatus:
     @classmethod
     def of(cls, state: Mapping[str, Any]) -> ProcedureStatus:
         """Return the procedure's part of the simulator's state, which may hold anything."""
-        procedure = state.get("procedure")
+        phase, procedure = str(state.get("phase", Phase.IDLE.value)), state.get("procedure")
         if not isinstance(procedure, Mapping):
-            return cls(phase=str(state.get("phase", Phase.IDLE.value)))
+            return cls(phase=phase)
+        lengths = ("entryDistanceMm", "angleDeg", "standOffMm", "lastCheckMm")
         return cls(
             name=str(procedure.get("name", "")),
-            phase=str(state.get("phase", Phase.IDLE.value)),
+            phase=phase,
             trajectory=int(knownNumber(procedure.get("trajectory")) or 0),
             trajectories=int(knownNumber(procedure.get("trajectories")) or 0),
             isRegistered=procedure.get("registrationInUse") is True,
-            entryDistanceMm=knownNumber(procedure.get("entryDistanceMm")),
-            angleDeg=knownNumber(procedure.get("angleDeg")),
-            standOffMm=knownNumber(procedure.get("standOffMm")),
             feedMm=knownNumber(procedure.get("feedMm")) or 0.0,
-            lastCheckMm=knownNumber(procedure.get("lastCheckMm")),
+            **{name: knownNumber(procedure.get(name)) for name in lengths},
         )
 
     @property
@@ -126,22 +116,10 @@ class ProcedureLogic:
         )
 
     def close(self) -> None:
-        """Stop listening to the link."""
         self._listening.close()
 
     def command(self, name: str, arguments: Mapping[str, Any] | None = None) -> None:
         self._link.send(name, arguments, lambda reply: self.answered.emit(reply.error))
-
-    def feed(self, forward: bool) -> None:
-        """Move drill or instrument by a millimeter along the guide."""
-        velocity = FEED_MM_S if forward else -FEED_MM_S
-        arguments = {"velocityMmS": velocity, "durationS": FEED_MM / FEED_MM_S}
-        self.command(CommandName.FEED, arguments)
-
-    def takeScored(self, analysis: TrialAnalysis, isOtherOpen: bool) -> None:
-        """Take the errors of a scored trial, and show them unless another trial is played."""
-        if analysis.procedure is not None and not isOtherOpen:
-            self.showOutcome(analysis.procedure)
 
     def showOutcome(self, outcome: ProcedureOutcome | None) -> None:
         """Show lines and errors of a procedure in place of others; None for those of no trial."""
@@ -171,43 +149,28 @@ class ProcedureLogic:
             self._registering = ""
         elif status.name and self._registering != trialId:
             self._registering = trialId
-            self._register(trialId)
+            converse(self._link, self._work, self._registeringTouches(trialId))
 
     def _beginAgain(self) -> None:
         self._registering = ""
 
-    def _register(self, trialId: str) -> None:
+    def _registeringTouches(self, trialId: str) -> Steps:
         """Have the touches of the open trial registered, and the procedure continue with that."""
+        try:
+            tasks = yield Question(CommandName.LIST_TASKS, {})
+            answer = yield Question(CommandName.GET_TRIAL, {"trialId": trialId})
 
-        def ask(name: str, arguments: Mapping[str, Any], take: Callable[[Reply], None]) -> None:
-            self._link.send(
-                name, arguments, lambda reply: take(reply) if reply.ok else fail(reply.error)
-            )
+            def register() -> TouchRegistration:
+                scenario = self._findScenario(str(tasks.get("scenario", "")))
+                given = GivenPoints.of_answer(answer)
+                return self._run(REGISTER_OPEN, self._work.checkWanted, given, scenario)
 
-        def askForTouches(reply: Reply) -> None:
-            scenario = str(reply.data.get("scenario", ""))
-            ask(
-                CommandName.GET_TRIAL,
-                {"trialId": trialId},
-                lambda reply: self._work.do(
-                    lambda: self._registered(reply.data, scenario), use, fail
-                ),
-            )
-
-        def use(registered: TouchRegistration) -> None:
-            ask(CommandName.USE_REGISTRATION, registered.arguments(trialId), lambda _reply: None)
-
-        def fail(reason: Exception | str) -> None:
+            registered = yield register
+            yield Question(CommandName.USE_REGISTRATION, registered.arguments(trialId))
+        except Exception as error:
             # The procedure may have continued meanwhile, with another client's registration.
             if self._registering == trialId:
                 self.isRegistrationFailed = True
-                text = _("The touches were not registered: {reason}")
-                self.answered.emit(text.format(reason=reason))
+                text = _("The touches were not registered: {reason}").format(reason=error)
+                self.answered.emit(text)
                 self.changed.emit()
-
-        ask(CommandName.LIST_TASKS, {}, askForTouches)
-
-    def _registered(self, answer: Mapping[str, Any], scenarioName: str) -> TouchRegistration:
-        scenario = self._findScenario(scenarioName)
-        progress = self._work.checkWanted
-        return self._run(REGISTER_OPEN, progress, GivenPoints.of_answer(answer), scenario)
