@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.commands import CommandName
 from rastrainer.igtl.content import String
 from rastrainer.protocol import DeviceName
 from rastrainer.scenario.points import LABELS
@@ -114,17 +113,6 @@ def test_failures_after_the_procedure_has_moved_on_are_not_shown(theater):
     run_until_received(theater.link)
     assert theater.said == []
     assert not theater.procedure.isRegistrationFailed
-
-
-def test_each_step_sends_its_command(theater):
-    procedure = theater.procedure
-    procedure.command(CommandName.LOCK_GUIDE)
-    theater.run_until(lambda: theater.sent("LockGuide"))
-    procedure.feed(True)
-    procedure.feed(False)
-    theater.run_until(lambda: len(theater.sent("Feed")) == 2)
-    moved = [each["velocityMmS"] * each["durationS"] for each in theater.sent("Feed")]
-    assert moved == [1.0, -1.0]
 
 
 @pytest.mark.parametrize(

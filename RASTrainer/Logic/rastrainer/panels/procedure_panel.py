@@ -20,7 +20,6 @@ from rastrainer.slicer.settings import SLICES_LIE_ALONG
 from rastrainer.slicer.translation import _
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 
-
 FEED_MM, FEED_MM_S = 1.0, 2.0
 """How far one press of a button feeds drill or instrument, and how fast."""
 

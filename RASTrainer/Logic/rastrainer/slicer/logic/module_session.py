@@ -327,7 +327,8 @@ class ModuleSession:
         record, present = analysis.record, self.training.status
         self.plan.takeTruth(analysis)
         isOtherOpen = self._isTrialOpen() and present.trialId != record.trial_id
-        self.procedure.takeScored(analysis, isOtherOpen)
+        if analysis.procedure is not None and not isOtherOpen:
+            self.procedure.showOutcome(analysis.procedure)
         self.replay.takeFeedback(record.trial_id, analysis.feedback)
         self._showTrainees()
 

@@ -21,6 +21,7 @@ from rastrainer.study.delivered_trial import REGISTER_OPEN
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.touch_registration import GivenPoints, TouchRegistration
 
+
 @dataclass(frozen=True)
 class ProcedureStatus:
     """State of the procedure of the simulator's trial, everything by the registration in use.
@@ -76,7 +77,8 @@ class ProcedureLogic:
     simulator waits for that as long as Slicer is connected. Nothing is revealed by it.
 
     Attributes:
-        changed: emits nothing, whenever `status` or `outcome` has changed.
+        changed: emits nothing, whenever `status` has changed.
+        outcomeChanged: emits nothing, whenever `outcome` has changed.
         answered: emits the sentence of a command that was refused, empty where it was accepted.
         status: of the trial's procedure.
         outcome: of the procedure that was scored last; None before, and during the next one.
@@ -100,6 +102,7 @@ class ProcedureLogic:
             run: runs the function that does so.
         """
         self.changed = Signal()
+        self.outcomeChanged = Signal()
         self.answered = Signal()
         self.status = ProcedureStatus()
         self.outcome: ProcedureOutcome | None = None
@@ -128,22 +131,23 @@ class ProcedureLogic:
             showPlannedLines(self._scene, None)
         else:
             showProcedureErrors(self._scene, outcome.analysis)
-        self.changed.emit()
+        self.outcomeChanged.emit()
 
     def showPlan(self, scenario: Scenario) -> None:
         named = [each for each in scenario.procedures if each.name == self.status.name]
         showPlannedLines(self._scene, named[0] if named else None)
 
     def _follow(self, state: Mapping[str, Any]) -> None:
-        status, trialId = ProcedureStatus.of(state), str(state.get("trialId", ""))
-        shown = self.status, self.outcome
+        before, trialId = self.status, str(state.get("trialId", ""))
+        self.status = status = ProcedureStatus.of(state)
         if trialId != self._trialId:
             self._trialId = trialId
-            self.outcome = None if status.name else self.outcome
+            if status.name and self.outcome is not None:
+                self.outcome = None
+                self.outcomeChanged.emit()
         isWaiting = status.phase == Phase.VERIFYING.value and not status.isRegistered
         self.isRegistrationFailed = self.isRegistrationFailed and isWaiting
-        self.status = status
-        if shown != (self.status, self.outcome):
+        if status != before:
             self.changed.emit()
         if not isWaiting:
             self._registering = ""

@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 
 from rastrainer.commands import CommandName
-from rastrainer.igtl.client import Reply
 from rastrainer.protocol import Phase
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.logic.conversation import Question, Steps, converse
 from rastrainer.slicer.logic.training_logic import knownNumber
 from rastrainer.slicer.scene.error_colors import colorSkin, removeHeadColors
 from rastrainer.slicer.scene.nodes import (
@@ -80,7 +80,6 @@ class TraceLogic:
         )
 
     def close(self) -> None:
-        """Stop listening to the link."""
         self._listening.close()
 
     def begin(self, scenario: Scenario) -> None:
@@ -103,11 +102,7 @@ class TraceLogic:
             # The head that is to be colored is still being read.
             return
         self._isAsking, self._asked = True, self._clock()
-        self._link.send(
-            CommandName.GET_TRIAL,
-            {"trialId": wanted.trialId},
-            lambda reply: self._take(reply, wanted),
-        )
+        converse(self._link, self._work, self._updating(self._scenario, wanted))
 
     def _follow(self, state: Mapping[str, Any]) -> None:
         trace, wasShown = state.get("trace"), self._wanted is not None
@@ -128,34 +123,27 @@ class TraceLogic:
     def _beginAgain(self) -> None:
         self._isAsking, self._shown = False, None
 
-    def _take(self, reply: Reply, wanted: _Wanted) -> None:
-        scenario = self._scenario
-        if not reply.ok or scenario is None:
-            self._giveUp(wanted)
-            return
-        self._work.do(
-            lambda: self._followed(scenario, reply.data, wanted.isDrawing),
-            lambda trace: self._show(trace, wanted),
-            lambda _error: self._giveUp(wanted),
-        )
+    def _updating(self, scenario: Scenario, wanted: _Wanted) -> Steps:
+        try:
+            answer = yield Question(CommandName.GET_TRIAL, {"trialId": wanted.trialId})
 
-    def _followed(
-        self, scenario: Scenario, answer: Mapping[str, Any], isDrawing: bool
-    ) -> FollowedTrace:
-        """Return the trace on the head; called in the background."""
-        if self._follower is None:
-            self._follower = TraceFollower(scenario)
-        return self._follower.follow(GivenPoints.of_answer(answer, least_traced=0), isDrawing)
+            def follow() -> FollowedTrace:
+                if self._follower is None:
+                    self._follower = TraceFollower(scenario)
+                given = GivenPoints.of_answer(answer, least_traced=0)
+                return self._follower.follow(given, wanted.isDrawing)
 
-    def _show(self, trace: FollowedTrace, wanted: _Wanted) -> None:
-        self._isAsking = False
-        if self._wanted is not None and self._wanted.trialId == wanted.trialId:
+            trace = yield follow
+        except Exception:
+            # Wait for another state: what cannot be shown is reported at registration.
             self._shown = wanted
-            showTrace(self._scene, trace, wanted.isGuided)
-
-    def _giveUp(self, wanted: _Wanted) -> None:
-        """Wait for another state: what cannot be shown is reported at registration."""
-        self._isAsking, self._shown = False, wanted
+        else:
+            isSameTrial = self._wanted is not None and self._wanted.trialId == wanted.trialId
+            if isSameTrial and self._scenario is scenario:
+                self._shown = wanted
+                showTrace(self._scene, trace, wanted.isGuided)
+        finally:
+            self._isAsking = False
 
 
 MODEL, MARKUPS = "vtkMRMLModelNode", "vtkMRMLMarkupsFiducialNode"
@@ -176,11 +164,25 @@ def showTrace(scene: Any, trace: FollowedTrace, isGuided: bool) -> None:
     drawAsPoints(node)
     node.SetAndObservePolyData(pointCloud(trace.places))
     head = findNode(scene, MODEL, Role.HEAD_MODEL)
-    if isGuided and len(trace.places):
-        _colorHead(head, trace.away_mm)
-    elif head is not None:
+    if head is None:
+        pass
+    elif not (isGuided and len(trace.places)):
         removeHeadColors(head, DISTANCE_SCALARS)
-    _showNext(scene, trace.next_place if isGuided else None)
+    # Between the trial's scene and this trace another head may have been shown.
+    elif surfaceOf(head) and head.GetPolyData().GetNumberOfPoints() == len(trace.away_mm):
+        near = np.minimum(trace.away_mm, FARTHEST_MM)
+        colorSkin(head, DISTANCE_SCALARS, near, (0.0, FARTHEST_MM), _("To trace (mm)"))
+    if trace.next_place is None or not isGuided:
+        removeNode(scene, MARKUPS, Role.NEXT_PLACE)
+        return
+    node = findOrAddNode(scene, MARKUPS, Role.NEXT_PLACE, _("Draw here next"))
+    setPoints(node, (_("Next"),), trace.next_place[None])
+    node.SetLocked(True)
+    display = node.GetDisplayNode()
+    display.SetSelectedColor(NEXT_COLOR)
+    display.SetGlyphScale(4.0)
+    display.SetTextScale(3.5)
+    display.SetOccludedVisibility(True)
 
 
 def forgetTrace(scene: Any) -> None:
@@ -191,28 +193,3 @@ def forgetTrace(scene: Any) -> None:
     if head is not None and surfaceOf(head):
         removeHeadColors(head, DISTANCE_SCALARS)
         head.GetPolyData().GetPointData().RemoveArray(DISTANCE_SCALARS)
-
-
-def _colorHead(head: Any | None, away_mm: np.ndarray) -> None:
-    # Between the trial's scene and this trace another head may have been shown.
-    if (
-        head is not None
-        and surfaceOf(head)
-        and head.GetPolyData().GetNumberOfPoints() == len(away_mm)
-    ):
-        near = np.minimum(away_mm, FARTHEST_MM)
-        colorSkin(head, DISTANCE_SCALARS, near, (0.0, FARTHEST_MM), _("To trace (mm)"))
-
-
-def _showNext(scene: Any, place: np.ndarray | None) -> None:
-    if place is None:
-        removeNode(scene, MARKUPS, Role.NEXT_PLACE)
-        return
-    node = findOrAddNode(scene, MARKUPS, Role.NEXT_PLACE, _("Draw here next"))
-    setPoints(node, (_("Next"),), place[None])
-    node.SetLocked(True)
-    display = node.GetDisplayNode()
-    display.SetSelectedColor(NEXT_COLOR)
-    display.SetGlyphScale(4.0)
-    display.SetTextScale(3.5)
-    display.SetOccludedVisibility(True)
