@@ -138,11 +138,11 @@ def test_a_cleared_scene_does_not_turn_back_the_trials_clock(room):
 def test_a_trial_is_paused_resumed_and_aborted(room):
     room.tell()
     room.run_until(lambda: room.logic.status.phase == "running")
-    room.logic.pause()
+    room.logic.command("Pause")
     room.run_until(lambda: room.sent("Pause"))
     room.tell(phase="paused")
     room.run_until(lambda: room.logic.status.phase == "paused")
-    room.logic.resume()
+    room.logic.command("Resume")
     room.run_until(lambda: room.sent("Resume"))
     room.logic.abort(TRIAL)
     room.run_until(lambda: room.sent("Abort"))
