@@ -86,7 +86,7 @@ def enrolled(lab):
 
 
 def test_without_a_protocol_trainees_practice_freely(lab):
-    assert (lab.logic.protocol(), lab.logic.progress()) == (None, None)
+    assert (lab.logic.study.protocol(), lab.logic.progress()) == (None, None)
     lab.logic.startTrial("task-2", "desktop")
     lab.room.run_until(lambda: lab.room.sent("StartTask"))
 

@@ -148,7 +148,7 @@ class StudyPanel(Panel):
         ui = self._ui
         self._judged = None
         try:
-            protocol, progress = self._logic.protocol(), self._logic.progress()
+            protocol, progress = self._logic.study.protocol(), self._logic.progress()
         except InputError as error:
             protocol = progress = None
             setText(ui.protocolText, str(error))
