@@ -33,6 +33,7 @@ from rastrainer.slicer.scene.score_tables import (
     showStandings,
     standings,
 )
+from rastrainer.slicer.scene.trial_replay import moment
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.values import StoredTrial
@@ -88,8 +89,12 @@ class ScorePanel(Panel):
         path = askWhereToSave(_("Export all trials"), "trials.csv", "CSV (*.csv)")
         if path is not None:
             with showErrors(_("The trials were not exported.")):
+                from rastrainer.study.tidy_csv import write_histories
+
                 written = self._work.run(
-                    lambda report: self._trainees.exportHistories(path, report)
+                    lambda report: self._trainees.inStudy(
+                        lambda study: write_histories(study, path), report
+                    )
                 )
                 if written is not None:
                     text = _(
@@ -128,7 +133,10 @@ class ScorePanel(Panel):
     def _showReplay(self) -> None:
         setChecked(self._ui.showTablesButton, self._session.layout.purpose == TABLES)
         if not self._work.isUnderWay:
-            setText(self._ui.replayText, self._session.replay.sentence)
+            now = moment(slicer.mrmlScene)
+            text = _("{time:.1f} s, clearance {clearance}")
+            shown = "" if now is None else text.format(time=now[0], clearance=now[1])
+            setText(self._ui.replayText, shown)
 
     def _fold(self, isFolded: bool) -> None:
         if isFolded:

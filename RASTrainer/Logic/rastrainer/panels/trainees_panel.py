@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.panels.application import CALIBRATION, CURVE, askWhereToSave, showChart
-from rastrainer.panels.panel import Panel
+from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
@@ -25,10 +26,11 @@ from rastrainer.panels.widgets import (
 )
 from rastrainer.protocol import Mode
 from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.logic.trainee_logic import calibration
 from rastrainer.slicer.scene.tables import showCalibration, showLearningCurve
 from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS
 from rastrainer.slicer.translation import _
-from rastrainer.study.database.aborted_trials import StoredAbortedTrial
+from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAbortedTrial
 from rastrainer.study.database.database import EXAMPLE, study_place
 from rastrainer.study.database.values import StoredTrial, Trainee, day_of
 from rastrainer.study.outcomes import short_mode_title, task_title
@@ -43,26 +45,32 @@ class TraineesPanel(Panel):
         self._isStateShown = False
         self._isErasing = False
         self._deletion = self.cancelableWork(
-            lambda sentence: self._showMessage("{text}", text=sentence),
-            self._noteErasing,
-            self._showDeleting,
+            self._showMessage, self._noteErasing, self._showDeleting
         )
         self._showPlace()
         ui.studyPathLineEdit.connect("currentPathChanged(QString)", self.chooseStudy)
         ui.studyAddressLineEdit.connect("editingFinished()", self.chooseStudyAddress)
-        ui.traineeComboBox.connect("activated(int)", self.chooseTrainee)
+        ui.traineeComboBox.connect(
+            "activated(int)", lambda _index: self._logic.choose(chosenData(ui.traineeComboBox))
+        )
         ui.archivedCheckBox.connect("toggled(bool)", self._show)
         ui.consentCheckBox.connect("toggled(bool)", self.setConsent)
-        connectAsPressed(ui.archiveButton, self._archiving)
-        ui.exportTraineeButton.connect("clicked()", self.exportTrainee)
+        connectAsPressed(ui.archiveButton, lambda: partial(self.setArchived, not self._isArchived))
+        connectClick(ui.exportTraineeButton, self.exportTrainee, _("The trainee was not exported."))
         self._deletion.connectButton(
             ui.deleteTraineeButton, self.deleteTrainee, _("The trainee was not deleted.")
         )
         ui.createTraineeButton.connect("clicked()", self.createTrainee)
-        ui.learningCurveButton.connect("clicked()", self.showLearningCurve)
-        ui.calibrationButton.connect("clicked()", self.showCalibration)
+        connectClick(
+            ui.learningCurveButton,
+            self.showLearningCurve,
+            _("The learning curve cannot be shown."),
+        )
+        connectClick(
+            ui.calibrationButton, self.showCalibration, _("The target errors cannot be shown.")
+        )
         ui.traineesCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
-        ui.exportHistoryButton.connect("clicked()", self.exportHistory)
+        connectClick(ui.exportHistoryButton, self.exportHistory, _("The history was not exported."))
         self._isArchived = self._hasTrainee = False
         self.listen((self._logic.changed, self._show), (session.sceneChanged, self._showPlots))
         self._show()
@@ -91,19 +99,18 @@ class TraineesPanel(Panel):
 
     def _showNoStudy(self, path: Path) -> None:
         """Say why what was chosen is no study; the beginning of a path is none either, yet."""
-        sentence = ""
+        sentence, study = "", self._session.studyFile
         if path.is_dir():
             sentence = _(
                 "{path} is a folder: choose the file of a study in it, or enter the name of a new "
                 "one, such as {example}. Until then, {study} stays open."
-            )
+            ).format(path=path, example=path / "study.db", study=study)
         elif path.is_file():
             sentence = _(
                 "{path} is no study, whose name ends with .db. Until one is chosen, {study} stays "
                 "open."
-            )
-        example, study = path / "study.db", self._session.studyFile
-        self._showMessage(sentence, isState=True, path=path, example=example, study=study)
+            ).format(path=path, study=study)
+        self._showMessage(sentence, isState=True)
 
     def chooseStudyAddress(self) -> None:
         """Continue with the study at another address; without one, with that of the file."""
@@ -128,9 +135,6 @@ class TraineesPanel(Panel):
         ui.studyPathLineEdit.enabled = isFile
         ui.studyPathLineEdit.currentPath = str(self._session.studyFile)
 
-    def chooseTrainee(self, _index: int = 0) -> None:
-        self._logic.choose(chosenData(self._ui.traineeComboBox))
-
     def createTrainee(self) -> None:
         """Add a trainee and choose them."""
         ui = self._ui
@@ -148,37 +152,35 @@ class TraineesPanel(Panel):
                 setChecked(self._ui.consentCheckBox, not consent)
                 raise
 
-    def archive(self) -> None:
-        """Archive the chosen trainee, who stays in view."""
-        with showErrors(_("The trainee was not archived.")):
-            self._ui.archivedCheckBox.checked = True
-            self._logic.setArchived(True)
-
-    def unarchive(self) -> None:
-        with showErrors(_("The trainee was not restored.")):
-            self._logic.setArchived(False)
+    def setArchived(self, isArchived: bool) -> None:
+        """Archive the chosen trainee, who stays in view, or bring them back."""
+        failed = _("The trainee was not archived.")
+        with showErrors(failed if isArchived else _("The trainee was not restored.")):
+            if isArchived:
+                self._ui.archivedCheckBox.checked = True
+            self._logic.setArchived(isArchived)
 
     def exportTrainee(self) -> None:
         """Write everything about the chosen trainee into a file."""
-        name = f"{self._logic.chosen}.json"
-        path = askWhereToSave(_("Export the trainee"), name, "JSON (*.json)")
+        from rastrainer.study.trainee_data import export_trainee
+
+        chosen = self._logic.chosen
+        path = askWhereToSave(_("Export the trainee"), f"{chosen}.json", "JSON (*.json)")
         if path is not None:
-            with showErrors(_("The trainee was not exported.")):
-                count = self._logic.export(path)
-                self._showMessage(
-                    _("{count} trials were written to {path}."), count=count, path=path
-                )
+            self._showWritten(export_trainee(self._logic.study, chosen, path), path)
 
     def exportHistory(self) -> None:
-        """Write the trials of the chosen trainee as a table."""
-        name = f"{self._logic.chosen}.csv"
-        path = askWhereToSave(_("Export the history"), name, "CSV (*.csv)")
+        """Write the trials of the chosen trainee as a table, the aborted ones beside it."""
+        from rastrainer.study.tidy_csv import write_history
+
+        chosen = self._logic.chosen
+        path = askWhereToSave(_("Export the history"), f"{chosen}.csv", "CSV (*.csv)")
         if path is not None:
-            with showErrors(_("The history was not exported.")):
-                count = self._logic.exportHistory(path)
-                self._showMessage(
-                    _("{count} trials were written to {path}."), count=count, path=path
-                )
+            self._showWritten(write_history(self._logic.study, [chosen], path), path)
+
+    def _showWritten(self, count: int, path: Path) -> None:
+        text = _("{count} trials were written to {path}.")
+        self._showMessage(text.format(count=count, path=path))
 
     def deleteTrainee(self) -> None:
         """Delete the chosen trainee for good, after asking."""
@@ -195,13 +197,13 @@ class TraineesPanel(Panel):
             text = _("{name} was deleted with {trials} trials and {journals} journals.").format(
                 name=name, trials=erased.trials, journals=erased.journals
             )
-            self._showMessage("{text}", text=" ".join((text, *erased.warnings)))
+            self._showMessage(" ".join((text, *erased.warnings)))
 
     def _noteErasing(self, step: str, _share: float) -> None:
         """Show that the deletion has begun, which nothing can undo."""
         if step and not self._isErasing:
             self._isErasing = True
-            self._showMessage("{text}", text=step)
+            self._showMessage(step)
             self._showDeleting()
 
     def _showDeleting(self) -> None:
@@ -228,29 +230,23 @@ class TraineesPanel(Panel):
         if not self._ui.learningCurveButton.checked:
             self._session.layout.giveBack(CURVE)
             return
-        with showErrors(_("The learning curve cannot be shown.")):
-            trials = self._logic.history()
-            chart = showLearningCurve(slicer.mrmlScene, self._logic.chosen, trials)
-            showChart(self._session.layout, chart)
+        chart = showLearningCurve(slicer.mrmlScene, self._logic.chosen, self._logic.history())
+        showChart(self._session.layout, chart)
 
     def showCalibration(self) -> None:
         """Plot true over expected TRE of the study's trials, or restore the user's layout."""
         if not self._ui.calibrationButton.checked:
             self._session.layout.giveBack(CALIBRATION)
             return
-        with showErrors(_("The target errors cannot be shown.")):
-            found = self._logic.calibration()
-            chart = showCalibration(slicer.mrmlScene, found)
-            showChart(self._session.layout, chart, CALIBRATION)
-            self._showMessage("{text}", text=" ".join(found.sentences()))
+        found = self._logic.inStudy(calibration)
+        chart = showCalibration(slicer.mrmlScene, found)
+        showChart(self._session.layout, chart, CALIBRATION)
+        self._showMessage(" ".join(found.sentences()))
 
     def _showPlots(self) -> None:
         purpose = self._session.layout.purpose
         setChecked(self._ui.learningCurveButton, purpose == CURVE)
         setChecked(self._ui.calibrationButton, purpose == CALIBRATION)
-
-    def _archiving(self) -> Callable[[], None]:
-        return self.unarchive if self._isArchived else self.archive
 
     def _fold(self, isFolded: bool) -> None:
         if isFolded:
@@ -262,53 +258,54 @@ class TraineesPanel(Panel):
         try:
             trainees = self._logic.trainees(archived=ui.archivedCheckBox.checked)
             trainee, history = self._logic.chosenTrainee(), self._logic.history()
-            aborted = self._logic.aborted()
+            aborted = (
+                () if trainee is None else AbortedTrials(self._logic.study).of(trainee.pseudonym)
+            )
         except InputError as error:
-            self._showMessage("{error}", isState=True, error=error)
+            self._showMessage(str(error), isState=True)
             return
         entries = [(_("Choose a trainee"), ""), *((_entry(t), t.pseudonym) for t in trainees)]
         ui.pseudonymLineEdit.placeholderText = self._logic.study.next_pseudonym()
         fillComboBox(ui.traineeComboBox, entries, trainee.pseudonym if trainee else "")
         setChecked(ui.consentCheckBox, trainee is not None and trainee.consent)
-        self._hasTrainee = hasTrainee = trainee is not None
+        self._hasTrainee = trainee is not None
         self._showDeleting()
-        reason = _("Choose a trainee first.")
-        ui.consentCheckBox.enabled = hasTrainee
+        ui.consentCheckBox.enabled = self._hasTrainee
         self._isArchived = trainee is not None and trainee.archived
         ui.archiveButton.text = _("Bring back") if self._isArchived else _("Archive")
-        for button, tip in (
-            (ui.archiveButton, _("Hide the trainee from the list, or show them again.")),
-            (ui.exportTraineeButton, _("Write all that is known about the trainee to a file.")),
-        ):
-            setUsable(button, hasTrainee, tip, reason)
-        hasTrials = _("The trainee has no trials yet.") if hasTrainee else reason
-        for button, tip in (
-            (ui.learningCurveButton, _("Show score and time over the trials.")),
-            (ui.exportHistoryButton, _("Write the trainee's trials to a CSV file.")),
-        ):
-            setUsable(button, bool(history), tip, hasTrials)
+        nobody = _("Choose a trainee first.")
+        nothing = _("The trainee has no trials yet.") if self._hasTrainee else nobody
+        hide = _("Hide the trainee from the list, or show them again.")
+        export = _("Write all that is known about the trainee to a file.")
+        setUsable(ui.archiveButton, self._hasTrainee, hide, nobody)
+        setUsable(ui.exportTraineeButton, self._hasTrainee, export, nobody)
+        curve, table = (
+            _("Show score and time over the trials."),
+            _("Write the trainee's trials to a CSV file."),
+        )
+        setUsable(ui.learningCurveButton, bool(history), curve, nothing)
+        setUsable(ui.exportHistoryButton, bool(history), table, nothing)
         if trainee is not None:
-            self._showMessage(
-                _("{name}, since {day}. Trials: {count}. {aborted}"),
-                isState=True,
+            text = _("{name}, since {day}. Trials: {count}. {aborted}").format(
                 name=trainee.pseudonym,
                 count=len(history),
                 day=day_of(trainee.created_utc),
                 aborted=_aborted(aborted),
             )
+            self._showMessage(text, isState=True)
         elif self._isStateShown or not ui.traineeText.text:
-            sentence = _("Choose who is training, or create a new trainee.")
-            self._showMessage(sentence, isState=True)
+            text = _("Choose who is training, or create a new trainee.")
+            self._showMessage(text, isState=True)
         fillTable(
             ui.historyTable,
             (_historyRow(number, trial) for number, trial in enumerate(history, start=1)),
             [trial.record.started_utc for trial in history],
         )
 
-    def _showMessage(self, sentence: str, isState: bool = False, **values: Any) -> None:
+    def _showMessage(self, sentence: str, isState: bool = False) -> None:
         """Show a sentence; one about the present state, until there is another state."""
         self._isStateShown = isState
-        setText(self._ui.traineeText, sentence.format(**values).rstrip())
+        setText(self._ui.traineeText, sentence.rstrip())
 
 
 def _entry(trainee: Trainee) -> str:

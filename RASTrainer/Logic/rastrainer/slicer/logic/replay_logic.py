@@ -67,7 +67,6 @@ class ReplayLogic:
 
         Args:
             openStudy: opens the study, in any thread; it may wait for a lock there.
-            work: in which trials are judged.
             findScenario: gives the scenario of a name, in any thread.
             robot: folder of the URDF.
             isTrialOpen: returns whether the scene shows a trial that is being played.
@@ -86,9 +85,8 @@ class ReplayLogic:
         self._robot = robot
         self._run = run
         self._isBeingScored = isBeingScored
-        self._awaitedId = ""
-        self._known: tuple[str, TrialFeedback | Exception] | None = None
-        self._requestedId = ""
+        self._awaitedId = self._requestedId = ""
+        self._known: tuple[str, TrialFeedback | Exception | None] = ("", None)
         self._until: float | None = None
         self._outdated: Iterator[None] = iter(())
         self.isReleasing = False
@@ -96,7 +94,7 @@ class ReplayLogic:
     def feedback(self, trial: StoredTrial) -> TrialFeedback | None:
         """Return the feedback on a trial; None while it is being prepared."""
         trialId = trial.record.trial_id
-        if self._known is not None and self._known[0] == trialId:
+        if self._known[0] == trialId:
             if isinstance(self._known[1], Exception):
                 raise self._known[1]
             return self._known[1]
@@ -119,10 +117,11 @@ class ReplayLogic:
 
     def retryFeedback(self) -> None:
         """Forget why there was no feedback: the study or the scenarios may have changed."""
-        if self._known is not None and isinstance(self._known[1], Exception):
-            self._known = None
+        if isinstance(self._known[1], Exception):
+            self._known = ("", None)
 
     def keepStates(self) -> None:
+        """Have the states of the replay released slice by slice, before the scene is closed."""
         self._outdated = itertools.chain(self._outdated, emptyReplay(self._scene))
 
     def forgetScene(self) -> None:
@@ -141,26 +140,18 @@ class ReplayLogic:
 
     def showWorstTouch(self, trial: StoredTrial, progress: Progress = no_progress) -> None:
         """Show again how the worst touch came about; otherwise as `show`."""
-        if self._known is None or self._known[0] != trial.record.trial_id:
+        trialId = trial.record.trial_id
+        if self._known[0] != trialId:
             judged = inBackground(lambda report: self._judge(trial, report), progress)
-            self.takeFeedback(trial.record.trial_id, judged)
+            self.takeFeedback(trialId, judged)
         feedback = self.feedback(trial)
         interval = None if feedback is None else feedback.worst.replay_s
         if interval is None:
-            trialId = trial.record.trial_id
-            inBackground(lambda report: self._track(trialId, report), progress)
+            inBackground(lambda r: self._run(READ_TRACK, r, self._records, trialId), progress)
             raise InputError(_("The journal does not say when the worst touch was made."))
         self._put(trial, progress)
         goTo(self._scene, interval[0])
         self._play(interval[1])
-
-    @property
-    def sentence(self) -> str:
-        """Time and clearance of the replay; empty if there is none."""
-        now = moment(self._scene)
-        if now is None:
-            return ""
-        return _("{time:.1f} s, clearance {clearance}").format(time=now[0], clearance=now[1])
 
     def process(self) -> None:
         """Stop where the worst touch was made; request feedback that no score has given."""
@@ -183,38 +174,36 @@ class ReplayLogic:
             scored = analysis.scored_as(trial.score, scenario, trial.truth)
             return with_progress(scored, study).feedback
 
-    def _track(self, trialId: str, progress: Progress) -> ReplayTrack:
-        return self._run(READ_TRACK, progress, self._records, trialId)
-
-    def _procedure(self, trial: StoredTrial, progress: Progress) -> ProcedureOutcome | None:
-        """Return the errors of a trial's procedure; None where they are not known."""
-        if trial.record.procedure is None or trial.truth is None:
-            return None
-        scenario = self._findScenario(trial.record.scenario)
-        return self._run(EXPLAIN_PROCEDURE, progress, trial.record, scenario, trial.truth)
-
     def _put(self, trial: StoredTrial, progress: Progress) -> None:
-        self._checkNoTrialIsOpen()
         record, rigid = trial.record, trial.registrations.get(RIGID)
+        self._checkNoTrialIsOpen()
         if rigid is None:
             raise InputError(_("It is not known where the head was: the trial was not registered."))
         stopReplay(self._scene)
         isThere = isReplayOf(self._scene, record.trial_id)
-        track, chain, scenario, outcome = inBackground(
-            lambda report: (
-                None if isThere else self._track(record.trial_id, report),
-                readArmChain(self._robot / URDF),
-                self._findScenario(record.scenario),
-                self._procedure(trial, report),
-            ),
-            progress,
-        )
+
+        def read(report: Progress) -> tuple[ReplayTrack | None, Scenario, ProcedureOutcome | None]:
+            track = outcome = None
+            if not isThere:
+                track = self._run(READ_TRACK, report, self._records, record.trial_id)
+            scenario = self._findScenario(record.scenario)
+            if record.procedure is not None and trial.truth is not None:
+                outcome = self._run(EXPLAIN_PROCEDURE, report, record, scenario, trial.truth)
+            return track, scenario, outcome
+
+        track, scenario, outcome = inBackground(read, progress)
         self._checkNoTrialIsOpen()
         if isThere and not isReplayOf(self._scene, record.trial_id):
             raise InputError(_("The scene was changed before the trial could be shown."))
-        showScenario(self._scene, scenario)
-        showTask(self._scene, scenario, record.task, record.method)
-        showTouches(self._scene, record)
+
+        def inTurn(change: Callable[[], object]) -> None:
+            change()
+            progress(_("Showing"), 0.0)
+            self._checkNoTrialIsOpen()
+
+        showScenario(self._scene, scenario, inTurn)
+        inTurn(lambda: showTask(self._scene, scenario, record.task, record.method))
+        inTurn(lambda: showTouches(self._scene, record))
         self.shown.emit()
         self.procedureShown.emit(outcome)
         if track is None:
@@ -223,6 +212,7 @@ class ReplayLogic:
             # What shows the scenario has its turn before the states go into the scene.
             progress(_("Showing"), 0.0)
             name, matrix = f"{record.trainee}, {record.task}", np.reshape(rigid.matrix, (4, 4))
+            chain = readArmChain(self._robot / URDF)
             browser = showReplay(
                 self._scene, name, track, chain, matrix, lambda share: progress(_("Showing"), share)
             )

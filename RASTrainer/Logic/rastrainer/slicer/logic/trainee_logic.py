@@ -6,7 +6,7 @@ import contextlib
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
@@ -14,10 +14,9 @@ from rastrainer.slicer.background_work import CancelableUntilBegun, inBackground
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
-from rastrainer.study.curriculum.curriculum import Curriculum, read_curriculum
+from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import CurriculumStanding
-from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAbortedTrial
 from rastrainer.study.database.database import StudyBusyError
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial, Trainee
@@ -27,6 +26,8 @@ from rastrainer.work_progress import Progress, no_progress
 if TYPE_CHECKING:
     from rastrainer.study.trainee_data import Erasure
     from rastrainer.study.tre_calibration import TreCalibration
+
+T = TypeVar("T")
 
 LOOK_EVERY_S = 1.0
 
@@ -66,7 +67,6 @@ class TraineeLogic:
 
     @property
     def study(self) -> Study:
-        """The study."""
         if self._study is None:
             self._study = self._openStudy()
             self._version = self._study.database.version()
@@ -164,62 +164,30 @@ class TraineeLogic:
         self.changed.emit()
         return erased
 
-    def export(self, path: Path) -> int:
-        """Write everything about the chosen trainee into a JSON file; return the trials' number."""
-        from rastrainer.study.trainee_data import export_trainee
-
-        return export_trainee(self.study, self.chosen, path)
-
-    def exportHistory(self, path: Path) -> int:
-        """Write the trials of the chosen trainee as a CSV file; return their number.
-
-        Aborted ones go into a second file beside it, see `write_history`.
-        """
-        from rastrainer.study.tidy_csv import write_history
-
-        return write_history(self.study, [self.chosen], path)
-
-    def exportHistories(self, path: Path, progress: Progress = no_progress) -> tuple[int, int]:
-        """Write the trials of all who consented to research as a CSV file.
-
-        Args:
-            path: of the file.
-            progress: called many times a second meanwhile; it may let the application draw.
-
-        Returns:
-            The number of trials, and of the trainees who are left out.
-        """
-
-        def write(_report: Progress) -> tuple[int, int]:
-            from rastrainer.study.tidy_csv import write_histories
-
-            with self._openPatiently() as study:
-                return write_histories(study, path)
-
-        return inBackground(write, progress)
-
-    def calibration(self, progress: Progress = no_progress) -> TreCalibration:
-        """Return true and expected TRE of all trials of the study, of all trainees.
+    def inStudy(self, do: Callable[[Study], T], progress: Progress = no_progress) -> T:
+        """Return what `do` returns, in the background, where it may wait for a lock.
 
         Args:
             progress: called many times a second meanwhile; it may let the application draw.
         """
 
-        def read(_report: Progress) -> TreCalibration:
-            from rastrainer.study.tre_calibration import calibration_of
-
+        def work(_report: Progress) -> T:
             with self._openPatiently() as study:
-                everyone = (*study.trainees(), *study.trainees(archived=True))
-                histories = (study.history(trainee.pseudonym) for trainee in everyone)
-                return calibration_of(trial for history in histories for trial in history)
+                return do(study)
 
-        return inBackground(read, progress)
-
-    def aborted(self) -> tuple[StoredAbortedTrial, ...]:
-        return AbortedTrials(self.study).of(self.chosen) if self.chosenTrainee() else ()
+        return inBackground(work, progress)
 
     def history(self) -> tuple[StoredTrial, ...]:
         return self.study.history(self.chosen) if self.chosenTrainee() else ()
+
+
+def calibration(study: Study) -> TreCalibration:
+    """Return true and expected TRE of all trials of the study, of all trainees."""
+    from rastrainer.study.tre_calibration import calibration_of
+
+    everyone = (*study.trainees(), *study.trainees(archived=True))
+    histories = (study.history(trainee.pseudonym) for trainee in everyone)
+    return calibration_of(trial for history in histories for trial in history)
 
 
 class CurriculumLogic:
@@ -254,17 +222,8 @@ class CurriculumLogic:
         """Return the standing of each active trainee with a curriculum, by pseudonym."""
         return dict(sorted(self._standings.items()))
 
-    def choose(self, path: Path, isForEverybody: bool) -> Curriculum:
-        """Have the chosen trainee, or everybody, follow a file's curriculum from now on."""
-        curriculum = read_curriculum(path)
-        self._choose(curriculum, isForEverybody)
-        return curriculum
-
-    def end(self, isForEverybody: bool) -> None:
-        """Have the chosen trainee, or everybody, follow no curriculum from now on."""
-        self._choose(None, isForEverybody)
-
-    def _choose(self, curriculum: Curriculum | None, isForEverybody: bool) -> None:
+    def choose(self, curriculum: Curriculum | None, isForEverybody: bool) -> None:
+        """Have the chosen trainee, or everybody, follow a curriculum, or none, from now on."""
         name = "" if isForEverybody else self._trainees.chosen
         if not name and not isForEverybody:
             raise InputError(_("Choose a trainee in the section Trainees first."))
@@ -294,11 +253,12 @@ class CurriculumLogic:
         self.changed.emit()
 
     def _tell(self, name: str, standing: CurriculumStanding | None) -> None:
-        message = CurriculumMessage(name) if standing is None else standing.message(name)
+        nothing = CurriculumMessage(name)
+        message = nothing if standing is None else standing.message(name)
         self._standings.pop(name, None)
         if standing is not None:
             self._standings[name] = standing
-        if self._sent.get(name, CurriculumMessage(name)) == message:
+        if self._sent.get(name, nothing) == message:
             return
         self._sent[name] = message
         if standing is None:
