@@ -20,7 +20,7 @@ from rastrainer.panels.widgets import (
     setText,
     setUsable,
 )
-from rastrainer.protocol import TRIAL_RUN, Phase
+from rastrainer.protocol import TRIAL_RUN, Phase, StepKind
 from rastrainer.slicer.link.link_status import LinkState, notInstalled
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.next_step import NextAction, NextStep, Section, WorkflowState, nextStep
@@ -59,7 +59,8 @@ class NextStepPanel(Panel):
         self._actions = actions
         self._sections = {each: getattr(ui, f"{each.value}CollapsibleButton") for each in Section}
         self._now = WorkflowState(session.link.status)
-        self._step: NextStep | None = None
+        self._step = nextStep(self._now)
+        self._section: Section | None = None
         connectAsPressed(ui.nextStepButton, lambda: partial(self._do, self._step))
         ui.hostLineEdit.connect("textChanged(QString)", self.showState)
         ui.programPathLineEdit.connect("currentPathChanged(QString)", self._lookAtSetup)
@@ -130,8 +131,7 @@ class NextStepPanel(Panel):
         self._showStep(nextStep(now))
 
     def _showStep(self, step: NextStep) -> None:
-        ui, before = self._ui, self._step
-        self._step = step
+        ui, self._step = self._ui, step
         if ui.nextStepButton.text != buttonTitle(step.title):
             ui.nextStepButton.text = buttonTitle(step.title)
             # A new text removes the shortcut.
@@ -140,7 +140,8 @@ class NextStepPanel(Panel):
         tip = _("The next thing to do ({shortcut})").format(shortcut=SHORTCUT)
         setUsable(ui.nextStepButton, isPossible, tip, step.sentence)
         setText(ui.nextStepText, step.sentence)
-        if before is None or before.section is not step.section:
+        if self._section is not step.section:
+            self._section = step.section
             for each, button in self._sections.items():
                 button.collapsed = each is not step.section
 
@@ -159,7 +160,7 @@ class NextStepPanel(Panel):
             if progress is not None and step is not None:
                 now = replace(
                     now,
-                    studyStep=step.kind,
+                    studyStep=StepKind(step.kind),
                     needsRepeatReason=bool(progress.repeat_sentence),
                     studySentence=progress.repeat_sentence or instruction(step),
                 )
@@ -174,8 +175,8 @@ class NextStepPanel(Panel):
         trial, now = self._session.training.status, self._now
         if trial.phase == Phase.RUNNING.value:
             hasPracticed = now.hasPracticed or trial.trainee == now.trainee
-            ended = {"isUnscored": False, "hasNewResult": False, "isResultShown": False}
-            self._now = replace(now, hasPracticed=hasPracticed, **ended)
+            now = replace(now, hasPracticed=hasPracticed, isUnscored=False)
+            self._now = replace(now, hasNewResult=False, isResultShown=False)
         self.showState()
 
     def _noteScored(self, analysis: TrialAnalysis) -> None:

@@ -49,12 +49,13 @@ class ScorePanel(Panel):
         super().__init__(ui, session)
         self._trainees = session.trainees
         self._work = self.cancelableWork(self._showMessage, self._showProgress, self._showUsable)
+        self._trial: StoredTrial | None = None
         self._newTrial = ""
         self._worst = ""
         self._named: str | None = None
         ui.trialComboBox.connect("activated(int)", self._showTrial)
-        ui.showTablesButton.connect("clicked()", self.showTables)
-        ui.exportScoresButton.connect("clicked()", self.exportScores)
+        connectClick(ui.showTablesButton, self.showTables, _("The tables cannot be shown."))
+        connectClick(ui.exportScoresButton, self.exportScores, _("The trials were not exported."))
         ui.reportButton.connect("clicked()", self.writeReport)
         ui.scoreCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
         self._work.connectButton(ui.replayButton, self.replay, _("The trial is not shown."))
@@ -72,36 +73,30 @@ class ScorePanel(Panel):
         if not self._ui.showTablesButton.checked:
             self._session.layout.giveBack(TABLES)
             return
-        with showErrors(_("The tables cannot be shown.")):
-            trial = self._trial()
-            if trial is None:
-                return
-            rows = [*scoreRows(trial), *ctpsRows(trial, self._session.cohort)]
-            showStandings(slicer.mrmlScene, self._standings(trial))
-            showMotion(slicer.mrmlScene, motionRows(trial))
-            showTable(self._session.layout, showScore(slicer.mrmlScene, rows))
-            self._showMessage(
-                _("Score, Comparison and Motion metrics are now tables in the scene.")
-            )
+        trial, cohort, scene = self._trial, self._session.cohort, slicer.mrmlScene
+        if trial is None:
+            return
+        showStandings(scene, standings(self._trainees.study, trial, cohort))
+        showMotion(scene, motionRows(trial))
+        table = showScore(scene, [*scoreRows(trial), *ctpsRows(trial, cohort)])
+        showTable(self._session.layout, table)
+        self._showMessage(_("Score, Comparison and Motion metrics are now tables in the scene."))
 
     def exportScores(self) -> None:
         """Write all trials of the study as a table."""
-        path = askWhereToSave(_("Export all trials"), "trials.csv", "CSV (*.csv)")
-        if path is not None:
-            with showErrors(_("The trials were not exported.")):
-                from rastrainer.study.tidy_csv import write_histories
+        from rastrainer.study.tidy_csv import write_histories
 
-                written = self._work.run(
-                    lambda report: self._trainees.inStudy(
-                        lambda study: write_histories(study, path), report
-                    )
-                )
-                if written is not None:
-                    text = _(
-                        "{count} trials were written to {path}. Trainees left out because they did "
-                        "not consent to research: {leftOut}."
-                    )
-                    self._showMessage(text.format(count=written[0], path=path, leftOut=written[1]))
+        path = askWhereToSave(_("Export all trials"), "trials.csv", "CSV (*.csv)")
+        if path is None:
+            return
+        read, write = self._trainees.inStudy, lambda study: write_histories(study, path)
+        written = self._work.run(lambda report: read(write, report))
+        if written is not None:
+            text = _(
+                "{count} trials were written to {path}. Trainees left out because they did not "
+                "consent to research: {leftOut}."
+            )
+            self._showMessage(text.format(count=written[0], path=path, leftOut=written[1]))
 
     def writeReport(self) -> None:
         """Write the report of the whole study into a folder, and open it."""
@@ -121,14 +116,16 @@ class ScorePanel(Panel):
 
     def replay(self) -> None:
         """Show the trial again in the 3D view."""
-        trial = self._chosenTrial()
-        self._work.run(lambda report: self._session.replay.show(trial, report))
-        fitThreeDViews()
+        trial = self._trial
+        if trial is not None:
+            self._work.run(lambda report: self._session.replay.show(trial, report))
+            fitThreeDViews()
 
     def replayWorstTouch(self) -> None:
         """Show again how the worst touch came about."""
-        trial = self._chosenTrial()
-        self._work.run(lambda report: self._session.replay.showWorstTouch(trial, report))
+        trial = self._trial
+        if trial is not None:
+            self._work.run(lambda report: self._session.replay.showWorstTouch(trial, report))
 
     def _showReplay(self) -> None:
         setChecked(self._ui.showTablesButton, self._session.layout.purpose == TABLES)
@@ -143,9 +140,8 @@ class ScorePanel(Panel):
             self._session.layout.giveBack(TABLES)
 
     def _noteNewTrial(self, analysis: TrialAnalysis) -> None:
-        record = analysis.record
-        if record.trainee == self._trainees.chosen:
-            self._newTrial = record.trial_id
+        if analysis.record.trainee == self._trainees.chosen:
+            self._newTrial = analysis.record.trial_id
 
     def _show(self) -> None:
         try:
@@ -162,54 +158,38 @@ class ScorePanel(Panel):
         self._showTrial()
 
     def _showTrial(self, _index: int = 0) -> None:
-        ui = self._ui
+        ui, cohort, trialId = self._ui, self._session.cohort, chosenData(self._ui.trialComboBox)
         self._session.replay.retryFeedback()
         try:
-            trial = self._trial()
-            beside = [] if trial is None else self._standings(trial)
+            study = self._trainees.study
+            self._trial = trial = study.trial(trialId) if trialId else None
+            beside = [] if trial is None else standings(study, trial, cohort)
         except InputError as error:
             self._named = None
             self._showMessage(str(error))
             return
         scores = [] if trial is None else scoreRows(trial)
-        ctps = [] if trial is None else ctpsRows(trial, self._session.cohort)
+        ctps = [] if trial is None else ctpsRows(trial, cohort)
         motion = [] if trial is None else motionRows(trial)
-        fillTable(
-            ui.scoreTable,
-            ((row.title, row.text, row.note) for row in scores),
-            [row.tip for row in scores],
-        )
+        rows = ((row.title, row.text, row.note) for row in scores)
+        fillTable(ui.scoreTable, rows, [row.tip for row in scores])
         fillTable(ui.ctpsTable, ((row.title, row.text) for row in ctps), [row.note for row in ctps])
         setText(ui.ctpsText, CTPS_WARNING if ctps else "")
         fillTable(ui.standingsTable, (_standingRow(s) for s in beside))
-        fillTable(
-            ui.motionTable, ((row.title, row.text) for row in motion), [row.note for row in motion]
-        )
-        self._nameTrial(trial)
+        notes = [row.note for row in motion]
+        fillTable(ui.motionTable, ((row.title, row.text) for row in motion), notes)
+        # Once for each trial, so that messages about an export or a report stay.
+        if trialId != self._named:
+            self._named = trialId
+            self._showMessage(_title(trial))
         self._showFeedback()
-
-    def _nameTrial(self, trial: StoredTrial | None) -> None:
-        """Name the displayed trial once, so that messages about an export or a report stay."""
-        named = "" if trial is None else trial.record.trial_id
-        if named == self._named:
-            return
-        self._named = named
-        self._showMessage(
-            _("Choose a trainee with a scored trial.")
-            if trial is None
-            else _("{trainee}, {task}, {mode}").format(
-                trainee=trial.record.trainee,
-                task=task_title(trial.record.task),
-                mode=short_mode_title(trial.record.mode),
-            )
-        )
 
     def _showFeedback(self) -> None:
         """Show the feedback on the trial when it is known."""
         sentences: list[str] = []
         self._worst = ""
         try:
-            trial = self._trial()
+            trial = self._trial
             feedback = None if trial is None else self._session.replay.feedback(trial)
         except InputError as error:
             sentences = [str(error)]
@@ -263,19 +243,6 @@ class ScorePanel(Panel):
     def _showMessage(self, sentence: str) -> None:
         setText(self._ui.scoreMessageText, sentence)
 
-    def _trial(self) -> StoredTrial | None:
-        trialId = chosenData(self._ui.trialComboBox)
-        return self._trainees.study.trial(trialId) if trialId else None
-
-    def _chosenTrial(self) -> StoredTrial:
-        trial = self._trial()
-        if trial is None:
-            raise InputError(_("Choose a trial first."))
-        return trial
-
-    def _standings(self, trial: StoredTrial) -> list[GroupComparison]:
-        return standings(self._trainees.study, trial, self._session.cohort)
-
 
 def _reportOn(study: StudyPlace, folder: Path) -> Path:
     from rastrainer.report.report import write_report
@@ -289,6 +256,16 @@ def _entry(number: int, trial: StoredTrial) -> str:
         number=number,
         task=task_title(trial.record.task),
         day=trial.record.started_utc[:16].replace("T", " "),
+    )
+
+
+def _title(trial: StoredTrial | None) -> str:
+    if trial is None:
+        return _("Choose a trainee with a scored trial.")
+    return _("{trainee}, {task}, {mode}").format(
+        trainee=trial.record.trainee,
+        task=task_title(trial.record.task),
+        mode=short_mode_title(trial.record.mode),
     )
 
 

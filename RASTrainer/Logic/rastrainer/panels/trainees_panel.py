@@ -28,7 +28,7 @@ from rastrainer.protocol import Mode
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.trainee_logic import calibration
 from rastrainer.slicer.scene.tables import showCalibration, showLearningCurve
-from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS
+from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS, Setting
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAbortedTrial
 from rastrainer.study.database.database import EXAMPLE, study_place
@@ -42,8 +42,8 @@ class TraineesPanel(Panel):
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
         self._logic = session.trainees
-        self._isStateShown = False
-        self._isErasing = False
+        self._trainee: Trainee | None = None
+        self._isStateShown = self._isErasing = False
         self._deletion = self.cancelableWork(
             self._showMessage, self._noteErasing, self._showDeleting
         )
@@ -55,77 +55,74 @@ class TraineesPanel(Panel):
         )
         ui.archivedCheckBox.connect("toggled(bool)", self._show)
         ui.consentCheckBox.connect("toggled(bool)", self.setConsent)
+        ui.createTraineeButton.connect("clicked()", self.createTrainee)
+        ui.traineesCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
         connectAsPressed(ui.archiveButton, lambda: partial(self.setArchived, not self._isArchived))
-        connectClick(ui.exportTraineeButton, self.exportTrainee, _("The trainee was not exported."))
         self._deletion.connectButton(
             ui.deleteTraineeButton, self.deleteTrainee, _("The trainee was not deleted.")
         )
-        ui.createTraineeButton.connect("clicked()", self.createTrainee)
-        connectClick(
-            ui.learningCurveButton,
-            self.showLearningCurve,
-            _("The learning curve cannot be shown."),
-        )
-        connectClick(
-            ui.calibrationButton, self.showCalibration, _("The target errors cannot be shown.")
-        )
-        ui.traineesCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
-        connectClick(ui.exportHistoryButton, self.exportHistory, _("The history was not exported."))
-        self._isArchived = self._hasTrainee = False
+        for button, action, failure in (
+            (ui.exportTraineeButton, self.exportTrainee, _("The trainee was not exported.")),
+            (ui.exportHistoryButton, self.exportHistory, _("The history was not exported.")),
+            (ui.learningCurveButton, self.showCurve, _("The learning curve cannot be shown.")),
+            (ui.calibrationButton, self.showCalibration, _("The target errors cannot be shown.")),
+        ):
+            connectClick(button, action, failure)
         self.listen((self._logic.changed, self._show), (session.sceneChanged, self._showPlots))
         self._show()
 
+    @property
+    def _isArchived(self) -> bool:
+        return self._trainee is not None and self._trainee.archived
+
     def chooseStudy(self, path: str) -> None:
         """Continue with the study of another file, once its name is complete."""
-        isFile = isinstance(self._session.studyPlace, Path)
-        if not isFile or Path(path) == self._session.studyFile:
+        isFile, file = isinstance(self._session.studyPlace, Path), Path(path)
+        if not isFile or file == self._session.studyFile:
             return
         if not path.endswith(".db"):
-            self._showNoStudy(Path(path))
+            self._showNoStudy(file)
             return
-        folder = Path(path).parent
-        question = _("There is no folder {folder}. Make it, for a new study?").format(folder=folder)
-        if not folder.is_dir() and not slicer.util.confirmYesNoDisplay(
-            toolTip(question), _("Choose a study")
-        ):
+        question = _("There is no folder {folder}. Make it, for a new study?")
+        text, title = toolTip(question.format(folder=file.parent)), _("Choose a study")
+        if file.parent.is_dir() or slicer.util.confirmYesNoDisplay(text, title):
+            self._openStudy(file, STUDY, path)
+        else:
             self._showPlace()
-            return
-        with showErrors(_("The study cannot be used.")):
-            try:
-                self._session.chooseStudy(Path(path))
-            finally:
-                self._showPlace()
-            self._session.settings.set(STUDY, path)
 
     def _showNoStudy(self, path: Path) -> None:
         """Say why what was chosen is no study; the beginning of a path is none either, yet."""
-        sentence, study = "", self._session.studyFile
+        sentence = ""
         if path.is_dir():
             sentence = _(
                 "{path} is a folder: choose the file of a study in it, or enter the name of a new "
                 "one, such as {example}. Until then, {study} stays open."
-            ).format(path=path, example=path / "study.db", study=study)
+            )
         elif path.is_file():
             sentence = _(
                 "{path} is no study, whose name ends with .db. Until one is chosen, {study} stays "
                 "open."
-            ).format(path=path, study=study)
-        self._showMessage(sentence, isState=True)
+            )
+        names = {"path": path, "example": path / "study.db", "study": self._session.studyFile}
+        self._showMessage(sentence.format(**names), isState=True)
 
     def chooseStudyAddress(self) -> None:
         """Continue with the study at another address; without one, with that of the file."""
-        session, text = self._session, self._ui.studyAddressLineEdit.text.strip()
+        address = self._ui.studyAddressLineEdit.text.strip()
+        self._openStudy(address or self._session.studyFile, STUDY_ADDRESS, address)
+
+    def _openStudy(self, where: str | Path, setting: Setting[str], chosen: str) -> None:
         with showErrors(_("The study cannot be used.")):
             try:
-                place = study_place(text or session.studyFile)
-                if text and isinstance(place, Path):
+                place = study_place(where)
+                if setting is STUDY_ADDRESS and chosen and isinstance(place, Path):
                     raise InputError(_("An address looks like {text}.").format(text=EXAMPLE))
-                if place == session.studyPlace:
+                if place == self._session.studyPlace:
                     return
-                session.chooseStudy(place)
+                self._session.chooseStudy(place)
             finally:
                 self._showPlace()
-            session.settings.set(STUDY_ADDRESS, text)
+            self._session.settings.set(setting, chosen)
 
     def _showPlace(self) -> None:
         """Show where the study is; a file is chosen only if no address is."""
@@ -216,16 +213,16 @@ class TraineesPanel(Panel):
         isFile = isinstance(self._session.studyPlace, Path)
         ui.studyPathLineEdit.enabled = isFile and not isAtWork
         ui.deleteTraineeButton.text = _("Cancel") if isAtWork else _("Delete…")
+        isUsable = self._trainee is not None
+        tip = _("Delete the trainee with all trials, permanently.")
+        reason = _("Choose a trainee first.")
         if isAtWork:
-            begun = _("The deletion has begun, and can no longer be canceled.")
+            isUsable = not self._isErasing
             tip = _("Delete nothing; the study is still being opened.")
-            setUsable(ui.deleteTraineeButton, not self._isErasing, tip, begun)
-        else:
-            tip = _("Delete the trainee with all trials, permanently.")
-            reason = _("Choose a trainee first.")
-            setUsable(ui.deleteTraineeButton, self._hasTrainee, tip, reason)
+            reason = _("The deletion has begun, and can no longer be canceled.")
+        setUsable(ui.deleteTraineeButton, isUsable, tip, reason)
 
-    def showLearningCurve(self) -> None:
+    def showCurve(self) -> None:
         """Show score and time over the trials as a plot, or restore the user's layout."""
         if not self._ui.learningCurveButton.checked:
             self._session.layout.giveBack(CURVE)
@@ -264,27 +261,36 @@ class TraineesPanel(Panel):
         except InputError as error:
             self._showMessage(str(error), isState=True)
             return
-        entries = [(_("Choose a trainee"), ""), *((_entry(t), t.pseudonym) for t in trainees)]
+        self._trainee = trainee
+        archived = _("{name} (archived)")
+        entries = [
+            (
+                archived.format(name=each.pseudonym) if each.archived else each.pseudonym,
+                each.pseudonym,
+            )
+            for each in trainees
+        ]
+        entries.insert(0, (_("Choose a trainee"), ""))
         ui.pseudonymLineEdit.placeholderText = self._logic.study.next_pseudonym()
         fillComboBox(ui.traineeComboBox, entries, trainee.pseudonym if trainee else "")
         setChecked(ui.consentCheckBox, trainee is not None and trainee.consent)
-        self._hasTrainee = trainee is not None
         self._showDeleting()
-        ui.consentCheckBox.enabled = self._hasTrainee
-        self._isArchived = trainee is not None and trainee.archived
+        ui.consentCheckBox.enabled = trainee is not None
         ui.archiveButton.text = _("Bring back") if self._isArchived else _("Archive")
         nobody = _("Choose a trainee first.")
-        nothing = _("The trainee has no trials yet.") if self._hasTrainee else nobody
-        hide = _("Hide the trainee from the list, or show them again.")
-        export = _("Write all that is known about the trainee to a file.")
-        setUsable(ui.archiveButton, self._hasTrainee, hide, nobody)
-        setUsable(ui.exportTraineeButton, self._hasTrainee, export, nobody)
-        curve, table = (
-            _("Show score and time over the trials."),
-            _("Write the trainee's trials to a CSV file."),
-        )
-        setUsable(ui.learningCurveButton, bool(history), curve, nothing)
-        setUsable(ui.exportHistoryButton, bool(history), table, nothing)
+        nothing = _("The trainee has no trials yet.")
+        for button, needsTrials, tip in (
+            (ui.archiveButton, False, _("Hide the trainee from the list, or show them again.")),
+            (
+                ui.exportTraineeButton,
+                False,
+                _("Write all that is known about the trainee to a file."),
+            ),
+            (ui.learningCurveButton, True, _("Show score and time over the trials.")),
+            (ui.exportHistoryButton, True, _("Write the trainee's trials to a CSV file.")),
+        ):
+            isUsable = bool(history) if needsTrials else trainee is not None
+            setUsable(button, isUsable, tip, nobody if trainee is None else nothing)
         if trainee is not None:
             text = _("{name}, since {day}. Trials: {count}. {aborted}").format(
                 name=trainee.pseudonym,
@@ -306,12 +312,6 @@ class TraineesPanel(Panel):
         """Show a sentence; one about the present state, until there is another state."""
         self._isStateShown = isState
         setText(self._ui.traineeText, sentence.rstrip())
-
-
-def _entry(trainee: Trainee) -> str:
-    if trainee.archived:
-        return _("{name} (archived)").format(name=trainee.pseudonym)
-    return trainee.pseudonym
 
 
 def _aborted(aborted: Sequence[StoredAbortedTrial]) -> str:

@@ -277,11 +277,14 @@ class SliceFollower:
         self._along.show(tip, axis)
 
     def _showNextPoint(self) -> None:
-        status, point = self._training.status, ()
-        fixed = findNode(self._scene, FIDUCIALS, Role.FIXED_FIDUCIALS)
+        status, fixed = (
+            self._training.status,
+            findNode(self._scene, FIDUCIALS, Role.FIXED_FIDUCIALS),
+        )
+        point: tuple[str, ...] = ()
         task = "" if fixed is None else fixed.GetAttribute(TASK_ATTRIBUTE) or ""
         # The fiducials of a trial that has just started come a moment later than its first point.
-        if status.isOpen and status.nextPoint and task.endswith(f"/{status.task}"):
+        if fixed and status.isOpen and status.nextPoint and task.endswith(f"/{status.task}"):
             point = (task, fixed.GetAttribute(CONTENT_ATTRIBUTE) or "", status.nextPoint)
         if point == self._shownPoint:
             return
