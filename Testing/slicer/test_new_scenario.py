@@ -176,7 +176,7 @@ def test_a_found_head_becomes_a_segment_with_the_displayed_base_and_threshold(ho
 def test_a_draft_is_hidden_once_a_scenario_is_made_and_shown_when_it_is_found_again(
     host, monkeypatch
 ):
-    made = host.widget.logic.session.scenario.find("colin27")
+    made = host.widget.logic.session.scenarios.find("colin27")
     monkeypatch.setattr(scenario_maker, "planScenario", lambda *_arguments: [])
     monkeypatch.setattr(scenario_maker, "load_scenario", lambda _folder: made)
     monkeypatch.setattr(head_preview, "findSkin", found_once(head_preview.findSkin))

@@ -88,7 +88,7 @@ def test_the_registration_method_is_chosen_beside_the_task(surgery):
 def test_a_head_without_landmarks_offers_only_its_fiducials(surgery):
     host, _simulator = surgery
     session = host.widget.logic.session
-    head = replace(session.scenario.find("colin27"), landmarks=())
+    head = replace(session.scenarios.find("colin27"), landmarks=())
     host.choose("methodComboBox", "Landmarks of the face")
     session.chooseTask(head.task("task-1"), head)
     box = host.find("methodComboBox")

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from rastrainer.commands import CommandName
 from rastrainer.number_text import fixed
 from rastrainer.panels.panel import Panel, connectClick
-from rastrainer.panels.widgets import bindChecked, fillTable, setText, setUsable
+from rastrainer.panels.widgets import bind, fillTable, setText, setUsable
 from rastrainer.procedure.errors import TrajectoryErrors
 from rastrainer.protocol import Phase
 from rastrainer.slicer.link.link_status import LinkState
@@ -99,7 +99,7 @@ class ProcedurePanel(Panel):
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
         self._logic = session.procedure
-        bindChecked(ui.slicesAlongCheckBox, session.settings, SLICES_LIE_ALONG)
+        bind(ui.slicesAlongCheckBox, "checked", session.settings, SLICES_LIE_ALONG)
         ui.slicesAlongCheckBox.connect("toggled(bool)", self._laySlices)
         for step in STEPS:
             send = partial(self._logic.command, step.command, step.arguments)

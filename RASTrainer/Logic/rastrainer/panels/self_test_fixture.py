@@ -79,7 +79,7 @@ class SelfTestFixture:
 
     def touches(self) -> np.ndarray:
         """Return good touches of task 1, (15, 3) float, World, mm."""
-        scenario = self.session.scenario.find(SCENARIO)
+        scenario = self.session.scenarios.find(SCENARIO)
         noise = np.random.default_rng(SEED).normal(0.0, NOISE_MM, (len(LABELS), 3))
         return transforms.apply(
             scenario.perturbed_head_to_world(SEED), scenario.task(TASK).fiducials + noise

@@ -16,7 +16,7 @@ from rastrainer.panels.widgets import (
     GREEN,
     RED,
     YELLOW,
-    bindChecked,
+    bind,
     bindChosen,
     chosenData,
     connectAsPressed,
@@ -79,9 +79,9 @@ class TrainingPanel(Panel):
         self._logic = session.training
         modes = [(_("Desktop screen"), Mode.DESKTOP.value), (_("Headset"), Mode.HMD.value)]
         bindChosen(ui.modeComboBox, modes, session.settings, MODE)
-        bindChecked(ui.tutorialCheckBox, session.settings, IS_TUTORIAL_FIRST)
-        bindChecked(ui.slicesNextPointCheckBox, session.settings, SLICES_SHOW_NEXT_POINT)
-        bindChecked(ui.slicesToolCheckBox, session.settings, SLICES_FOLLOW_TOOL)
+        bind(ui.tutorialCheckBox, "checked", session.settings, IS_TUTORIAL_FIRST)
+        bind(ui.slicesNextPointCheckBox, "checked", session.settings, SLICES_SHOW_NEXT_POINT)
+        bind(ui.slicesToolCheckBox, "checked", session.settings, SLICES_FOLLOW_TOOL)
         for box in (ui.slicesNextPointCheckBox, ui.slicesToolCheckBox):
             box.connect("toggled(bool)", self._moveSlices)
         ui.startTrialRunButton.connect("clicked()", self.startTrialRun)

@@ -21,11 +21,7 @@ from rastrainer.slicer.logic.procedure_plan_logic import ProcedurePlanLogic
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
 from rastrainer.slicer.logic.replay_logic import ReplayLogic
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
-from rastrainer.slicer.logic.scenario_logic import (
-    MethodComparisonLogic,
-    ScenarioFiles,
-    ScenarioLogic,
-)
+from rastrainer.slicer.logic.scenario_logic import ScenarioFiles, ScenarioLogic
 from rastrainer.slicer.logic.scenario_maker import ScenarioMaker
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
 from rastrainer.slicer.logic.study_logic import StudyLogic
@@ -94,7 +90,7 @@ class ModuleSession:
         self._scene = scene
         self._lockWait = LockWait.interactive()
         find_driver_in(places.simulator)
-        cache = ScenarioCache.below(places.assets / "scenarios", places.library)
+        self.scenarios = cache = ScenarioCache.below(places.assets / "scenarios", places.library)
         self.procedures: tuple[tuple[str, str], ...] = ()
         self.methods: tuple[str, ...] = (RegistrationMethod.FIDUCIALS.value,)
         self.cohort = read_trials(places.assets.joinpath(*PUBLISHED_STUDY))
@@ -139,7 +135,6 @@ class ModuleSession:
         self.procedure = ProcedureLogic(scene, self.link, cache.find, self.work, run)
         self.traces = TraceLogic(scene, self.link, self.work)
         self.landmarks = LandmarkLogic(scene, self.scenarioFiles)
-        self.methodComparison = MethodComparisonLogic(self.simulator)
         self.procedurePlan = ProcedurePlanLogic(scene, self.scenarioFiles)
         self.task = ""
         self.taskTitle = ""

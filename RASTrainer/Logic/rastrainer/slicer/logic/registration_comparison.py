@@ -41,7 +41,7 @@ class Comparison:
     """The fits of the same pairs side by side.
 
     Attributes:
-        pairs: what was registered.
+        shown: the fit of the wanted kind; the rigid one where the pairs do not allow that kind.
         fits: by kind; those that the pairs allow, rigid always.
         localizations: by kind, the error of the touches along and across the skin; None where
             nothing but an error that is alike in all directions is known.
@@ -54,6 +54,7 @@ class Comparison:
     """
 
     pairs: Pairs
+    shown: Registration
     fits: Mapping[str, Registration]
     localizations: Mapping[str, LocalizationError | None]
     errors: Mapping[str, TargetError]
@@ -61,21 +62,21 @@ class Comparison:
     remedies: tuple[Remedy, ...]
     headErrors: np.ndarray | None
 
-    def fitOf(self, kind: str) -> Registration:
-        """Return the fit of a kind; the rigid one where the pairs do not allow that kind."""
-        return self.fits.get(kind, self.fits[RIGID])
-
-    def targetError(self, fit: Registration, place: np.ndarray) -> TargetError:
-        """Return the error to expect with one of the fits at a place, (3,) float, RAS mm."""
-        return target_error(fit, place, self.localizations[fit.kind])
+    def targetError(self, place: np.ndarray) -> TargetError:
+        """Return the error to expect with the shown fit at a place, (3,) float, RAS mm."""
+        return target_error(self.shown, place, self.localizations[self.shown.kind])
 
 
 def compareFits(request: ComparisonRequest) -> Comparison:
     """Register the pairs of a request in all ways."""
-    pairs, choices = request.pairs, request.choices
+    pairs, choices, skin = request.pairs, request.choices, request.skin
     weights = choices.weights(pairs.labels)
     fits = register_all_kinds(pairs.moving, pairs.fixed, pairs.labels, weights)
-    localizations = {kind: _localization(request.skin, fit) for kind, fit in fits.items()}
+    # Errors stated for single points replace those estimated from the skin.
+    localizations = {
+        kind: None if skin is None or fit.weights is not None else skin.localizationError(fit)
+        for kind, fit in fits.items()
+    }
     errors, leaveOneOut = {}, {}
     for kind, fit in fits.items():
         with contextlib.suppress(InputError):
@@ -89,9 +90,4 @@ def compareFits(request: ComparisonRequest) -> Comparison:
         with contextlib.suppress(InputError):
             headErrors = expected_tre(shown, request.headPoints, localizations[shown.kind])
     found = remedies(fits[RIGID], choices)
-    return Comparison(pairs, fits, localizations, errors, leaveOneOut, found, headErrors)
-
-
-def _localization(skin: SkinNormals | None, fit: Registration) -> LocalizationError | None:
-    # Errors stated for single points replace those estimated from the skin.
-    return None if skin is None or fit.weights is not None else skin.localizationError(fit)
+    return Comparison(pairs, shown, fits, localizations, errors, leaveOneOut, found, headErrors)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -12,7 +12,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
-from rastrainer.scenario.library import ListedScenario, unpack
+from rastrainer.scenario.library import unpack
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.slicer.background_work import BackgroundWork, inBackground
 from rastrainer.slicer.logic.head_preview import findSkin
@@ -48,7 +48,7 @@ from rastrainer.work_progress import Progress, no_progress
 
 
 class ScenarioLogic:
-    """What the Scenario panel does.
+    """Shows scenarios, other heads and the robot in the scene.
 
     Attributes:
         robotShown: emits nothing when the whole robot is in the scene.
@@ -68,14 +68,6 @@ class ScenarioLogic:
         self._work = work
         self._links: tuple[LinkMesh, ...] = ()
         self._isRobotComing = False
-
-    def listed(self) -> tuple[ListedScenario, ...]:
-        """Return the scenarios that come with the module and those of the user."""
-        return self._cache.listed()
-
-    def find(self, scenarioName: str) -> Scenario:
-        """Return the scenario of that name; raise `InputError` if there is none."""
-        return self._cache.find(scenarioName)
 
     def show(
         self, scenarioName: str, taskName: str, then: Callable[[], None] = lambda: None
@@ -112,8 +104,14 @@ class ScenarioLogic:
         Returns:
             The head's model, and warnings about its volume, one sentence each.
         """
-        isVolume = node.IsA("vtkMRMLVolumeNode")
-        model, warnings = self._skinOf(node, progress) if isVolume else (node, [])
+        model, warnings = node, list[str]()
+        if node.IsA("vtkMRMLVolumeNode"):
+            _body, mesh, warnings = findSkin(self._run, node, None, progress)
+            name = f"Head of {node.GetName()}"
+            model = self._scene.AddNewNodeByClass("vtkMRMLModelNode", name)
+            model.SetAndObservePolyData(meshPolyData(mesh))
+            model.CreateDefaultDisplayNodes()
+            model.GetDisplayNode().SetColor(SKIN_COLOR)
         former = findNode(self._scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
         if former is not None and former is not model:
             former.RemoveAttribute(ROLE_ATTRIBUTE)
@@ -121,15 +119,6 @@ class ScenarioLogic:
         model.SetAttribute(ROLE_ATTRIBUTE, Role.HEAD_MODEL)
         model.CreateDefaultDisplayNodes()
         model.SetDisplayVisibility(True)
-        return model, warnings
-
-    def _skinOf(self, volumeNode: Any, progress: Progress) -> tuple[Any, list[str]]:
-        _body, mesh, warnings = findSkin(self._run, volumeNode, None, progress)
-        name = f"Head of {volumeNode.GetName()}"
-        model = self._scene.AddNewNodeByClass("vtkMRMLModelNode", name)
-        model.SetAndObservePolyData(meshPolyData(mesh))
-        model.CreateDefaultDisplayNodes()
-        model.GetDisplayNode().SetColor(SKIN_COLOR)
         return model, warnings
 
     def setRobotShown(self, shown: bool) -> None:
@@ -142,9 +131,12 @@ class ScenarioLogic:
         if not shown:
             return
         if self._links or not missingLinks(self._scene):
-            self._addLinks()
+            self._addLinks(self._links)
         else:
-            self._work.do(self._readLinks, self._takeLinks, self._refuseRobot)
+            check, folder = self._work.checkWanted, self._robotFolder
+            self._work.do(
+                lambda: self._run(READ_LINKS, check, folder), self._addLinks, self._refuseRobot
+            )
 
     def forgetScene(self) -> None:
         """Stop showing the robot: the scene was cleared."""
@@ -155,40 +147,32 @@ class ScenarioLogic:
         node = robotNode(self._scene, 0)
         return self._isRobotComing or (node is not None and bool(node.GetDisplayVisibility()))
 
-    def _readLinks(self) -> tuple[LinkMesh, ...]:
-        """Return the links' meshes; called in the background."""
-        links: tuple[LinkMesh, ...] = self._run(
-            READ_LINKS, self._work.checkWanted, self._robotFolder
-        )
-        return links
-
-    def _takeLinks(self, links: tuple[LinkMesh, ...]) -> None:
-        self._links = links
-        self._addLinks()
-
     def _refuseRobot(self, error: Exception) -> None:
         self._isRobotComing = False
         self.problemFound.emit(_("The robot cannot be shown. {problem}").format(problem=error))
 
-    def _addLinks(self) -> None:
+    def _addLinks(self, links: tuple[LinkMesh, ...]) -> None:
+        """Add the links that are missing, one in each turn."""
+        self._links = links
+
+        def addLinkOf(number: int) -> None:
+            if self._isRobotComing and number in missingLinks(self._scene):
+                addLink(self._scene, number, links[number])
+                # At once, so that the views can be moved to it.
+                followPlacement(self._scene)
+
+        def finish() -> None:
+            if self._isRobotComing:
+                self._isRobotComing = False
+                self.robotShown.emit()
+
         for number in missingLinks(self._scene):
-            self._work.later(partial(self._addLink, number))
-        self._work.later(self._finishRobot)
-
-    def _addLink(self, number: int) -> None:
-        if self._isRobotComing and number in missingLinks(self._scene):
-            addLink(self._scene, number, self._links[number])
-            # At once, so that the views can be moved to it.
-            followPlacement(self._scene)
-
-    def _finishRobot(self) -> None:
-        if self._isRobotComing:
-            self._isRobotComing = False
-            self.robotShown.emit()
+            self._work.later(partial(addLinkOf, number))
+        self._work.later(finish)
 
 
 class ScenarioFiles:
-    """What the panels Scenario and Plan do with scenarios on disk.
+    """Scenarios on disk, which the simulator's program writes.
 
     `progress` is called while it works: it may let the application draw, and may raise to cancel.
     """
@@ -235,12 +219,7 @@ class ScenarioFiles:
     def savePlan(
         self, name: str, title: str, node: Any, progress: Progress = no_progress
     ) -> Scenario:
-        """Copy a scenario with a list in place of its targets, or a line of its trajectory.
-
-        Args:
-            name: of the scenario, which stays as it is.
-            node: a `vtkMRMLMarkupsFiducialNode` or a `vtkMRMLMarkupsLineNode`.
-        """
+        """Copy a scenario with a list in place of its targets, or a line of its trajectory."""
         isLine = node.IsA("vtkMRMLMarkupsLineNode")
         plan = planArguments(None, node) if isLine else planArguments(node, None)
         return self.saveWith(plan, name, title, progress)
@@ -248,7 +227,7 @@ class ScenarioFiles:
     def saveWith(
         self, plan: list[str], name: str, title: str, progress: Progress = no_progress
     ) -> Scenario:
-        """Copy a scenario with a part replaced.
+        """Copy a scenario with a part replaced, and return the copy.
 
         Args:
             plan: arguments of `rastrainer scenario plan`, such as `--procedure` with a file of one
@@ -291,60 +270,48 @@ class ComparedMethod:
 
     Attributes:
         name: a `RegistrationMethod`.
+        low: median of the lower ends of the 95 % intervals of the target error.
+        high: of the upper ends.
         residual: of the points that count; it does not show the error.
-        expected: target error.
-        interval: medians of the ends of its 95 % interval.
-        true: target error.
         held: share of the intervals that hold the true error.
     """
 
     name: str
+    low: float
+    high: float
     residual: float
     expected: float
-    interval: tuple[float, float]
     true: float
     held: float
 
-    @classmethod
-    def of(cls, name: str, value: Mapping[str, Any]) -> ComparedMethod:
-        """Return what the program has written of a method.
 
-        Raises:
-            KeyError, TypeError, ValueError: it has not written that.
-        """
-        low, high = map(float, value["interval_mm"])
-        return cls(
-            name,
-            float(value["residual_mm"]),
-            float(value["expected_tre_mm"]),
-            (low, high),
-            float(value["true_tre_mm"]),
-            float(value["interval_holds_share"]),
-        )
+KEYS = ("residual_mm", "expected_tre_mm", "true_tre_mm", "interval_holds_share")
+"""Of a method in the program's output: the last four above."""
 
 
-class MethodComparisonLogic:
-    """What the group Methods of registration does."""
+def compareMethods(
+    simulator: SimulatorLogic,
+    scenario: Scenario,
+    trials: int,
+    skinShiftMm: float,
+    progress: Progress = no_progress,
+) -> list[ComparedMethod]:
+    """Return how each method for which a head has the points registers simulated trials.
 
-    def __init__(self, simulator: SimulatorLogic) -> None:
-        self._simulator = simulator
-
-    def compare(
-        self, scenario: Scenario, trials: int, skinShiftMm: float, progress: Progress = no_progress
-    ) -> tuple[ComparedMethod, ...]:
-        """Return how each method for which a head has the points registers simulated trials.
-
-        Args:
-            trials: how many.
-            skinShiftMm: between imaging and operation, RMS.
-        """
-        with tempfile.TemporaryDirectory() as temporary:
-            folder = Path(temporary) / "methods"
-            words = ["compare-methods", "--scenario", str(scenario.folder), "-o", str(folder)]
-            words += ["--trials", str(trials), "--skin-shift", str(skinShiftMm)]
-            self._simulator.run(words, progress)
-            compared = read_json(folder / "methods.json", LIMIT_BYTES)
-        try:
-            return tuple(ComparedMethod.of(*each) for each in compared["methods"].items())
-        except (KeyError, TypeError, ValueError, AttributeError):
-            raise InputError(_("The simulator's program has a different version.")) from None
+    Args:
+        trials: how many.
+        skinShiftMm: between imaging and operation, RMS.
+    """
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary) / "methods"
+        words = ["compare-methods", "--scenario", str(scenario.folder), "-o", str(folder)]
+        words += ["--trials", str(trials), "--skin-shift", str(skinShiftMm)]
+        simulator.run(words, progress)
+        compared = read_json(folder / "methods.json", LIMIT_BYTES)
+    try:
+        return [
+            ComparedMethod(name, *map(float, [*values["interval_mm"], *map(values.get, KEYS)]))
+            for name, values in compared["methods"].items()
+        ]
+    except (KeyError, TypeError, ValueError, AttributeError):
+        raise InputError(_("The simulator's program has a different version.")) from None

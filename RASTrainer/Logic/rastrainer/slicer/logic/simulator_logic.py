@@ -19,7 +19,6 @@ from rastrainer.protocol import DEFAULT_HOST
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.program.child_process import KILL_AFTER_S, SLICER, runChild
 from rastrainer.slicer.program.process_group import endProcess
-from rastrainer.slicer.program.simulator_package import SetupSource
 from rastrainer.slicer.program.simulator_program import ProgramState, SimulatorProgram
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from rastrainer.slicer.settings import PROGRAM, Settings
@@ -239,7 +238,7 @@ class SimulatorLogic:
         """
         if self.program.isRunning or self.running.look():
             raise InputError(_("End the simulator that is running before setting it up again."))
-        self.setup.begin(SetupSource(index.strip(), Path(wheels) if wheels else None))
+        self.setup.begin(index.strip(), Path(wheels) if wheels else None)
 
     def removeSetup(self) -> None:
         """Remove what was set up; trials and settings stay."""

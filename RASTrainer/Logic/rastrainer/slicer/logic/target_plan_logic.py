@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +15,7 @@ from rastrainer.igtl.client import Reply
 from rastrainer.registration.target_error import TargetError
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
-from rastrainer.slicer.scene.nodes import labelOf
+from rastrainer.slicer.scene.nodes import labelOf, worldPoints
 from rastrainer.slicer.scene.plan_points import LINE, PlanPoints, placedRows
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
@@ -82,36 +83,35 @@ class PlanLogic:
     def read(self, node: Any | None, row: int = -1) -> PlanOnImages:
         """Return the plan that a list of points or a line holds.
 
-        The first point of a line is the entry.
-
-        Args:
-            node: a markups node.
-            row: which of the placed points is the target; the last where left out.
+        The first point of a line is the entry; `row` says which placed point is the target.
         """
         if node is None:
             raise InputError(_("Place a target or a trajectory, or choose one."))
         rows = placedRows(node)
         if not rows:
             raise InputError(_("{name} has no point yet: place one.").format(name=node.GetName()))
-        points = np.array([node.GetNthControlPointPositionWorld(each) for each in rows])
-        shown = self._registration.shown
-        if shown is None:
+        points = worldPoints(node)[rows]
+        comparison = self._registration.comparison
+        if comparison is None:
             raise InputError(
                 _("There is no registration to map the plan with: {problem}").format(
                     problem=self._registration.problem or _("register the touches first.")
                 )
             )
-        toWorld = transforms.inverse(shown.matrix)
+        toWorld = transforms.inverse(comparison.shown.matrix)
         target = points[row]
-        isLine = node.IsA(LINE) and len(points) > 1
-        entry = points[0] if isLine else None
+        entry = points[0] if node.IsA(LINE) and len(points) > 1 else None
+        expected = None
+        with contextlib.suppress(InputError):
+            expected = comparison.targetError(target)
+        names = targetsOf(node)
         return PlanOnImages(
-            name=(_nameOf(node, rows[row]) or _("target"))[:LONGEST_NAME],
+            name=((names[row] if len(names) > 1 else node.GetName()) or _("target"))[:LONGEST_NAME],
             target=target,
             entry=entry,
             targetWorld=transforms.apply(toWorld, target[None])[0],
             entryWorld=None if entry is None else transforms.apply(toWorld, entry[None])[0],
-            expected=self._expected(target),
+            expected=expected,
         )
 
     def send(self, node: Any | None, row: int = -1) -> None:
@@ -167,18 +167,8 @@ class PlanLogic:
             self.trueErrorMm = float(np.linalg.norm(self._sent.targetWorld - there))
         self.changed.emit()
 
-    def _expected(self, target: np.ndarray) -> TargetError | None:
-        try:
-            return self._registration.targetError(target)
-        except InputError:
-            return None
-
 
 def targetsOf(node: Any | None) -> tuple[str, ...]:
     if node is None or node.IsA(LINE):
         return ()
     return tuple(labelOf(node, row) for row in placedRows(node))
-
-
-def _nameOf(node: Any, row: int) -> str:
-    return labelOf(node, row) if len(targetsOf(node)) > 1 else node.GetName()
