@@ -10,7 +10,7 @@ import slicer
 from rastrainer.number_text import fixed
 from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import toolTip
-from rastrainer.panels.widgets import fillTable, setText, setUsable
+from rastrainer.panels.widgets import fillTable, setEnabled, setText
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.translation import _
 from rastrainer.study.curriculum.curriculum import read_curriculum
@@ -83,21 +83,14 @@ class CurriculumPanel(Panel):
         ui = self._ui
         isSomebody = ui.everybodyCheckBox.checked or bool(self._session.trainees.chosen)
         nobody = _("Choose a trainee in the section Trainees first.")
-        setUsable(
-            ui.setCurriculumButton,
-            isSomebody and bool(ui.curriculumPathLineEdit.currentPath),
-            _("Follow this curriculum from now on."),
-            _("Choose the file of a curriculum first.") if isSomebody else nobody,
-        )
+        reason = _("Choose the file of a curriculum first.") if isSomebody else nobody
+        hasFile = bool(ui.curriculumPathLineEdit.currentPath)
+        setEnabled(ui.setCurriculumButton, isSomebody and hasFile, reason)
         hasOne = bool(self._logic.standings()) and isSomebody
         if not ui.everybodyCheckBox.checked:
             hasOne = self._logic.standing() is not None
-        setUsable(
-            ui.endCurriculumButton,
-            hasOne,
-            _("Follow no curriculum from now on."),
-            _("There is no curriculum to end.") if isSomebody else nobody,
-        )
+        reason = _("There is no curriculum to end.") if isSomebody else nobody
+        setEnabled(ui.endCurriculumButton, hasOne, reason)
 
 
 def _row(standing: AssignmentStanding) -> tuple[str, str, str]:

@@ -18,6 +18,7 @@ from rastrainer.panels.widgets import (
     fillTable,
     offerEntries,
     setChecked,
+    setEnabled,
     setText,
     setUsable,
 )
@@ -210,30 +211,15 @@ class ScorePanel(Panel):
         hasTrial = bool(chosenData(ui.trialComboBox))
         reason = _("Choose a trial first.")
         busy = _("Wait until the current work is done.")
-        setUsable(
-            ui.showTablesButton,
-            hasTrial,
-            _("Put score, comparison and motion metrics into table nodes of the scene."),
-            reason,
-        )
-        ui.replayButton.text = _("Cancel") if isAtWork else _("Show the trial again")
-        setUsable(
-            ui.replayButton,
-            hasTrial or isAtWork,
-            _("Show the tool, the touches and the clearance over time, as a Sequence."),
-            reason,
-        )
-        unjudged = reason if not hasTrial else _("The trial cannot be analyzed.")
-        setUsable(
-            ui.worstTouchButton,
-            bool(self._worst) and not isAtWork,
-            _("Show how point {label} was touched.").format(label=self._worst),
-            busy if isAtWork else unjudged,
-        )
-        allTrials = _("Write all trials of all trainees of the study to a CSV file.")
-        report = _("Write the report of the whole study as a printable page, and open it.")
-        setUsable(ui.exportScoresButton, not isAtWork, allTrials, busy)
-        setUsable(ui.reportButton, not isAtWork, report, busy)
+        setEnabled(ui.showTablesButton, hasTrial, reason)
+        setEnabled(ui.replayButton, hasTrial or isAtWork, reason)
+        setEnabled(ui.exportScoresButton, not isAtWork, busy)
+        setEnabled(ui.reportButton, not isAtWork, busy)
+        if hasTrial:
+            reason = _("The trial cannot be analyzed.")
+        tip = _("Show how point {label} was touched.").format(label=self._worst)
+        isUsable = bool(self._worst) and not isAtWork
+        setUsable(ui.worstTouchButton, isUsable, tip, busy if isAtWork else reason)
         self._showReplay()
 
     def _showProgress(self, step: str, share: float) -> None:

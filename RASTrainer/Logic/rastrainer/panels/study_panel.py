@@ -18,6 +18,7 @@ from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
     chosenData,
     fillTable,
+    setEnabled,
     setText,
     setUsable,
     textLabel,
@@ -168,18 +169,10 @@ class StudyPanel(Panel):
 
     def _showButtons(self, *_arguments: Any) -> None:
         ui = self._ui
-        setUsable(
-            ui.beginStudyButton,
-            bool(ui.protocolPathLineEdit.currentPath),
-            _("Guide the trainees through this protocol from now on."),
-            _("Choose the file of a protocol first."),
-        )
-        setUsable(
-            ui.enrollButton,
-            bool(self._session.trainees.chosen),
-            _("Give the trainee the first free place, which decides the order of modes and tasks."),
-            _("Choose a trainee in the section Trainees first."),
-        )
+        hasProtocol = bool(ui.protocolPathLineEdit.currentPath)
+        setEnabled(ui.beginStudyButton, hasProtocol, _("Choose the file of a protocol first."))
+        nobody = _("Choose a trainee in the section Trainees first.")
+        setEnabled(ui.enrollButton, bool(self._session.trainees.chosen), nobody)
         if self._progress is not None and self._progress.next_step is not None:
             reason = self._session.training.obstacle
             tip = instruction(self._progress.next_step)

@@ -21,6 +21,7 @@ from rastrainer.panels.widgets import (
     fillTable,
     millimeters,
     setChecked,
+    setEnabled,
     setText,
     setUsable,
 )
@@ -107,7 +108,6 @@ class TraineesPanel(Panel):
         self._showMessage(sentence.format(**names), isState=True)
 
     def chooseStudyAddress(self) -> None:
-        """Continue with the study at another address; without one, with that of the file."""
         address = self._ui.studyAddressLineEdit.text.strip()
         self._openStudy(address or self._session.studyFile, STUDY_ADDRESS, address)
 
@@ -212,15 +212,13 @@ class TraineesPanel(Panel):
             widget.enabled = not isAtWork
         isFile = isinstance(self._session.studyPlace, Path)
         ui.studyPathLineEdit.enabled = isFile and not isAtWork
-        ui.deleteTraineeButton.text = _("Cancel") if isAtWork else _("Delete…")
-        isUsable = self._trainee is not None
-        tip = _("Delete the trainee with all trials, permanently.")
-        reason = _("Choose a trainee first.")
         if isAtWork:
-            isUsable = not self._isErasing
             tip = _("Delete nothing; the study is still being opened.")
-            reason = _("The deletion has begun, and can no longer be canceled.")
-        setUsable(ui.deleteTraineeButton, isUsable, tip, reason)
+            begun = _("The deletion has begun, and can no longer be canceled.")
+            setUsable(ui.deleteTraineeButton, not self._isErasing, tip, begun)
+        else:
+            reason = _("Choose a trainee first.")
+            setEnabled(ui.deleteTraineeButton, self._trainee is not None, reason)
 
     def showCurve(self) -> None:
         """Show score and time over the trials as a plot, or restore the user's layout."""
@@ -278,19 +276,11 @@ class TraineesPanel(Panel):
         ui.consentCheckBox.enabled = trainee is not None
         ui.archiveButton.text = _("Bring back") if self._isArchived else _("Archive")
         nobody = _("Choose a trainee first.")
-        nothing = _("The trainee has no trials yet.")
-        for button, needsTrials, tip in (
-            (ui.archiveButton, False, _("Hide the trainee from the list, or show them again.")),
-            (
-                ui.exportTraineeButton,
-                False,
-                _("Write all that is known about the trainee to a file."),
-            ),
-            (ui.learningCurveButton, True, _("Show score and time over the trials.")),
-            (ui.exportHistoryButton, True, _("Write the trainee's trials to a CSV file.")),
-        ):
-            isUsable = bool(history) if needsTrials else trainee is not None
-            setUsable(button, isUsable, tip, nobody if trainee is None else nothing)
+        for button in (ui.archiveButton, ui.exportTraineeButton):
+            setEnabled(button, trainee is not None, nobody)
+        nothing = nobody if trainee is None else _("The trainee has no trials yet.")
+        for button in (ui.learningCurveButton, ui.exportHistoryButton):
+            setEnabled(button, bool(history), nothing)
         if trainee is not None:
             text = _("{name}, since {day}. Trials: {count}. {aborted}").format(
                 name=trainee.pseudonym,

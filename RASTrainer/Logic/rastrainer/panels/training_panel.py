@@ -21,6 +21,7 @@ from rastrainer.panels.widgets import (
     chosenData,
     connectAsPressed,
     offerEntries,
+    setEnabled,
     setLight,
     setProperty,
     setText,
@@ -204,16 +205,10 @@ class TrainingPanel(Panel):
         ui = self._ui
         nobody = _("Choose a trainee in the section Trainees first.")
         reason = self._logic.obstacle or ("" if self._session.trainees.chosen else nobody)
-        for button, tip in (
-            (ui.startTrialRunButton, _("Start the trial run, which does not count.")),
-            (ui.startTaskButton, _("Start the task that is chosen in the section Scenario.")),
-        ):
-            setUsable(button, not reason, tip, reason)
+        for button in (ui.startTrialRunButton, ui.startTaskButton):
+            setEnabled(button, not reason, reason)
         isPaused = trial.phase == Phase.PAUSED.value
         setProperty(ui.pauseButton, "text", _("Resume") if isPaused else _("Pause"))
         mayPause = isPaused or trial.phase in (Phase.RUNNING, *PROCEDURE_PHASES)
-        for button, isPossible, tip in (
-            (ui.pauseButton, mayPause, _("Pause the trial and its time.")),
-            (ui.abortButton, trial.isOpen, _("End the trial without registering it.")),
-        ):
-            setUsable(button, isConnected and isPossible, tip, _("No trial is running."))
+        for button, isPossible in ((ui.pauseButton, mayPause), (ui.abortButton, trial.isOpen)):
+            setEnabled(button, isConnected and isPossible, _("No trial is running."))

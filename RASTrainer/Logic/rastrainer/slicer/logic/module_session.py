@@ -235,7 +235,6 @@ class ModuleSession:
         self.files.process()
         followPlacement(self._scene)
         self.slices.process()
-        self.layout.process()
         if self._watch.takeChange():
             self.sceneChanged.emit()
         if self._second != int(time.monotonic()):
@@ -251,11 +250,12 @@ class ModuleSession:
 
     def sceneWasCleared(self) -> None:
         """Forget references into the old scene; a running trial is shown again."""
+        # Not yet now, as Slicer shows its last layout again after a scene is closed.
+        self.work.later(self.layout.giveBack)
         self.plan.points.forget()
         self.landmarks.points.forget()
         for part in (
             self.work,
-            self.layout,
             self.replay,
             self.slices,
             self.scenario,

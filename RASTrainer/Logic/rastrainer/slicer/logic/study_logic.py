@@ -23,7 +23,7 @@ from rastrainer.study.database.values import moment
 from rastrainer.study.protocol.step_progress import StepProgress
 from rastrainer.study.protocol.steps import StepAnswers, instruction, objections_to
 from rastrainer.study.protocol.study_progress import StudyProgress
-from rastrainer.study.protocol.study_protocol import StudyProtocol, read_study_protocol
+from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer.study_messages import StudyStep
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
@@ -72,7 +72,6 @@ class StudyLogic:
 
     @property
     def study(self) -> StudyProgress:
-        """The protocol of the study that is open now, and its trainees' progress."""
         return StudyProgress(self._trainees.study)
 
     def leaveStudy(self) -> None:
@@ -93,12 +92,10 @@ class StudyLogic:
                     self.study.finish(name, step.name, {"minutes": progress.minutes_elapsed(now)})
             self._leadOn(name)
 
-    def begin(self, path: Path) -> StudyProtocol:
+    def begin(self, path: Path) -> None:
         """Make a file's protocol that of the study, permanently."""
-        protocol = read_study_protocol(path)
-        self.study.set_protocol(protocol)
+        self.study.set_protocol(read_study_protocol(path))
         self.changed.emit()
-        return protocol
 
     def enroll(self) -> int:
         """Give the chosen trainee the first free number in the study's order, from 0."""
@@ -199,21 +196,16 @@ class StudyLogic:
 
     def answer(self, answers: Sequence[int]) -> None:
         """Store the answers to the questionnaire that comes next."""
-        step = self._next()
-        details = {"answers": list(answers)}
-        self.study.finish(self._trainees.chosen, step.name, details)
+        self.study.finish(self._trainees.chosen, self._next().name, {"answers": list(answers)})
         self._leadOn(self._trainees.chosen)
 
     def skipStep(self, stepName: str, reason: str) -> None:
-        """Skip the next step, for a reason that goes into the report."""
         self._watch.keep()
-        self._next()
         self.study.skip(self._trainees.chosen, stepName, reason)
         self._leadOn(self._trainees.chosen)
 
     def explainRepeat(self, reason: str) -> None:
         """Say why the next step is played again after it was aborted; it goes into the report."""
-        self._progress()
         self.study.explain_repeat(self._trainees.chosen, reason)
         self._leadOn(self._trainees.chosen)
 

@@ -17,7 +17,6 @@ from rastrainer.slicer.translation import _
 from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import CurriculumStanding
-from rastrainer.study.database.database import StudyBusyError
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial, Trainee
 from rastrainer.study_messages import CurriculumMessage
@@ -50,10 +49,9 @@ class TraineeLogic:
         """Keep the trainees of a study.
 
         Args:
-            openStudy: opens the study.
             records: folder of the simulator's journals, if it is on this computer.
-            openPatiently: opens it in any thread, which may wait for a lock; as `openStudy` when
-                left out.
+            openPatiently: opens the study in any thread, which may wait for a lock; as `openStudy`
+                when left out.
         """
         self._openPatiently = openPatiently or openStudy
         self.changed = Signal()
@@ -108,19 +106,9 @@ class TraineeLogic:
             self.changed.emit()
 
     def chosenTrainee(self) -> Trainee | None:
-        """Return the chosen trainee; None if none is chosen, or no longer exists.
-
-        Raises:
-            StudyBusyError: another program has the study locked.
-        """
-        if not self.chosen:
-            return None
-        try:
-            return self.study.trainee(self.chosen)
-        except StudyBusyError:
-            raise
-        except InputError:
-            return None
+        """Return the chosen trainee; None if none is chosen, or no longer exists."""
+        known = {trainee.pseudonym: trainee for trainee in self.trainees(archived=True)}
+        return known.get(self.chosen)
 
     def create(self, pseudonym: str, consent: bool) -> Trainee:
         """Add a trainee, under the next free pseudonym where none is given, and choose them."""
@@ -205,9 +193,8 @@ class CurriculumLogic:
         self._trainees = trainees
         self._link = link
         self._sent: dict[str, CurriculumMessage] = {}
-        self._standings: dict[str, CurriculumStanding] = {}
-        self._stamps: dict[str, tuple[int | None, ...]] = {}
-        self._followed: Study | None = None
+        self._standings: dict[str, CurriculumStanding | None] = {}
+        self._stamps: dict[str, tuple[Study, tuple[int | None, ...] | None]] = {}
         self._listening = Listening(
             (trainees.changed, self._followTrainees), (link.opened, self._sendEverybody)
         )
@@ -220,7 +207,7 @@ class CurriculumLogic:
 
     def standings(self) -> Mapping[str, CurriculumStanding]:
         """Return the standing of each active trainee with a curriculum, by pseudonym."""
-        return dict(sorted(self._standings.items()))
+        return {name: found for name, found in sorted(self._standings.items()) if found}
 
     def choose(self, curriculum: Curriculum | None, isForEverybody: bool) -> None:
         """Have the chosen trainee, or everybody, follow a curriculum, or none, from now on."""
@@ -233,35 +220,24 @@ class CurriculumLogic:
     def _sendEverybody(self) -> None:
         """Send the simulator, which may know nothing yet, everybody's standing."""
         self._sent.clear()
-        self._stamps.clear()
         self._followTrainees()
 
     def _followTrainees(self) -> None:
         """Send the standings that have changed, or everybody's in another study."""
         # The section Trainees shows what is wrong with the study.
         with contextlib.suppress(InputError):
-            store = CurriculumStore(self._trainees.study)
+            study = self._trainees.study
+            store = CurriculumStore(study)
             stamps = store.stamps()
-            isSame = self._trainees.study is self._followed
-            known = self._sent.keys() | self._standings.keys()
-            for name in sorted(known - stamps.keys()):
-                self._tell(name, None)
-            for name, stamp in stamps.items():
-                if not isSame or self._stamps.get(name) != stamp:
-                    self._tell(name, store.standing(name))
-            self._stamps, self._followed = stamps, self._trainees.study
+            for name in sorted(self._stamps.keys() | stamps.keys()):
+                stamp = study, stamps.get(name)
+                if self._stamps.get(name) != stamp:
+                    self._standings[name] = store.standing(name) if name in stamps else None
+                    self._stamps[name] = stamp
+                standing, nothing = self._standings[name], CurriculumMessage(name)
+                message = nothing if standing is None else standing.message(name)
+                if self._sent.get(name, nothing) != message:
+                    self._sent[name] = message
+                    # Without a connection nothing is sent; a new connection gets everything.
+                    self._link.send(CommandName.CURRICULUM, message.arguments())
         self.changed.emit()
-
-    def _tell(self, name: str, standing: CurriculumStanding | None) -> None:
-        nothing = CurriculumMessage(name)
-        message = nothing if standing is None else standing.message(name)
-        self._standings.pop(name, None)
-        if standing is not None:
-            self._standings[name] = standing
-        if self._sent.get(name, nothing) == message:
-            return
-        self._sent[name] = message
-        if standing is None:
-            del self._sent[name]
-        # Without a connection nothing is sent; a new connection gets everything.
-        self._link.send(CommandName.CURRICULUM, message.arguments())

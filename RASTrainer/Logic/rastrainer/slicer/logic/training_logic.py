@@ -218,7 +218,6 @@ class TrainingLogic:
         self._showScene()
 
     def forgetScene(self) -> None:
-        """Show the running trial's scene again: the scene was cleared."""
         self._shownTrial = ""
         self._showScene()
 

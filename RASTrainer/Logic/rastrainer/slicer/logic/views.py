@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 import slicer
-import vtk
 from numpy.typing import ArrayLike
 
+from rastrainer import transforms
 from rastrainer.protocol import DeviceName, Phase
 from rastrainer.slicer.background_work import CallLater, callNow
 from rastrainer.slicer.logic.training_logic import TrainingLogic
@@ -58,7 +58,7 @@ class AlongInstrument:
     """
 
     def __init__(self, scene: Any) -> None:
-        self.former: dict[str, vtk.vtkMatrix4x4] = {}
+        self.former: dict[str, np.ndarray] = {}
         self._scene = scene
 
     def show(self, tip: np.ndarray, direction: np.ndarray) -> None:
@@ -73,22 +73,18 @@ class AlongInstrument:
         """
         axes = instrumentAxes(direction)
         for view in nodesOfClass(self._scene, "vtkMRMLSliceNode"):
-            if view.GetName() not in axes:
-                continue
-            matrix = view.GetSliceToRAS()
-            if view.GetID() not in self.former:
-                self.former[view.GetID()] = vtk.vtkMatrix4x4()
-                self.former[view.GetID()].DeepCopy(matrix)
-            for column, vector in enumerate((*axes[view.GetName()], tip)):
-                for row in range(3):
-                    matrix.SetElement(row, column, float(vector[row]))
-            view.UpdateMatrices()
+            if view.GetName() in axes:
+                matrix = view.GetSliceToRAS()
+                self.former.setdefault(view.GetID(), slicer.util.arrayFromVTKMatrix(matrix))
+                aligned = transforms.rigid(axes[view.GetName()].T, tip)
+                slicer.util.updateVTKMatrixFromArray(matrix, aligned)
+                view.UpdateMatrices()
 
     def giveBack(self) -> None:
         for viewId, former in self.former.items():
             view = self._scene.GetNodeByID(viewId)
             if view is not None:
-                view.GetSliceToRAS().DeepCopy(former)
+                slicer.util.updateVTKMatrixFromArray(view.GetSliceToRAS(), former)
                 view.UpdateMatrices()
         self.former.clear()
 
@@ -124,7 +120,6 @@ class BorrowedLayout:
         self._scene = scene
         self._purpose = ""
         self._shown = self._former = 0
-        self._isOutdated = False
 
     @property
     def purpose(self) -> str:
@@ -140,7 +135,6 @@ class BorrowedLayout:
             return
         if not self.purpose:
             self._former = node.GetViewArrangement()
-        self._isOutdated = False
         self._purpose, self._shown = purpose, layout
         node.SetViewArrangement(layout)
 
@@ -153,19 +147,6 @@ class BorrowedLayout:
         if node is not None and self.purpose and purpose in ("", self._purpose):
             node.SetViewArrangement(self._former)
             self._purpose = ""
-
-    def forgetScene(self) -> None:
-        """Have the next `process` restore the layout: what it showed was cleared with the scene.
-
-        Not yet now, as Slicer shows its last layout again after a scene is closed.
-        """
-        self._isOutdated = True
-
-    def process(self) -> None:
-        """Restore the layout from before a scene that was cleared."""
-        if self._isOutdated:
-            self._isOutdated = False
-            self.giveBack()
 
     def _node(self) -> Any | None:
         return self._scene.GetSingletonNode(LAYOUT_TAG, LAYOUT_TAG)
