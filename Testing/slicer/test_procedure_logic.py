@@ -12,6 +12,7 @@ from rastrainer.protocol import DeviceName
 from rastrainer.scenario.points import LABELS
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic, ProcedureStatus
+from rastrainer.slicer.logic.trial_services import TrialServices
 from Testing.slicer.simulator_double import run_logic_until, run_until_received
 from Testing.slicer.training_room import TRIAL, Room
 
@@ -25,7 +26,8 @@ class Theater(Room):
         self.touches, self.refused = [], ""
         super().__init__(scene, scenario)
         self.work = BackgroundWork()
-        self.procedure = ProcedureLogic(scene, self.link, lambda _name: scenario, self.work)
+        services = TrialServices(scene, self.link, lambda _name: scenario, None, self.work)
+        self.procedure = ProcedureLogic(services)
         self.said = []
         self.procedure.answered.connect(self.said.append)
         places = transforms.apply(scenario.head_to_world, scenario.task("task-1").fiducials)

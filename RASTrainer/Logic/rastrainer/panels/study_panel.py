@@ -14,7 +14,7 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import toolTip
-from rastrainer.panels.shown_errors import showErrors
+from rastrainer.panels.shown_errors import guardedAction
 from rastrainer.panels.widgets import (
     chosenData,
     fillTable,
@@ -45,9 +45,11 @@ class StudyPanel(Panel):
         self._judged: tuple | None = None
         connectClick(ui.beginStudyButton, self.begin, _("The study was not started."))
         connectClick(ui.enrollButton, self._logic.enroll, _("The trainee was not enrolled."))
+        self.startStep = guardedAction(self._logic.startStep, _("The step was not started."))
+        self.explainRepeat = guardedAction(self._explainRepeat, _("The reason was not saved."))
         ui.startStepButton.connect("clicked()", self.startStep)
-        ui.skipStepButton.connect("clicked()", self.skipStep)
         ui.repeatStepButton.connect("clicked()", self.explainRepeat)
+        connectClick(ui.skipStepButton, self.skipStep, _("The step was not skipped."))
         connectClick(
             ui.saveAnswersButton,
             lambda: self._logic.answer(self._form.answers()),
@@ -72,11 +74,6 @@ class StudyPanel(Panel):
         if slicer.util.confirmYesNoDisplay(question, _("Begin the study")):
             self._logic.begin(Path(self._ui.protocolPathLineEdit.currentPath))
 
-    def startStep(self) -> None:
-        """Start the trial that comes next."""
-        with showErrors(_("The step was not started.")):
-            self._logic.startStep()
-
     def skipStep(self) -> None:
         """Skip the step, for a reason; a reason that is refused can be completed."""
         question = _("Why is it skipped? The reason goes into the report.")
@@ -84,14 +81,12 @@ class StudyPanel(Panel):
         if step is not None:
             # By its name: while the dialog is open, the step may be done.
             skip = partial(self._logic.skipStep, step.name)
-            with showErrors(_("The step was not skipped.")):
-                self._withReason(_("Skip the step"), question, skip)
+            self._withReason(_("Skip the step"), question, skip)
 
-    def explainRepeat(self) -> None:
+    def _explainRepeat(self) -> None:
         """Say why an aborted trial is played again; only then can it be started."""
         question = _("Why is the aborted trial repeated? The reason goes into the report.")
-        with showErrors(_("The reason was not saved.")):
-            self._withReason(_("Repeat the step"), question, self._logic.explainRepeat)
+        self._withReason(_("Repeat the step"), question, self._logic.explainRepeat)
 
     def _withReason(self, title: str, question: str, do: Callable[[str], None]) -> None:
         """Do what needs a reason; a reason that is refused can be completed."""

@@ -10,7 +10,7 @@ import slicer
 from rastrainer.commands import CommandName
 from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import buttonTitle, shortName, toolTip
-from rastrainer.panels.shown_errors import showErrors
+from rastrainer.panels.shown_errors import guardedAction
 from rastrainer.panels.widgets import (
     GRAY,
     GREEN,
@@ -85,11 +85,18 @@ class TrainingPanel(Panel):
         bind(ui.slicesToolCheckBox, "checked", session.settings, SLICES_FOLLOW_TOOL)
         for box in (ui.slicesNextPointCheckBox, ui.slicesToolCheckBox):
             box.connect("toggled(bool)", self._moveSlices)
+        notStarted, logic = _("The trial was not started."), self._logic
+        self.startTrialRun = guardedAction(lambda: self._start(TRIAL_RUN), notStarted)
+        self.startTask = guardedAction(self._startTask, notStarted)
+        pause = partial(logic.command, CommandName.PAUSE)
+        self.pause = guardedAction(pause, _("The trial was not paused."))
+        resume = partial(logic.command, CommandName.RESUME)
+        self.resume = guardedAction(resume, _("The trial was not resumed."))
         ui.startTrialRunButton.connect("clicked()", self.startTrialRun)
         ui.startTaskButton.connect("clicked()", self.startTask)
         connectAsPressed(
             ui.pauseButton,
-            lambda: self.resume if self._logic.status.phase == Phase.PAUSED.value else self.pause,
+            lambda: self.resume if logic.status.phase == Phase.PAUSED.value else self.pause,
         )
         connectClick(ui.abortButton, self.abort, _("The trial was not aborted."))
         sayings = (
@@ -110,22 +117,14 @@ class TrainingPanel(Panel):
         self._moveSlices()
         self.showState()
 
-    def startTrialRun(self) -> None:
-        """Start the trial run, which does not count."""
-        self._start(TRIAL_RUN)
-
-    def startTask(self) -> None:
+    def _startTask(self) -> None:
         ui = self._ui
         procedure, method = (chosenData(box) for box in (ui.procedureComboBox, ui.methodComboBox))
         self._start(self._session.task, procedure, method)
 
-    def pause(self) -> None:
-        with showErrors(_("The trial was not paused.")):
-            self._logic.command(CommandName.PAUSE)
-
-    def resume(self) -> None:
-        with showErrors(_("The trial was not resumed.")):
-            self._logic.command(CommandName.RESUME)
+    def _start(self, task: str, procedure: str = "", method: str = "") -> None:
+        mode, isTutorialFirst = chosenData(self._ui.modeComboBox), self._ui.tutorialCheckBox.checked
+        self._session.study.startTrial(task, mode, isTutorialFirst, procedure, method)
 
     def abort(self) -> None:
         """End the trial without registering it, after asking."""
@@ -194,12 +193,6 @@ class TrainingPanel(Panel):
         if self._session.link.status.state is LinkState.CONNECTED:
             minutes, seconds = divmod(int(self._logic.status.elapsedS), 60)
             setText(self._ui.elapsedText, f"{minutes}:{seconds:02d} min")
-
-    def _start(self, task: str, procedure: str = "", method: str = "") -> None:
-        with showErrors(_("The trial was not started.")):
-            mode = chosenData(self._ui.modeComboBox)
-            isTutorialFirst = self._ui.tutorialCheckBox.checked
-            self._session.study.startTrial(task, mode, isTutorialFirst, procedure, method)
 
     def _showButtons(self, trial: TrialStatus, isConnected: bool) -> None:
         ui = self._ui

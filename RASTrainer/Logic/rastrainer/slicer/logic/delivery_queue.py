@@ -12,24 +12,24 @@ from typing import Any
 
 from rastrainer.commands import CommandName
 from rastrainer.json_records import record_from_json
-from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic.conversation import Steps, converse
+from rastrainer.slicer.logic.trial_services import Steps, TrialServices
 from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.aborted_trials import AbortedTrials
-from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import DeletedTrialError
 from rastrainer.trial.aborted_trial import AbortedTrial
 
 Delivery = Mapping[str, Any]
 """The record of a trial as it was delivered, not yet checked."""
 
+Heard = tuple[Signal, Callable[..., Any]]
+"""A signal and what listens to it."""
+
 MAX_WAITING = 32
 """Most trials waiting to be stored; a simulator that has more offers them again."""
 
 
-class DeliveryQueue:
+class DeliveryQueue(Listening):
     """Stores the trials that a signal of the link delivers, in their order.
 
     Attributes:
@@ -44,26 +44,18 @@ class DeliveryQueue:
     """Whether a trial is stored only after the one before was accepted; otherwise all are stored
     before whatever is received after them."""
 
-    def __init__(
-        self,
-        link: Link,
-        delivered: Signal,
-        openStudy: Callable[[], Study],
-        work: BackgroundWork,
-    ) -> None:
-        """`openStudy` opens the study, in any thread; it may wait for a lock there."""
+    def __init__(self, services: TrialServices, delivered: Signal, *others: Heard) -> None:
+        """`others` are listened to as long."""
+        super().__init__((delivered, self._receive), *others)
         self.problemFound = Signal()
-        self._link = link
-        self._openStudy = openStudy
-        self._work = work
+        self._services = services
         self._waiting: deque[Delivery] = deque()
         self._underWay: list[Delivery] = []
         self._lastProblem = ""
-        self._listening = Listening((delivered, self._receive))
 
     def close(self) -> None:
         """Stop listening to the link, and start nothing more."""
-        self._listening.close()
+        super().close()
         self.forgetWaiting()
 
     def forgetWaiting(self) -> None:
@@ -99,11 +91,12 @@ class DeliveryQueue:
     def _storeNext(self) -> None:
         if self._waiting and not (self._underWay and self.IN_TURN):
             self._underWay.append(self._waiting.popleft())
-            converse(self._link, self._work, self._storing(self._underWay[-1]))
+            self._services.converse(self._storing(self._underWay[-1]))
 
     def _storing(self, delivery: Delivery) -> Steps:
         def acknowledge() -> None:
-            self._link.send(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": delivery["trialId"]})
+            trial = {"trialId": delivery["trialId"]}
+            self._services.link.send(CommandName.ACKNOWLEDGE_TRIAL, trial)
 
         try:
             stored = yield lambda: self._store(delivery)
@@ -134,14 +127,13 @@ class AbortedTrialLogic(DeliveryQueue):
     REFUSAL = _("An aborted trial could not be stored: {error}")
     IN_TURN = False
 
-    def __init__(self, link: Link, openStudy: Callable[[], Study], work: BackgroundWork) -> None:
-        super().__init__(link, link.trialAborted, openStudy, work)
+    def __init__(self, services: TrialServices) -> None:
+        super().__init__(services, services.link.trialAborted)
         self.kept = Signal()
 
     def _store(self, delivery: Delivery) -> AbortedTrial:
         record = record_from_json(AbortedTrial, delivery)
-        with self._openStudy() as study:
-            AbortedTrials(study).add(record, delivery)
+        self._services.inStudy(lambda study: AbortedTrials(study).add(record, delivery))
         return record
 
     def _accept(self, stored: AbortedTrial) -> None:

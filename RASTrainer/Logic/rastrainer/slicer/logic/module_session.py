@@ -30,6 +30,7 @@ from rastrainer.slicer.logic.trace_logic import TraceLogic
 from rastrainer.slicer.logic.trainee_logic import CurriculumLogic, TraineeLogic
 from rastrainer.slicer.logic.training_logic import TrainingLogic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
+from rastrainer.slicer.logic.trial_services import TrialServices
 from rastrainer.slicer.logic.views import BorrowedLayout, SliceFollower
 from rastrainer.slicer.program.child_process import OwnProcess
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
@@ -108,32 +109,24 @@ class ModuleSession:
         self.slices = SliceFollower(scene, self.training, later=self.work.later)
         self.study = StudyLogic(self.trainees, self.training, self.link)
         self.curriculum = CurriculumLogic(self.trainees, self.link)
-        self.trials = TrialLogic(
+        services = TrialServices(
             scene,
             self.link,
             cache.find,
             self.openStudyPatiently,
             self.work,
-            self.cohort,
             places.records,
             run,
         )
-        self.aborted = AbortedTrialLogic(self.link, self.openStudyPatiently, self.work)
+        self.trials = TrialLogic(services, self.cohort)
+        self.aborted = AbortedTrialLogic(services)
+        self.procedure = ProcedureLogic(services)
+        self.traces = TraceLogic(services)
         self.replay = ReplayLogic(
-            scene,
-            self.openStudyPatiently,
-            self.work,
-            cache.find,
-            places.records,
-            places.assets / ROBOT,
-            self._isTrialOpen,
-            run,
-            self.trials.isBeingScored,
+            services, places.assets / ROBOT, self._isTrialOpen, self.trials.isBeingScored
         )
         self.registration = RegistrationLogic(scene, self.work)
         self.plan = PlanLogic(scene, self.link, self.registration)
-        self.procedure = ProcedureLogic(scene, self.link, cache.find, self.work, run)
-        self.traces = TraceLogic(scene, self.link, self.work)
         self.landmarks = LandmarkLogic(scene, self.scenarioFiles)
         self.procedurePlan = ProcedurePlanLogic(scene, self.scenarioFiles)
         self.task = ""
@@ -149,9 +142,9 @@ class ModuleSession:
         self._trial = ""
         self.training.sceneShown.connect(self.procedure.showPlan)
         self.training.sceneShown.connect(self.traces.begin)
-        self.trials.trialKept.connect(self.study.countTrial)
+        for kept in (self.trials.trialKept, self.aborted.kept):
+            kept.connect(lambda trial: self.study.leadOn(trial.trainee))
         self.trials.trialScored.connect(self._takeScored)
-        self.aborted.kept.connect(self.study.countTrial)
         self.aborted.kept.connect(self._showTrainees)
         self.link.stateChanged.connect(self._noticeNewTrial)
         self.replay.shown.connect(self.registration.reset)

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from rastrainer.commands import CommandName
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic.conversation import Question, Steps, converse
 from rastrainer.slicer.logic.training_logic import knownNumber
-from rastrainer.slicer.program.child_process import Run, runHere
+from rastrainer.slicer.logic.trial_services import Question, Steps, TrialServices
 from rastrainer.slicer.scene.procedure_lines import showPlannedLines, showProcedureErrors
 from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
@@ -70,7 +67,7 @@ class ProcedureStatus:
         return bool(self.name) and self.phase in PROCEDURE_PHASES
 
 
-class ProcedureLogic:
+class ProcedureLogic(Listening):
     """What the Procedure panel does; answers come by a later `process` of the link.
 
     The touches of an open trial with a procedure are registered here, without being asked: the
@@ -86,56 +83,35 @@ class ProcedureLogic:
             reason has been emitted by `answered`.
     """
 
-    def __init__(
-        self,
-        scene: Any,
-        link: Link,
-        findScenario: Callable[[str], Scenario],
-        work: BackgroundWork,
-        run: Run = runHere,
-    ) -> None:
-        """Follow the trials of a link.
-
-        Args:
-            findScenario: gives the scenario of a name, in any thread.
-            work: in which touches are registered.
-            run: runs the function that does so.
-        """
+    def __init__(self, services: TrialServices) -> None:
         self.changed = Signal()
         self.outcomeChanged = Signal()
         self.answered = Signal()
         self.status = ProcedureStatus()
         self.outcome: ProcedureOutcome | None = None
         self.isRegistrationFailed = False
-        self._scene = scene
-        self._link = link
-        self._findScenario = findScenario
-        self._work = work
-        self._run = run
+        self._services = services
         self._trialId = ""
         self._registering = ""
-        self._listening = Listening(
-            (link.stateChanged, self._follow), (link.opened, self._beginAgain)
+        super().__init__(
+            (services.link.stateChanged, self._follow), (services.link.opened, self._beginAgain)
         )
 
-    def close(self) -> None:
-        self._listening.close()
-
     def command(self, name: str, arguments: Mapping[str, Any] | None = None) -> None:
-        self._link.send(name, arguments, lambda reply: self.answered.emit(reply.error))
+        self._services.link.send(name, arguments, lambda reply: self.answered.emit(reply.error))
 
     def showOutcome(self, outcome: ProcedureOutcome | None) -> None:
         """Show lines and errors of a procedure in place of others; None for those of no trial."""
         self.outcome = outcome
         if outcome is None:
-            showPlannedLines(self._scene, None)
+            showPlannedLines(self._services.scene, None)
         else:
-            showProcedureErrors(self._scene, outcome.analysis)
+            showProcedureErrors(self._services.scene, outcome.analysis)
         self.outcomeChanged.emit()
 
     def showPlan(self, scenario: Scenario) -> None:
         named = [each for each in scenario.procedures if each.name == self.status.name]
-        showPlannedLines(self._scene, named[0] if named else None)
+        showPlannedLines(self._services.scene, named[0] if named else None)
 
     def _follow(self, state: Mapping[str, Any]) -> None:
         before, trialId = self.status, str(state.get("trialId", ""))
@@ -153,7 +129,7 @@ class ProcedureLogic:
             self._registering = ""
         elif status.name and self._registering != trialId:
             self._registering = trialId
-            converse(self._link, self._work, self._registeringTouches(trialId))
+            self._services.converse(self._registeringTouches(trialId))
 
     def _beginAgain(self) -> None:
         self._registering = ""
@@ -165,9 +141,9 @@ class ProcedureLogic:
             answer = yield Question(CommandName.GET_TRIAL, {"trialId": trialId})
 
             def register() -> TouchRegistration:
-                scenario = self._findScenario(str(tasks.get("scenario", "")))
+                scenario = self._services.findScenario(str(tasks.get("scenario", "")))
                 given = GivenPoints.of_answer(answer)
-                return self._run(REGISTER_OPEN, self._work.checkWanted, given, scenario)
+                return self._services.runWanted(REGISTER_OPEN, given, scenario)
 
             registered = yield register
             yield Question(CommandName.USE_REGISTRATION, registered.arguments(trialId))

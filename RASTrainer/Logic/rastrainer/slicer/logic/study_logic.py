@@ -25,13 +25,11 @@ from rastrainer.study.protocol.steps import StepAnswers, instruction, objections
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer.study_messages import StudyStep
-from rastrainer.trial.aborted_trial import AbortedTrial
-from rastrainer.trial.record import TrialRecord
 
 TRIALS = (StepKind.TRIAL, StepKind.TRIAL_RUN)
 
 
-class StudyLogic:
+class StudyLogic(Listening):
     """What the Study panel does for the chosen trainee, and for all enrolled trainees.
 
     Everything done is in the study's file before anyone is informed, so that the trainee resumes
@@ -59,7 +57,7 @@ class StudyLogic:
         self._ledStudy: Study | None = None
         self._breaks: dict[str, datetime] = {}
         self._watch = PracticeMonitor(trainees, training, link, self._leadAgain)
-        self._listening = Listening(
+        super().__init__(
             (trainees.changed, self._followTrainees),
             (link.opened, self._sendAll),
             (link.stepAnswered, self._takeAnswers),
@@ -67,7 +65,7 @@ class StudyLogic:
 
     def close(self) -> None:
         """Stop listening, and store the last practice time."""
-        self._listening.close()
+        super().close()
         self._watch.close()
 
     @property
@@ -90,7 +88,7 @@ class StudyLogic:
                 # Another Slicer may have ended the break already: what follows is no break.
                 if step is not None and end is not None and now >= end:
                     self.study.finish(name, step.name, {"minutes": progress.minutes_elapsed(now)})
-            self._leadOn(name)
+            self.leadOn(name)
 
     def begin(self, path: Path) -> None:
         """Make a file's protocol that of the study, permanently."""
@@ -102,7 +100,7 @@ class StudyLogic:
         if not self._trainees.chosen:
             raise InputError(_("Choose a trainee in the section Trainees first."))
         place = self.study.enroll(self._trainees.chosen)
-        self._leadOn(self._trainees.chosen)
+        self.leadOn(self._trainees.chosen)
         return place
 
     def progress(self) -> StepProgress | None:
@@ -197,24 +195,17 @@ class StudyLogic:
     def answer(self, answers: Sequence[int]) -> None:
         """Store the answers to the questionnaire that comes next."""
         self.study.finish(self._trainees.chosen, self._next().name, {"answers": list(answers)})
-        self._leadOn(self._trainees.chosen)
+        self.leadOn(self._trainees.chosen)
 
     def skipStep(self, stepName: str, reason: str) -> None:
         self._watch.keep()
         self.study.skip(self._trainees.chosen, stepName, reason)
-        self._leadOn(self._trainees.chosen)
+        self.leadOn(self._trainees.chosen)
 
     def explainRepeat(self, reason: str) -> None:
         """Say why the next step is played again after it was aborted; it goes into the report."""
         self.study.explain_repeat(self._trainees.chosen, reason)
-        self._leadOn(self._trainees.chosen)
-
-    def countTrial(self, trial: TrialRecord | AbortedTrial) -> None:
-        """Count a trial that has just been stored, if it is what the study asks its trainee for.
-
-        An aborted one may need a reason.
-        """
-        self._leadOn(trial.trainee)
+        self.leadOn(self._trainees.chosen)
 
     def _progress(self) -> StepProgress:
         progress = self.progress()
@@ -244,8 +235,8 @@ class StudyLogic:
         else:
             self._leadAgain(answers.trainee)
 
-    def _leadOn(self, name: str) -> None:
-        """Update one trainee who has something new, and notify all listeners."""
+    def leadOn(self, name: str) -> None:
+        """Update one trainee who has something new, such as a trial, and notify all listeners."""
         with contextlib.suppress(InputError):
             if name in self.study.enrolled():
                 self._lead(name)
@@ -254,7 +245,7 @@ class StudyLogic:
     def _leadAgain(self, name: str) -> None:
         """Update one trainee, and send the simulator even what it already knows."""
         self._sentSteps.pop(name, None)
-        self._leadOn(name)
+        self.leadOn(name)
 
     def _followTrainees(self) -> None:
         """Update the chosen and any new trainee, or everybody if it is another study."""

@@ -15,10 +15,8 @@ import numpy as np
 from rastrainer.commands import CommandName
 from rastrainer.protocol import Phase
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic.conversation import Question, Steps, converse
 from rastrainer.slicer.logic.training_logic import knownNumber
+from rastrainer.slicer.logic.trial_services import Question, Steps, TrialServices
 from rastrainer.slicer.scene.error_colors import colorSkin, removeHeadColors
 from rastrainer.slicer.scene.nodes import (
     Role,
@@ -51,7 +49,7 @@ class _Wanted:
     isGuided: bool
 
 
-class TraceLogic:
+class TraceLogic(Listening):
     """Asks for the trace as it grows, and shows it on the head while the trial is open.
 
     Guidance is shown in the scene where the simulator's setting, or the study, has it shown to the
@@ -59,15 +57,9 @@ class TraceLogic:
     """
 
     def __init__(
-        self,
-        scene: Any,
-        link: Link,
-        work: BackgroundWork,
-        clock: Callable[[], float] = time.monotonic,
+        self, services: TrialServices, clock: Callable[[], float] = time.monotonic
     ) -> None:
-        self._scene = scene
-        self._link = link
-        self._work = work
+        self._services = services
         self._clock = clock
         self._scenario: Scenario | None = None
         self._follower: TraceFollower | None = None
@@ -75,12 +67,9 @@ class TraceLogic:
         self._shown: _Wanted | None = None
         self._isAsking = False
         self._asked = -PERIOD_S
-        self._listening = Listening(
-            (link.stateChanged, self._follow), (link.opened, self._beginAgain)
+        super().__init__(
+            (services.link.stateChanged, self._follow), (services.link.opened, self._beginAgain)
         )
-
-    def close(self) -> None:
-        self._listening.close()
 
     def begin(self, scenario: Scenario) -> None:
         """Show traces on the head of a scenario, which is in the scene now."""
@@ -96,13 +85,13 @@ class TraceLogic:
         isDue = self._clock() - self._asked >= PERIOD_S
         if wanted is None or wanted == self._shown or self._isAsking or not isDue:
             return
-        if self._scenario is None or not self._link.isOpen:
+        if self._scenario is None or not self._services.link.isOpen:
             return
-        if requestedFile(findNode(self._scene, MODEL, Role.HEAD_MODEL)):
+        if requestedFile(findNode(self._services.scene, MODEL, Role.HEAD_MODEL)):
             # The head that is to be colored is still being read.
             return
         self._isAsking, self._asked = True, self._clock()
-        converse(self._link, self._work, self._updating(self._scenario, wanted))
+        self._services.converse(self._updating(self._scenario, wanted))
 
     def _follow(self, state: Mapping[str, Any]) -> None:
         trace, wasShown = state.get("trace"), self._wanted is not None
@@ -118,7 +107,7 @@ class TraceLogic:
             )
         if self._wanted is None and wasShown:
             self._shown = None
-            forgetTrace(self._scene)
+            forgetTrace(self._services.scene)
 
     def _beginAgain(self) -> None:
         self._isAsking, self._shown = False, None
@@ -141,7 +130,7 @@ class TraceLogic:
             isSameTrial = self._wanted is not None and self._wanted.trialId == wanted.trialId
             if isSameTrial and self._scenario is scenario:
                 self._shown = wanted
-                showTrace(self._scene, trace, wanted.isGuided)
+                showTrace(self._services.scene, trace, wanted.isGuided)
         finally:
             self._isAsking = False
 

@@ -178,7 +178,7 @@ def calibration(study: Study) -> TreCalibration:
     return calibration_of(trial for history in histories for trial in history)
 
 
-class CurriculumLogic:
+class CurriculumLogic(Listening):
     """What the Curriculum panel does.
 
     The simulator is sent each trainee's progress, also of those not chosen here, whenever that is
@@ -195,12 +195,9 @@ class CurriculumLogic:
         self._sent: dict[str, CurriculumMessage] = {}
         self._standings: dict[str, CurriculumStanding | None] = {}
         self._stamps: dict[str, tuple[Study, tuple[int | None, ...] | None]] = {}
-        self._listening = Listening(
+        super().__init__(
             (trainees.changed, self._followTrainees), (link.opened, self._sendEverybody)
         )
-
-    def close(self) -> None:
-        self._listening.close()
 
     def standing(self) -> CurriculumStanding | None:
         return self._standings.get(self._trainees.chosen)

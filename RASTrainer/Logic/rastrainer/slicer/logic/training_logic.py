@@ -65,7 +65,7 @@ class TrialStatus:
         return self.phase in OPEN_PHASES
 
 
-class TrainingLogic:
+class TrainingLogic(Listening):
     """What the Training panel does; answers come by a later `process` of the link.
 
     Attributes:
@@ -98,13 +98,10 @@ class TrainingLogic:
         self._shownTrial = ""
         self._total = FIDUCIAL_COUNT
         self._loadings = 0
-        self._listening = Listening(
+        super().__init__(
             (link.stateChanged, self._follow),
             (link.pointsChanged, lambda _node: self.changed.emit()),
         )
-
-    def close(self) -> None:
-        self._listening.close()
 
     @property
     def status(self) -> TrialStatus:

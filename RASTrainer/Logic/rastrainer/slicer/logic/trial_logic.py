@@ -19,21 +19,16 @@ import time
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_from_json
 from rastrainer.protocol import MAX_JOURNAL_BYTES, OPEN_PHASES
-from rastrainer.scenario.scenario import Scenario
-from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic.conversation import Question, Steps, converse
 from rastrainer.slicer.logic.delivery_queue import Delivery, DeliveryQueue
-from rastrainer.slicer.program.child_process import Run, runHere
+from rastrainer.slicer.logic.trial_services import Question, Steps, TrialServices
 from rastrainer.slicer.scene.trial_scene import showTrial
-from rastrainer.slicer.signal import Listening, Signal
+from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.database import StudyBusyError
 from rastrainer.study.database.study import Study
@@ -55,8 +50,6 @@ from rastrainer.trial.analysis import (
 from rastrainer.trial.ctps import Trial
 from rastrainer.trial.record import TrialRecord
 
-T = TypeVar("T")
-
 RETRY_S = 5.0
 """After a study was locked or unreachable, until its trials are looked for again."""
 ANSWER_TIMEOUT_S = 60.0
@@ -76,35 +69,19 @@ class TrialLogic(DeliveryQueue):
     REFUSAL = _("A trial could not be stored: {error}")
     TOO_MANY = _("Trials arrive faster than they can be scored; they will be offered again later.")
 
-    def __init__(
-        self,
-        scene: Any,
-        link: Link,
-        findScenario: Callable[[str], Scenario],
-        openStudy: Callable[[], Study],
-        work: BackgroundWork,
-        cohort: Sequence[Trial] = (),
-        records: Path | None = None,
-        run: Run = runHere,
-    ) -> None:
-        """Begin to listen.
-
-        Args:
-            findScenario: gives the scenario of a name, in any thread.
-            openStudy: opens the study, in any thread; it may wait for a lock there.
-            cohort: the trials that CTPS compares with.
-            records: folder of the simulator's journals, if it is on this computer.
-            run: runs the functions that register and score trials.
-        """
-        super().__init__(link, link.trialCompleted, openStudy, work)
+    def __init__(self, services: TrialServices, cohort: Sequence[Trial] = ()) -> None:
+        """Begin to listen; `cohort` are the trials that CTPS compares with."""
+        link = services.link
+        super().__init__(
+            services,
+            link.trialCompleted,
+            (link.stateChanged, self._followTraining),
+            (link.opened, self._resumeAll),
+        )
         self.trialKept = Signal()
         self.trialScored = Signal()
         self.received: list[str] = []
-        self._scene = scene
-        self._findScenario = findScenario
         self._cohort = cohort
-        self._records = records
-        self._run = run
         self._beingScored: set[str] = set()
         self._scored: set[str] = set()
         self._unscored: deque[TrialRecord] = deque()
@@ -112,13 +89,6 @@ class TrialLogic(DeliveryQueue):
         self._retryAt: float | None = None
         # What this simulator has refused, such as trials of another one.
         self._refused: set[str] = set()
-        self._following = Listening(
-            (link.stateChanged, self._followTraining), (link.opened, self._resumeAll)
-        )
-
-    def close(self) -> None:
-        super().close()
-        self._following.close()
 
     def forgetWaiting(self) -> None:
         super().forgetWaiting()
@@ -132,19 +102,17 @@ class TrialLogic(DeliveryQueue):
     def _followTraining(self, state: Mapping[str, Any]) -> None:
         self._state = state
         if self._retryAt is not None and time.monotonic() >= self._retryAt:
-            converse(self._link, self._work, self._resuming())
+            self._services.converse(self._resuming())
 
     def _resumeAll(self) -> None:
         self._refused.clear()
-        converse(self._link, self._work, self._resuming())
-
-    def _inStudy(self, do: Callable[[Study], T]) -> T:
-        with self._openStudy() as study:
-            return do(study)
+        self._services.converse(self._resuming())
 
     def _store(self, delivery: Delivery) -> DeliveredTrial:
         isUnderWay = str(delivery.get("trialId")) in self._beingScored
-        return self._inStudy(lambda s: store_delivered(delivery, s, self._analyze, isUnderWay))
+        return self._services.inStudy(
+            lambda s: store_delivered(delivery, s, self._analyze, isUnderWay)
+        )
 
     def _accept(self, stored: DeliveredTrial) -> None:
         """Score a trial that is stored and acknowledged."""
@@ -155,12 +123,12 @@ class TrialLogic(DeliveryQueue):
             self.received.append(record.trial_id)
             self.trialKept.emit(record)
         if analysis is not None and record.trial_id not in self._beingScored:
-            converse(self._link, self._work, self._scoring(analysis, self.report))
-            self._work.later(lambda: self._show(analysis))
+            self._services.converse(self._scoring(analysis, self.report))
+            self._services.work.later(lambda: self._show(analysis))
 
     def _analyze(self, record: TrialRecord) -> TrialAnalysis:
-        scenario = self._findScenario(record.scenario)
-        return self._run(REGISTER, self._work.checkWanted, record, scenario, self._cohort)
+        scenario = self._services.findScenario(record.scenario)
+        return self._services.runWanted(REGISTER, record, scenario, self._cohort)
 
     def _reportUnscored(self, reason: object) -> None:
         self.report(_("A trial is stored but cannot be scored: {error}").format(error=reason))
@@ -170,8 +138,8 @@ class TrialLogic(DeliveryQueue):
         isOther = self._state.get("trialId") != analysis.record.trial_id
         if isOther and self._state.get("phase") in OPEN_PHASES:
             return
-        scenario = self._findScenario(analysis.record.scenario)
-        showTrial(self._scene, scenario, analysis, self._work.changeScene)
+        scenario = self._services.findScenario(analysis.record.scenario)
+        showTrial(self._services.scene, scenario, analysis, self._services.work.changeScene)
 
     def _resuming(self) -> Steps:
         """Score the trials that were not scored before connection or study were lost.
@@ -180,12 +148,12 @@ class TrialLogic(DeliveryQueue):
         """
         self._retryAt = None
         try:
-            self._unscored = deque((yield lambda: self._inStudy(Study.unrevealed)))
+            self._unscored = deque((yield lambda: self._services.inStudy(Study.unrevealed)))
         except Exception as error:
             self._noteBusy(error)
             self.report(str(error))
             return
-        while self._unscored and self._link.isOpen:
+        while self._unscored and self._services.link.isOpen:
             record = self._unscored.popleft()
             # Since the list was read it may have been scored.
             if record.trial_id in self._beingScored | self._scored | self._refused:
@@ -235,7 +203,7 @@ class TrialLogic(DeliveryQueue):
             study.set_truth(trialId, truth.true_tre_mm, truth.head_to_world)
 
         journal = None
-        if (yield lambda: self._inStudy(checks_journals)):
+        if (yield lambda: self._services.inStudy(checks_journals)):
             journal = yield from _fetchingJournal(trialId)
         try:
             scored = yield lambda: self._storeScore(analysis, truth, journal)
@@ -243,25 +211,24 @@ class TrialLogic(DeliveryQueue):
             raise
         except Exception:
             # It can never be scored, and is not requested again.
-            yield lambda: self._inStudy(storeTruth)
+            yield lambda: self._services.inStudy(storeTruth)
             raise
         yield ask(CommandName.TRIAL_SCORED, score_arguments(scored))
-        yield lambda: self._inStudy(storeTruth)
+        yield lambda: self._services.inStudy(storeTruth)
         return scored
 
     def _storeScore(
         self, analysis: TrialAnalysis, truth: RevealedTruth, journal: bytes | None
     ) -> TrialAnalysis:
         record = analysis.record
-        with self._openStudy() as study:
-            scored = self._run(
+        with self._services.openStudy() as study:
+            scored = self._services.runWanted(
                 SCORE,
-                self._work.checkWanted,
                 analysis,
                 truth,
-                self._findScenario(record.scenario),
+                self._services.findScenario(record.scenario),
                 score_references(study),
-                self._records,
+                self._services.records,
                 journal,
             )
             study.add_results(record.trial_id, score=scored.score, procedure=scored.procedure)
