@@ -151,8 +151,12 @@ class ScorePanel(Panel):
             self._named = None
             self._showMessage(str(error))
             return
-        entries = [(_entry(n, t), t.record.trial_id) for n, t in enumerate(history, start=1)]
-        entries.reverse()
+        text, entries = _("{number}: {task}, {day}"), []
+        for number, trial in enumerate(history, start=1):
+            record = trial.record
+            day = record.started_utc[:16].replace("T", " ")
+            entry = text.format(number=number, task=task_title(record.task), day=day)
+            entries.insert(0, (entry, record.trial_id))
         wanted = self._newTrial or chosenData(self._ui.trialComboBox)
         self._newTrial = ""
         offerEntries(self._ui.trialComboBox, entries, wanted)
@@ -187,10 +191,9 @@ class ScorePanel(Panel):
 
     def _showFeedback(self) -> None:
         """Show the feedback on the trial when it is known."""
-        sentences: list[str] = []
-        self._worst = ""
+        trial, self._worst = self._trial, ""
+        sentences = [] if trial is None else [_("Feedback on the trial is being prepared.")]
         try:
-            trial = self._trial
             feedback = None if trial is None else self._session.replay.feedback(trial)
         except InputError as error:
             sentences = [str(error)]
@@ -201,8 +204,6 @@ class ScorePanel(Panel):
                 score, others = feedback.sentences[:parts], feedback.sentences[parts:]
                 sentences = [*filter(None, [" ".join(score)]), *others]
                 self._worst = feedback.worst.label
-            elif trial is not None:
-                sentences = [_("Feedback on the trial is being prepared.")]
         setText(self._ui.feedbackText, "\n".join(sentences))
         self._showUsable()
 
@@ -235,14 +236,6 @@ def _reportOn(study: StudyPlace, folder: Path) -> Path:
     from rastrainer.study.study_data import read_study_data
 
     return write_report(read_study_data(study), folder).page
-
-
-def _entry(number: int, trial: StoredTrial) -> str:
-    return _("{number}: {task}, {day}").format(
-        number=number,
-        task=task_title(trial.record.task),
-        day=trial.record.started_utc[:16].replace("T", " "),
-    )
 
 
 def _title(trial: StoredTrial | None) -> str:

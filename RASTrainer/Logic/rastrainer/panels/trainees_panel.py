@@ -125,11 +125,8 @@ class TraineesPanel(Panel):
             self._session.settings.set(setting, chosen)
 
     def _showPlace(self) -> None:
-        """Show where the study is; a file is chosen only if no address is."""
         ui, place = self._ui, self._session.studyPlace
-        isFile = isinstance(place, Path)
-        ui.studyAddressLineEdit.text = "" if isFile else str(place)
-        ui.studyPathLineEdit.enabled = isFile
+        ui.studyAddressLineEdit.text = "" if isinstance(place, Path) else str(place)
         ui.studyPathLineEdit.currentPath = str(self._session.studyFile)
 
     def createTrainee(self) -> None:
@@ -207,7 +204,7 @@ class TraineesPanel(Panel):
         """Show whether a trainee is being deleted, and whether that can be canceled."""
         ui, isAtWork = self._ui, self._deletion.isUnderWay
         self._isErasing = self._isErasing and isAtWork
-        # What is deleted is what was chosen.
+        # What is deleted is what was chosen. A file of a study is chosen only if no address is.
         for widget in (ui.studyAddressLineEdit, ui.traineeComboBox):
             widget.enabled = not isAtWork
         isFile = isinstance(self._session.studyPlace, Path)
