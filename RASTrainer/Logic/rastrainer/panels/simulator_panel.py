@@ -57,7 +57,6 @@ class SimulatorPanel(Panel):
             (setup.finished, self._startAfterSetup),
             (program.wroteLine, ui.simulatorLogEdit.appendPlainText),
             (program.changed, self._showProgram),
-            (program.pairingChanged, self._showProgram),
         )
         self._showStatus(self._link.status)
         self._showProgram()

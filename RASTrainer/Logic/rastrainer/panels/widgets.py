@@ -222,7 +222,7 @@ class CancelableWork:
 
         Args:
             showSentence: shows a sentence, an empty one where the work has failed.
-            show: shows a step's name and the share of the work done; None shows the name.
+            show: shows a step and the share of the work done; None has the step shown as a sentence.
             showUsable: called when work begins and ends.
         """
         self.isUnderWay = self._isCanceled = False
@@ -230,11 +230,7 @@ class CancelableWork:
         self._showSentence, self._show, self._showUsable = showSentence, show, showUsable
 
     def run(self, work: Callable[[Progress], T]) -> T | None:
-        """Return what the work returns, None where the user has canceled it.
-
-        Args:
-            work: is given what it reports its progress to, which raises to cancel it.
-        """
+        """Return what the work returns, None where the user has canceled it."""
         self.isUnderWay, self._isCanceled = True, False
         title, self._button.text = self._button.text, _("Cancel")
         self._showUsable()

@@ -72,10 +72,7 @@ class ScenarioLogic:
     def show(
         self, scenarioName: str, taskName: str, then: Callable[[], None] = lambda: None
     ) -> None:
-        """Show a scenario's head and the fiducials of one of its tasks in the next turns.
-
-        `then` is called in the last of them.
-        """
+        """Show a scenario's head and a task's fiducials in the next turns; then call `then`."""
         scenario, later = self._cache.find(scenarioName), self._work.changeScene
         scenario.task(taskName)  # Raises before anything is shown.
         showScenario(self._scene, scenario, later)
@@ -92,14 +89,9 @@ class ScenarioLogic:
             showPlannedPlace(self._scene, scenario, capturedPointsNode(self._scene), fixed)
 
     def useHead(self, node: Any, progress: Progress = no_progress) -> tuple[Any, list[str]]:
-        """Make a model or a volume of the scene the displayed head.
+        """Make a model, or the skin of a volume, the displayed head.
 
         The head that was one before is hidden, and is no longer ours to fill.
-
-        Args:
-            node: a `vtkMRMLModelNode`, or a `vtkMRMLScalarVolumeNode` whose skin is extracted.
-            progress: called with each step and the share of the work done, ten times a second; it
-                may let the application draw, and may raise to cancel: then nothing is left behind.
 
         Returns:
             The head's model, and warnings about its volume, one sentence each.
@@ -122,10 +114,7 @@ class ScenarioLogic:
         return model, warnings
 
     def setRobotShown(self, shown: bool) -> None:
-        """Show the robot, which follows the link, or hide it.
-
-        The first time its links are read in the background; they come one after the other.
-        """
+        """Show the robot, which follows the link, or hide it; its links come one by one."""
         setRobotVisible(self._scene, shown)
         self._isRobotComing = shown
         if not shown:
@@ -206,7 +195,6 @@ class ScenarioFiles:
         """Write a scenario as a zip file and return a sentence that says what was removed.
 
         Args:
-            package: the new file.
             keepsFace: whether the head keeps its face and skull; otherwise the user has seen what
                 `drawFaceRemoval` has drawn.
             keepsNames: whether title, name and source stay, which may be the patient's name.
@@ -229,12 +217,7 @@ class ScenarioFiles:
     ) -> Scenario:
         """Copy a scenario with a part replaced, and return the copy.
 
-        Args:
-            plan: arguments of `rastrainer scenario plan`, such as `--procedure` with a file of one
-                procedure and its meshes beside it, which replaces one of the same name, or
-                `--landmarks` with a markups file of landmarks in the order of touching, which
-                replaces all.
-            name: of the scenario, which stays as it is.
+        `plan` are arguments of `rastrainer scenario plan`, such as `--landmarks` with a file.
         """
         folder = self._library / self._cache.newName(title)
         source = str(self._cache.find(name).folder)
@@ -269,9 +252,7 @@ class ComparedMethod:
     """How a method has registered the trials; lengths in mm, root mean squares over trials.
 
     Attributes:
-        name: a `RegistrationMethod`.
-        low: median of the lower ends of the 95 % intervals of the target error.
-        high: of the upper ends.
+        low, high: medians of the ends of the 95 % interval of the target error.
         residual: of the points that count; it does not show the error.
         held: share of the intervals that hold the true error.
     """
@@ -298,9 +279,7 @@ def compareMethods(
 ) -> list[ComparedMethod]:
     """Return how each method for which a head has the points registers simulated trials.
 
-    Args:
-        trials: how many.
-        skinShiftMm: between imaging and operation, RMS.
+    `skinShiftMm` is the RMS shift between imaging and operation.
     """
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary) / "methods"

@@ -31,11 +31,9 @@ class PlanOnImages:
     """What is planned, on the MRI and in the robot's World, mm.
 
     Attributes:
-        name: of the plan.
         target: (3,) float, RAS.
         entry: (3,) float, RAS, where a trajectory begins; None where only a point is planned.
-        targetWorld: (3,) float, where the registration puts the target.
-        entryWorld: (3,) float, or None.
+        targetWorld, entryWorld: where the registration puts them.
         expected: the error to expect there; None if the registration cannot predict it.
     """
 
@@ -65,7 +63,6 @@ class PlanLogic:
         sentence: what was last said about the plan.
         trueErrorMm: how far the registration puts the target from where it is; None until
             the simulator has revealed it.
-        points: placed, removed and restored.
     """
 
     def __init__(self, scene: Any, link: Link, registration: RegistrationLogic) -> None:

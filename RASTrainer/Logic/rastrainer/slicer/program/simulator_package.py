@@ -74,10 +74,7 @@ class SimulatorPackage:
         )
 
     def origin(self) -> str:
-        """Return what distinguishes this package from another of the same version.
-
-        Empty where it is not known.
-        """
+        """Return what distinguishes this package from others of its version; empty if unknown."""
         with contextlib.suppress(InputError):
             if self.checkout is None:
                 return self.digest()
@@ -86,10 +83,7 @@ class SimulatorPackage:
         return ""
 
     def sizesMB(self) -> tuple[int, int] | None:
-        """Return about what is downloaded and what is kept on this platform, 10⁶ bytes.
-
-        None where it was not measured.
-        """
+        """Return about what is downloaded and kept on this platform; None if not measured."""
         with contextlib.suppress(InputError, KeyError, TypeError, ValueError):
             measured = read_json(self.folder / SIZES, LIMIT_BYTES)
             entry = measured[f"{sys.platform}-{platform.machine()}"]

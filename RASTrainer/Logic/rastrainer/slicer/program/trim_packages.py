@@ -53,10 +53,11 @@ def trim(folder: Path) -> tuple[int, int]:
         for path in list(folder.rglob(pattern)):
             path.unlink()
     loaded = loaded_libraries(folder)
-    if loaded:
-        for path in _libraries(folder):
-            if path.name not in loaded:
-                path.unlink()
+    libraries = [path for name in MANY_LIBRARIES for path in (folder / name).rglob("*.so*")]
+    for path in libraries if loaded else ():
+        isLibrary = path.suffix == ".so" or ".so." in path.name
+        if isLibrary and path.is_file() and path.name not in loaded:
+            path.unlink()
     after = size(folder)
     return after, before - after
 
@@ -86,7 +87,13 @@ def loaded_libraries(folder: Path) -> set[str]:
 
 def third_party_imports(folder: Path) -> set[str]:
     """Return the installed modules that the simulator's sources import, wherever they do."""
-    names = {name for path in _sources(folder) for name in _imported(path)}
+    names: set[str] = set()
+    for path in _sources(folder):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                names.update(alias.name for alias in node.names)
+            elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+                names.add(node.module)
     own = {*sys.stdlib_module_names, *SOURCES}
     foreign = {name for name in names if name.partition(".")[0] not in own}
     return {name for name in foreign if importlib.util.find_spec(name.partition(".")[0])}
@@ -98,21 +105,6 @@ def _sources(folder: Path) -> Iterator[Path]:
         root = Path(found.origin).parent if found and found.origin else folder / package
         for path in root.rglob("*.py"):
             if path.relative_to(root).parts[0] not in SLICERS_OWN:
-                yield path
-
-
-def _imported(path: Path) -> Iterator[str]:
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            yield node.module
-
-
-def _libraries(folder: Path) -> Iterator[Path]:
-    for name in MANY_LIBRARIES:
-        for path in list((folder / name).rglob("*")):
-            if path.is_file() and (path.suffix == ".so" or ".so." in path.name):
                 yield path
 
 
