@@ -42,7 +42,6 @@ class StudyPanel(Panel):
         self._logic = session.study
         self._form = QuestionnaireForm(ui.questionnaireWidget)
         self._progress: StepProgress | None = None
-        self._judged: tuple | None = None
         connectClick(ui.beginStudyButton, self.begin, _("The study was not started."))
         connectClick(ui.enrollButton, self._logic.enroll, _("The trainee was not enrolled."))
         self.startStep = guardedAction(self._logic.startStep, _("The step was not started."))
@@ -116,18 +115,13 @@ class StudyPanel(Panel):
         setText(self._ui.stepTimeText, text)
 
     def _followTrial(self) -> None:
-        """Warn, once for each trial, of one that will not count."""
+        """Warn of a trial that will not count."""
         self._showButtons()
-        trial = self._session.training.status
-        key = (trial.trainee, trial.task, trial.mode, trial.method, trial.procedure, trial.isOpen)
-        if key != self._judged:
-            self._judged = key
-            with contextlib.suppress(InputError):
-                setText(self._ui.offProtocolText, self._logic.offProtocolSentence())
+        with contextlib.suppress(InputError):
+            setText(self._ui.offProtocolText, self._logic.offProtocolSentence())
 
     def _show(self) -> None:
         ui = self._ui
-        self._judged = None
         protocol = progress = None
         title = _("No protocol: trainees practice freely.")
         try:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -69,7 +69,7 @@ class TrainingLogic(Listening):
     """What the Training panel does; answers come by a later `process` of the link.
 
     Attributes:
-        changed: emits nothing, whenever `status` has changed.
+        changed: emits nothing, whenever `status` has changed in more than its time.
         answered: emits the sentence of a command that was refused, empty where it was accepted.
         sceneShown: emits the `Scenario` of an open trial whose head and fiducials are now shown.
         learner: pseudonym of the trainee doing the tutorial before the trial run; empty if none.
@@ -211,12 +211,16 @@ class TrainingLogic(Listening):
             self.command(CommandName.START_TASK, {"task": TRIAL_RUN, **who})
 
     def _follow(self, state: Mapping[str, Any]) -> None:
+        before = replace(self.status, elapsedS=0.0)
         self._state, self._stateTime = state, self._clock()
         self._showScene()
+        if before != replace(self.status, elapsedS=0.0):
+            self.changed.emit()
 
     def forgetScene(self) -> None:
         self._shownTrial = ""
         self._showScene()
+        self.changed.emit()
 
     def _showScene(self) -> None:
         """Have the scene of the open trial shown, unless it is."""
@@ -227,7 +231,6 @@ class TrainingLogic(Listening):
                 self._shownTrial = trial
                 forgetStoredTouches(self._scene)
                 self._link.send(CommandName.LIST_TASKS, {}, self._showTrialScene)
-        self.changed.emit()
 
     def _showTrialScene(self, reply: Reply) -> None:
         """Show head and fiducials of the trial that runs, so that touches appear on them."""
