@@ -46,9 +46,9 @@ WORDS = {
 class NextStepPanel(Panel):
     """Leads through a session: it draws what `nextStep` says, and lets the sections do it.
 
-    It folds and opens sections whenever the workflow moves to another one, and only then. What the
-    user opens or folds stays so until then. Sections without a next step, such as Scenario and
-    Plan, are never changed.
+    It folds and opens sections only when the workflow moves to another one. Until then, sections
+    stay as the user opens or folds them. Sections without a next step, such as Scenario and Plan,
+    are never changed.
     """
 
     def __init__(
@@ -151,7 +151,7 @@ class NextStepPanel(Panel):
         if trainees.chosen != now.trainee:
             now = replace(now, hasPracticed=False, hasNewResult=False, isResultShown=False)
         now = replace(now, trainee=trainees.chosen, studyStep=None, needsRepeatReason=False)
-        # The section Trainees shows what is wrong with the study.
+        # The section Trainees shows the error.
         with contextlib.suppress(InputError):
             now = replace(now, hasTrainees=bool(trainees.trainees()))
             now = replace(now, hasPracticed=now.hasPracticed or bool(trainees.history()))

@@ -159,7 +159,7 @@ NEXT = {
 
 
 def instruction(status: ProcedureStatus) -> str:
-    """Return what comes next; empty if that is not part of the procedure."""
+    """Return the next thing to do in the procedure, if any."""
     text = NEXT[status.phase] if status.isUnderWay else ""
     if not text or status.phase != Phase.VERIFYING.value:
         return text

@@ -78,7 +78,7 @@ class StudyPanel(Panel):
         question = _("Why is it skipped? The reason goes into the report.")
         step = None if self._progress is None else self._progress.next_step
         if step is not None:
-            # By its name: while the dialog is open, the step may be done.
+            # The step may be done while the dialog is open.
             skip = partial(self._logic.skipStep, step.name)
             self._withReason(_("Skip the step"), question, skip)
 

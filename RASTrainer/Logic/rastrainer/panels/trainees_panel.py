@@ -1,4 +1,4 @@
-"""The section Trainees: create, choose, archive, export and delete, and what they have done."""
+"""The section Trainees: create, choose, archive, export and delete them, and show their trials."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ class TraineesPanel(Panel):
             self._showPlace()
 
     def _showNoStudy(self, path: Path) -> None:
-        """Say why what was chosen is no study; the beginning of a path is none either, yet."""
+        """Say why a path is no study, unless the user may still be typing it."""
         sentence = ""
         if path.is_dir():
             sentence = _(
@@ -204,7 +204,7 @@ class TraineesPanel(Panel):
         """Show whether a trainee is being deleted, and whether that can be canceled."""
         ui, isAtWork = self._ui, self._deletion.isUnderWay
         self._isErasing = self._isErasing and isAtWork
-        # What is deleted is what was chosen. A file of a study is chosen only if no address is.
+        # Nobody else is chosen meanwhile. A file is chosen only if no address is.
         for widget in (ui.studyAddressLineEdit, ui.traineeComboBox):
             widget.enabled = not isAtWork
         isFile = isinstance(self._session.studyPlace, Path)

@@ -41,8 +41,8 @@ class DeliveryQueue(Listening):
     TOO_MANY = ""
     """Sentence where too many trials wait; without it nothing is said."""
     IN_TURN = True
-    """Whether a trial is stored only after the one before was accepted; otherwise all are stored
-    before whatever is received after them."""
+    """Whether a trial waits until the previous one is accepted; otherwise all are stored before
+    anything that arrives later."""
 
     def __init__(self, services: TrialServices, delivered: Signal, *others: Heard) -> None:
         """`others` are listened to as long."""
@@ -78,7 +78,7 @@ class DeliveryQueue(Listening):
         raise NotImplementedError
 
     def _receive(self, delivery: Delivery) -> None:
-        """Queue a delivered trial; what is dropped is offered again."""
+        """Queue a delivered trial; the simulator offers a dropped one again."""
         known = (*self._underWay, *self._waiting)
         if any(each.get("trialId") == delivery.get("trialId") for each in known):
             return

@@ -79,7 +79,7 @@ class ModuleSession:
         """Open a session.
 
         Args:
-            findKit: returns what makes the connector; None where it is not installed.
+            findKit: returns the factory of the connector; None if it is not installed.
             settings: of the user; without them what the user chooses is forgotten at the end.
             callSoon: has something called in the application's next turn.
         """
@@ -281,7 +281,7 @@ class ModuleSession:
         return self.link.isOpen and self.training.status.isOpen
 
     def _showTrainees(self, *_values: Any) -> None:
-        """Let each panel show what is new in the study, in a separate turn."""
+        """Let each panel show the changed study in a separate turn."""
         for listener in self.trainees.changed.listeners:
             self.work.later(listener)
 

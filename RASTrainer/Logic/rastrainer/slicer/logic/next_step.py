@@ -16,7 +16,7 @@ from rastrainer.slicer.translation import _
 
 
 class NextAction(str, Enum):
-    """What the button does."""
+    """Actions of the button."""
 
     WAIT = "wait"
     START_SIMULATOR = "start simulator"
@@ -74,7 +74,7 @@ class WorkflowState:
         isUnscored: the trial that was registered last could not be kept or scored.
         hasNewResult: a trial of the chosen trainee was scored and has not been viewed.
         isResultShown: the score was viewed last.
-        studyStep: what the study asks the chosen trainee for; None where it asks for nothing.
+        studyStep: next step of the chosen trainee in the study; None without one.
         studySentence: the same for people.
     """
 

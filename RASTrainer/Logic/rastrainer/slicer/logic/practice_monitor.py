@@ -95,7 +95,7 @@ class PracticeMonitor:
                 self._changed(ended[0])
             self._trialId = trial.trialId
             self._practicing, self._seen = practicing, trial.elapsedS
-            # What was played before this Slicer started may have been counted by the previous one.
+            # A previous Slicer may have counted the practice before this one started.
             self._kept = trial.elapsedS if self._isFirstSight else 0.0
             requested = self._requestedStep()
             self._left = KEPT_EVERY_S if requested is None else requested[0].practice_left_s

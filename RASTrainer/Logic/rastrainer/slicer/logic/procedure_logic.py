@@ -26,9 +26,9 @@ class ProcedureStatus:
     Attributes:
         name: of the procedure; empty where the trial has none.
         trajectory: number of the current line, from 0.
-        entryDistanceMm: of the planned entry from the guide's axis; None where there is no guide.
-        angleDeg: between guide and planned line; None where there is no guide.
-        standOffMm: of the guide's tip from the entry; None where there is no guide.
+        entryDistanceMm: of the planned entry from the guide's axis; None without a guide.
+        angleDeg: between guide and planned line; None without a guide.
+        standOffMm: of the guide's tip from the entry; None without a guide.
         feedMm: how far drill or instrument is beyond the guide's tip.
         lastCheckMm: error at the checkpoint that was touched last; None before.
     """
@@ -76,7 +76,7 @@ class ProcedureLogic(Listening):
     Attributes:
         changed: emits nothing, whenever `status` has changed.
         outcomeChanged: emits nothing, whenever `outcome` has changed.
-        answered: emits the sentence of a command that was refused, empty where it was accepted.
+        answered: emits the error of each command, empty if it was accepted.
         status: of the trial's procedure.
         outcome: of the procedure that was scored last; None before, and during the next one.
         isRegistrationFailed: whether the touches that wait for it could not be registered; the

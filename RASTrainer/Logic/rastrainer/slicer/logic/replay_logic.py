@@ -45,7 +45,7 @@ class ReplayLogic:
     Attributes:
         feedbackFound: emits nothing, whenever the feedback on another trial is known.
         shown: emits nothing, whenever another trial is shown, with its touches to be registered.
-        procedureShown: emits the `ProcedureOutcome` of that trial, None where it has none.
+        procedureShown: emits the `ProcedureOutcome` of that trial, None without one.
         isReleasing: whether states of a closed scene's replay are left, which `process` releases.
     """
 

@@ -1,4 +1,4 @@
-"""Leads each trainee through the study's protocol: what comes next, and how it ended."""
+"""Leads each trainee through the steps of the study's protocol."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ class StudyLogic(Listening):
     """What the Study panel does for the chosen trainee, and for all enrolled trainees.
 
     Everything done is in the study's file before anyone is informed, so that the trainee resumes
-    there when it is opened again. The simulator is sent what comes next for each trainee, also for
-    those not chosen here, so that its own menu starts nothing else. Trial runs and breaks end by
-    themselves; `process` is to be called once a second, or more often.
+    there when it is opened again. The simulator is sent the next step of each trainee, chosen
+    here or not, so that its menu starts nothing else. Trial runs and breaks end by themselves;
+    `process` is to be called once a second, or more often.
 
     Attributes:
         changed: emits nothing, whenever a step may have been done.
@@ -243,13 +243,13 @@ class StudyLogic(Listening):
         self.changed.emit()
 
     def _leadAgain(self, name: str) -> None:
-        """Update one trainee, and send the simulator even what it already knows."""
+        """Update one trainee, and send the simulator the next step even if it knows it."""
         self._sentSteps.pop(name, None)
         self.leadOn(name)
 
     def _followTrainees(self) -> None:
         """Update the chosen and any new trainee, or everybody if it is another study."""
-        # The section Trainees shows what is wrong with the study.
+        # The section Trainees shows the error.
         with contextlib.suppress(InputError):
             enrolled = self.study.enrolled()
             for name in [name for name in self._sentSteps if name not in enrolled]:

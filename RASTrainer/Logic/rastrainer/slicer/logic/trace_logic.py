@@ -138,7 +138,7 @@ class TraceLogic(Listening):
 MODEL, MARKUPS = "vtkMRMLModelNode", "vtkMRMLMarkupsFiducialNode"
 DISTANCE_SCALARS = "distance to the trace (mm)"
 FARTHEST_MM = 20.0
-"""What is farther from the trace has the color of this distance."""
+"""Skin farther from the trace has the color of this distance."""
 NEXT_COLOR = (0.75, 0.0, 0.5)
 """Far from the trace, the head is yellow."""
 
@@ -157,7 +157,7 @@ def showTrace(scene: Any, trace: FollowedTrace, isGuided: bool) -> None:
         pass
     elif not (isGuided and len(trace.places)):
         removeHeadColors(head, DISTANCE_SCALARS)
-    # Between the trial's scene and this trace another head may have been shown.
+    # Another head may have been shown meanwhile.
     elif surfaceOf(head) and head.GetPolyData().GetNumberOfPoints() == len(trace.away_mm):
         near = np.minimum(trace.away_mm, FARTHEST_MM)
         colorSkin(head, DISTANCE_SCALARS, near, (0.0, FARTHEST_MM), _("To trace (mm)"))

@@ -32,7 +32,7 @@ LOOK_EVERY_S = 1.0
 
 
 class TraineeLogic:
-    """What the Trainees panel does, on a study that is opened when it is first needed.
+    """Trainees of a study, which is opened when it is first needed.
 
     Attributes:
         changed: emits nothing, whenever trainees or their trials may have changed.
@@ -126,7 +126,7 @@ class TraineeLogic:
         self.changed.emit()
 
     def delete(self, progress: Progress = no_progress) -> Erasure:
-        """Delete the chosen trainee with all trials and journals, for good; return what was.
+        """Delete the chosen trainee with all trials and journals, for good; return their numbers.
 
         Args:
             progress: called many times a second meanwhile, with a step once something is deleted;
@@ -179,7 +179,7 @@ def calibration(study: Study) -> TreCalibration:
 
 
 class CurriculumLogic(Listening):
-    """What the Curriculum panel does.
+    """Sets curricula, and follows the trainees through them.
 
     The simulator is sent each trainee's progress, also of those not chosen here, whenever that is
     new; everything is computed from the study, so that nothing is lost when either side ends.
@@ -221,7 +221,7 @@ class CurriculumLogic(Listening):
 
     def _followTrainees(self) -> None:
         """Send the standings that have changed, or everybody's in another study."""
-        # The section Trainees shows what is wrong with the study.
+        # The section Trainees shows the error.
         with contextlib.suppress(InputError):
             study = self._trainees.study
             store = CurriculumStore(study)

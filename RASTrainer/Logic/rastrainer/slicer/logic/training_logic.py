@@ -37,7 +37,7 @@ class TrialStatus:
     """State of the simulator's trial; without one, its phase is `idle`.
 
     Attributes:
-        nextPoint: label of the fiducial to touch, empty where there is none.
+        nextPoint: label of the fiducial to touch, if any.
         touched: how many points are kept.
         total: how many there are to touch.
         elapsedS: the trial's time, pauses left out.
@@ -70,7 +70,7 @@ class TrainingLogic(Listening):
 
     Attributes:
         changed: emits nothing, whenever `status` has changed in more than its time.
-        answered: emits the sentence of a command that was refused, empty where it was accepted.
+        answered: emits the error of each command, empty if it was accepted.
         sceneShown: emits the `Scenario` of an open trial whose head and fiducials are now shown.
         learner: pseudonym of the trainee doing the tutorial before the trial run; empty if none.
     """

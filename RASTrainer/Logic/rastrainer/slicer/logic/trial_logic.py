@@ -1,4 +1,4 @@
-"""What happens when a finished trial arrives: registered, stored, acknowledged and scored.
+"""Finished trials, when they arrive, are registered, stored, acknowledged and scored.
 
 Checking, registering, scoring and storing is done in the background; the scene and the link are the
 main thread's.
