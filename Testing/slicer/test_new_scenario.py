@@ -178,7 +178,7 @@ def test_a_draft_is_hidden_once_a_scenario_is_made_and_shown_when_it_is_found_ag
 ):
     made = host.widget.logic.session.scenarios.find("colin27")
     monkeypatch.setattr(scenario_maker, "planScenario", lambda *_arguments: [])
-    monkeypatch.setattr(scenario_maker, "load_scenario", lambda _folder: made)
+    monkeypatch.setattr(scenario_logic, "load_scenario", lambda _folder: made)
     monkeypatch.setattr(head_preview, "findSkin", found_once(head_preview.findSkin))
     volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "phantom")
     rendering = host.scene.AddNode(slicer.vtkMRMLCPURayCastVolumeRenderingDisplayNode())

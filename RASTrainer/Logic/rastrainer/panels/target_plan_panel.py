@@ -156,11 +156,13 @@ def _entries(node: Any | None) -> list[tuple[str, str]]:
 
 
 def _place(plan: PlanOnImages) -> str:
-    x, y, z = (fixed(value, 1) for value in plan.targetWorld)
-    words = _("target x {x}, y {y}, z {z} mm").format(x=x, y=y, z=z)
-    if plan.entryWorld is not None:
-        x, y, z = (fixed(value, 1) for value in plan.entryWorld)
-        words += _("; entry x {x}, y {y}, z {z} mm").format(x=x, y=y, z=z)
+    *entry, target = (
+        {axis: fixed(value, 1) for axis, value in zip("xyz", end, strict=True)}
+        for end in plan.endsWorld
+    )
+    words = _("target x {x}, y {y}, z {z} mm").format(**target)
+    if entry:
+        words += _("; entry x {x}, y {y}, z {z} mm").format(**entry[0])
     return words
 
 

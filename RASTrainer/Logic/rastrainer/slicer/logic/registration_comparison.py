@@ -17,26 +17,6 @@ from rastrainer.slicer.scene.registration_input import Choices, Pairs, Remedy, S
 
 
 @dataclass(frozen=True, eq=False)
-class ComparisonRequest:
-    """What is to be registered.
-
-    Attributes:
-        choices: by which they were chosen.
-        kind: of the fit that is shown.
-        target: (3,) float, RAS mm, where errors are reported; None where there is no target.
-        skin: of the head; None where there is no head.
-        headPoints: (v, 3) float, RAS mm, the points of a head that is to be colored, else None.
-    """
-
-    pairs: Pairs
-    choices: Choices
-    kind: str
-    target: np.ndarray | None
-    skin: SkinNormals | None
-    headPoints: np.ndarray | None
-
-
-@dataclass(frozen=True, eq=False)
 class Comparison:
     """The fits of the same pairs side by side.
 
@@ -67,27 +47,41 @@ class Comparison:
         return target_error(self.shown, place, self.localizations[self.shown.kind])
 
 
-def compareFits(request: ComparisonRequest) -> Comparison:
-    """Register the pairs of a request in all ways."""
-    pairs, choices, skin = request.pairs, request.choices, request.skin
-    weights = choices.weights(pairs.labels)
-    fits = register_all_kinds(pairs.moving, pairs.fixed, pairs.labels, weights)
+def compareFits(
+    pairs: Pairs,
+    choices: Choices,
+    kind: str,
+    target: np.ndarray | None,
+    skin: SkinNormals | None,
+    headPoints: np.ndarray | None,
+) -> Comparison:
+    """Register pairs in all ways.
+
+    Args:
+        choices: by which they were chosen.
+        kind: of the fit that is shown.
+        target: (3,) float, RAS mm, where errors are reported; None where there is no target.
+        skin: of the head; None where there is no head.
+        headPoints: (v, 3) float, RAS mm, the points of a head that is to be colored, else None.
+    """
+    fits = register_all_kinds(
+        pairs.moving, pairs.fixed, pairs.labels, choices.weights(pairs.labels)
+    )
     # Errors stated for single points replace those estimated from the skin.
     localizations = {
         kind: None if skin is None or fit.weights is not None else skin.localizationError(fit)
         for kind, fit in fits.items()
     }
     errors, leaveOneOut = {}, {}
-    for kind, fit in fits.items():
+    for each, fit in fits.items():
         with contextlib.suppress(InputError):
-            if request.target is not None:
-                errors[kind] = target_error(fit, request.target, localizations[kind])
+            if target is not None:
+                errors[each] = target_error(fit, target, localizations[each])
         with contextlib.suppress(InputError):
-            leaveOneOut[kind] = fit.leave_one_out_mm()
-    shown = fits.get(request.kind, fits[RIGID])
-    headErrors = None
-    if request.headPoints is not None:
+            leaveOneOut[each] = fit.leave_one_out_mm()
+    shown, headErrors = fits.get(kind, fits[RIGID]), None
+    if headPoints is not None:
         with contextlib.suppress(InputError):
-            headErrors = expected_tre(shown, request.headPoints, localizations[shown.kind])
+            headErrors = expected_tre(shown, headPoints, localizations[shown.kind])
     found = remedies(fits[RIGID], choices)
     return Comparison(pairs, shown, fits, localizations, errors, leaveOneOut, found, headErrors)

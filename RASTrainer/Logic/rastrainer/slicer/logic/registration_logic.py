@@ -13,11 +13,7 @@ from rastrainer.errors import InputError
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.registration import Registration
 from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.logic.registration_comparison import (
-    Comparison,
-    ComparisonRequest,
-    compareFits,
-)
+from rastrainer.slicer.logic.registration_comparison import Comparison, compareFits
 from rastrainer.slicer.scene.error_colors import (
     clearResidualArrows,
     colorHead,
@@ -32,6 +28,7 @@ from rastrainer.slicer.scene.tables import showFits, showResiduals
 from rastrainer.slicer.scene.trial_scene import checkSameTask, showRegistration
 from rastrainer.slicer.signal import Signal
 
+Request = Callable[[], Comparison]
 ROLES = (Role.CAPTURED_POINTS, Role.FIXED_FIDUCIALS, Role.TARGET)
 
 
@@ -62,7 +59,7 @@ class RegistrationLogic:
         self._history: list[Choices] = [Choices()]
         self._seen: tuple = ()
         self._skins = SkinReader()
-        self._request: ComparisonRequest | None = None
+        self._request: Request | None = None
 
     @property
     def choices(self) -> Choices:
@@ -173,10 +170,10 @@ class RegistrationLogic:
             place = np.array(target.GetNthControlPointPositionWorld(0))
         isColored = self.isHeadColored and skin is not None
         points = slicer.util.arrayFromModelPoints(head).astype(float) if isColored else None
-        request = ComparisonRequest(pairs, self.choices, self.kind, place, skin, points)
+        request = partial(compareFits, pairs, self.choices, self.kind, place, skin, points)
         self._request = request
         self._work.do(
-            lambda: compareFits(request) if request is self._request else None,
+            lambda: request() if request is self._request else None,
             partial(self._take, request),
             lambda error: self._refuse(error) if request is self._request else None,
         )
@@ -187,7 +184,7 @@ class RegistrationLogic:
         self._colorHead(None)
         self.changed.emit()
 
-    def _take(self, request: ComparisonRequest, comparison: Comparison | None) -> None:
+    def _take(self, request: Request, comparison: Comparison | None) -> None:
         """Show a comparison, each part in a separate turn, unless it is outdated."""
         if comparison is None:
             return

@@ -168,9 +168,16 @@ class ScenarioFiles:
 
     def __init__(self, simulator: SimulatorLogic, cache: ScenarioCache, library: Path) -> None:
         """Scenarios come into the folder `library`, each into a separate folder."""
-        self._simulator = simulator
+        self.simulator = simulator
         self._cache = cache
         self._library = library
+
+    def add(self, title: str, make: Callable[[Path], object]) -> Scenario:
+        """Return the scenario that `make` makes in the folder it is given."""
+        folder = self._library / self._cache.newName(title)
+        make(folder)
+        self._cache.refresh()
+        return load_scenario(folder)
 
     def importScenario(self, package: Path, progress: Progress = no_progress) -> Scenario:
         """Unpack a scenario's zip file into the library."""
@@ -219,15 +226,14 @@ class ScenarioFiles:
 
         `plan` are arguments of `rastrainer scenario plan`, such as `--landmarks` with a file.
         """
-        folder = self._library / self._cache.newName(title)
-        source = str(self._cache.find(name).folder)
-        self.run(["plan", source, "-o", str(folder), f"--title={title}", *plan], progress)
-        self._cache.refresh()
-        return load_scenario(folder)
+        source, words = str(self._cache.find(name).folder), [f"--title={title}", *plan]
+        return self.add(
+            title, lambda folder: self.run(["plan", source, "-o", str(folder), *words], progress)
+        )
 
     def run(self, words: list[str], progress: Progress, mayFail: bool = False) -> str:
         """Run `rastrainer scenario`; see `SimulatorLogic.run`."""
-        return self._simulator.run(["scenario", *words], progress, mayFail)
+        return self.simulator.run(["scenario", *words], progress, mayFail)
 
 
 def planArguments(targets: Any | None, trajectory: Any | None) -> list[str]:

@@ -15,14 +15,12 @@ from rastrainer.errors import InputError
 from rastrainer.files.point_files import write_markups
 from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.scenario.points import touch_order
-from rastrainer.scenario.scenario import UNKNOWN_LICENSE, Scenario, load_scenario
+from rastrainer.scenario.scenario import UNKNOWN_LICENSE, Scenario
 from rastrainer.scenario.setup import SetUp, write_setup
 from rastrainer.scenario.writer import HeadDraft, write_draft
 from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.logic.head_preview import HeadPreview
-from rastrainer.slicer.logic.scenario_cache import ScenarioCache
-from rastrainer.slicer.logic.scenario_logic import planArguments
-from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
+from rastrainer.slicer.logic.scenario_logic import ScenarioFiles, planArguments
 from rastrainer.slicer.program.child_process import Run, runChild
 from rastrainer.slicer.scene.nodes import (
     ROLE_ATTRIBUTE,
@@ -71,14 +69,10 @@ class NewScenarioOptions:
 class ScenarioMaker:
     """What the panel New scenario does."""
 
-    def __init__(
-        self, scene: Any, simulator: SimulatorLogic, cache: ScenarioCache, library: Path, run: Run
-    ) -> None:
-        """Make scenarios in the folder `library`; `run` runs what finds and makes the head."""
+    def __init__(self, scene: Any, files: ScenarioFiles, run: Run) -> None:
+        """`run` runs what finds and makes the head."""
         self._scene = scene
-        self._simulator = simulator
-        self._cache = cache
-        self._library = library
+        self._files = files
         self._run = run
         self._preview = HeadPreview(scene, run)
 
@@ -99,11 +93,12 @@ class ScenarioMaker:
         `progress` may raise to cancel: then nothing is left behind.
         """
         title = options.title.strip() or _chosen(volumeNode).GetName()
-        folder = self._library / self._cache.newName(title)
-        warnings = self._plan(volumeNode, options, progress, folder)
-        scenario = load_scenario(folder)
+        warnings: list[str] = []
+        scenario = self._files.add(
+            title,
+            lambda folder: warnings.extend(self._plan(volumeNode, options, progress, folder)),
+        )
         self._preview.hide(volumeNode)
-        self._cache.refresh()
         return scenario, warnings
 
     def check(self, volumeNode: Any, options: NewScenarioOptions, progress: Progress) -> list[str]:
@@ -152,7 +147,7 @@ class ScenarioMaker:
                 write_markups(path, usedPoints(node, worldPoints(node), labelsOf(node)))
             words += ["--tasks", *map(str, tasks)] if tasks else []
             words += ["--check"] if folder is None else []
-            command = self._simulator.command([])
+            command = self._files.simulator.command([])
             folder = folder or Path(temporary, "none")
             return [*leftOut, *planScenario(make, folder, words, command, progress)]
 

@@ -95,7 +95,6 @@ class SimulatorProgram:
         self._child = ChildProcess(command)
         self._lastLine = ""
         self._isAskedToEnd = False
-        self._pair([], "")
         self._change(ProgramState.STARTING, _("The simulator is starting."))
 
     def stop(self) -> None:
@@ -108,7 +107,6 @@ class SimulatorProgram:
             return
         self._isAskedToEnd = True
         self._child.end()
-        self._pair([], "")
         self._change(ProgramState.STOPPING, _("The simulator is ending."))
 
     def process(self) -> None:
@@ -119,7 +117,6 @@ class SimulatorProgram:
         self._forwardLines(child)
         if isOver:
             self._child = None
-            self._pair([], "")
             self._change(*self._ended(child.exitStatus))
             command, self._next = self._next, None
             if command is not None:
@@ -129,7 +126,6 @@ class SimulatorProgram:
                     self._change(ProgramState.FAILED, str(error))
         elif child.exitStatus is not None and self.state is not ProgramState.STOPPING:
             # Its window, or the real Python of a launcher that was killed.
-            self._pair([], "")
             self._change(ProgramState.STOPPING, _("The simulator is ending."))
 
     def close(self) -> None:
@@ -139,7 +135,6 @@ class SimulatorProgram:
             self._child.close()
             self._forwardLines(self._child)
             self._child = None
-            self._pair([], "")
             self._change(ProgramState.STOPPED, _("The simulator was stopped."))
 
     def _ended(self, status: int | None) -> tuple[ProgramState, str]:
@@ -194,4 +189,6 @@ class SimulatorProgram:
 
     def _change(self, state: ProgramState, sentence: str) -> None:
         self.state, self.sentence = state, sentence
+        if state is not ProgramState.READY:
+            self.pageAddresses, self.pairingCode = [], ""
         self.changed.emit()
