@@ -222,7 +222,8 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
     def onSceneStartClose(self, caller=None, event=None) -> None:
         self.setParameterNode(None)
         if self._logic is not None:
-            self._logic.session.sceneWillBeCleared()
+            # The scene would take too long to delete the states of a replay at once.
+            self._logic.session.replay.keepStates()
 
     def onSceneEndClose(self, caller=None, event=None) -> None:
         if self._logic is not None:

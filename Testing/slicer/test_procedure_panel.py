@@ -124,6 +124,8 @@ def test_each_phase_offers_its_steps_and_says_what_comes_next(surgery):
                 lambda command=command, before=before: len(sent(simulator, command)) > before,
                 f"{command} is sent",
             )
+    moved = [each["velocityMmS"] * each["durationS"] for each in sent(simulator, "Feed")]
+    assert moved == [1.0, -1.0, 1.0, -1.0]
     assert "while the registration is verified" in host.find("acceptButton").toolTip
 
 
@@ -150,7 +152,7 @@ def test_the_errors_are_shown_with_the_shares_of_registration_and_hand(host):
     session.procedure.outcome = ProcedureOutcome(
         analysis, score_procedure(ProcedureMeasures.of(analysis), 300.0)
     )
-    session.procedure.changed.emit()
+    session.procedure.outcomeChanged.emit()
     host.unfold("procedureErrorsTable")
     table = host.find("procedureErrorsTable")
     assert [table.item(0, column).text() for column in range(4)] == ["Left", "1.50", "1.50", "0.00"]
