@@ -171,10 +171,7 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
     def cleanup(self) -> None:
         if self._building is not None:
             self._building.stop()
-        for timer, slot in (
-            (self._timer, self.onTimeout),
-            (self._workTimer, self.onWorkTimeout),
-        ):
+        for timer, slot in ((self._timer, self.onTimeout), (self._workTimer, self.onWorkTimeout)):
             if timer is not None:
                 timer.stop()
                 timer.disconnect("timeout()", slot)
@@ -182,7 +179,7 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
             self._panels.close()
         if self._logic is not None:
             self._logic.session.woken.disconnect(self.wake)
-            self._logic.close()
+            self._logic.session.close()
         self.setParameterNode(None)
         self.removeObservers()
         if self._uiWidget is not None:
@@ -212,7 +209,7 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
             return
         self._isWoken = False
         try:
-            self._logic.process()
+            self._logic.session.process()
         finally:
             restS = self._logic.session.restS(self.parent.isEntered)
             if restS is not None and not self._isWoken:
@@ -225,7 +222,8 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
     def onSceneStartClose(self, caller=None, event=None) -> None:
         self.setParameterNode(None)
         if self._logic is not None:
-            self._logic.session.sceneWillBeCleared()
+            # The scene would take too long to delete the states of a replay at once.
+            self._logic.session.replay.keepStates()
 
     def onSceneEndClose(self, caller=None, event=None) -> None:
         if self._logic is not None:
@@ -254,8 +252,7 @@ class RASTrainerLogic(ScriptedLoadableModuleLogic):
     """What the module can do without its widgets; the parts are in `rastrainer.slicer`."""
 
     def __init__(self) -> None:
-        from rastrainer.panels.application import callSoon
-        from rastrainer.panels.application import findPlaces
+        from rastrainer.panels.application import callSoon, findPlaces
         from rastrainer.slicer.link.connection import desktopKit
         from rastrainer.slicer.logic.module_session import ModuleSession
         from rastrainer.slicer.settings import Settings
@@ -269,14 +266,6 @@ class RASTrainerLogic(ScriptedLoadableModuleLogic):
         # Its decorator gives the class this constructor, which types cannot express.
         wrapped: Any = RASTrainerParameterNode
         return wrapped(super().getParameterNode())
-
-    def process(self) -> None:
-        """Do what is due."""
-        self.session.process()
-
-    def close(self) -> None:
-        """Disconnect, close the study, end the simulator that was started from here."""
-        self.session.close()
 
 
 #
@@ -325,15 +314,14 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
     def test_anAbsentSimulatorIsReportedAndTheSceneMayBeCleared(self):
         from rastrainer.slicer.link.link_status import LinkState
 
-        logic = RASTrainerLogic()
-        link = logic.session.link
-        link.connectTo("127.0.0.1", 1)
+        session = RASTrainerLogic().session
+        session.link.connectTo("127.0.0.1", 1)
         slicer.mrmlScene.Clear()
-        logic.process()
+        session.process()
         allowed = (LinkState.LOOKING, LinkState.ABSENT, LinkState.NOT_INSTALLED)
-        self.assertIn(link.status.state, allowed)
-        logic.close()
-        self.assertEqual(link.status.state, LinkState.OFF)
+        self.assertIn(session.link.status.state, allowed)
+        session.close()
+        self.assertEqual(session.link.status.state, LinkState.OFF)
 
     def test_theBuiltInScenarioIsShown(self):
         with self.fixture() as fixture:
@@ -403,6 +391,4 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
     def fixture(self):
         from rastrainer.panels.self_test_fixture import SelfTestFixture
 
-        module = slicer.modules.rastrainer.path
-        folder = Path(module).parent / "Resources"
-        return SelfTestFixture(Path(module), lambda name: str(folder / name))
+        return SelfTestFixture(Path(slicer.modules.rastrainer.path))

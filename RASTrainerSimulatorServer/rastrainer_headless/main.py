@@ -41,6 +41,7 @@ from rastrainer.slicer.logic.delivery_queue import AbortedTrialLogic
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
 from rastrainer.slicer.logic.trial_logic import TrialLogic
+from rastrainer.slicer.logic.trial_services import TrialServices
 from rastrainer.slicer.scene.error_colors import magnification
 from rastrainer.slicer.scene.nodes import labelsOf
 from rastrainer.slicer.scene.scenario_nodes import SceneFileLoader, showScenario
@@ -74,19 +75,15 @@ class HeadlessHost:
         self._touches = 0
         self._work = BackgroundWork()
         self._files = SceneFileLoader(self.application.scene, self._work)
-        self._presenter = TrialLogic(
-            self.application.scene,
-            self.link,
-            cache.find,
-            lambda: _openStudy(output),
-            self._work,
-            () if cohort is None else read_trials(cohort),
+        services = TrialServices(
+            self.application.scene, self.link, cache.find, lambda: _openStudy(output), self._work
         )
-        self._aborted = AbortedTrialLogic(self.link, lambda: _openStudy(output), self._work)
+        self._presenter = TrialLogic(services, () if cohort is None else read_trials(cohort))
+        self._aborted = AbortedTrialLogic(services)
+        self._procedure = ProcedureLogic(services)
         self._aborted.kept.connect(
             lambda trial: printEvent("aborted", trialId=trial.trial_id, reason=trial.reason)
         )
-        self._procedure = ProcedureLogic(self.application.scene, self.link, cache.find, self._work)
         self.link.statusChanged.connect(lambda status: printEvent("status", **asdict(status)))
         self.link.pointsChanged.connect(self._printPoints)
         self._presenter.trialScored.connect(self._printTrial)

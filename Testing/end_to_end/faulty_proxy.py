@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.logic.trial_services import TrialServices
 from rastrainer.study.database.study import Study
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.scene import HeadlessScene
@@ -162,13 +163,16 @@ class FaultyProxy:
 
 
 class SlicerSide:
-    """`make_logic(scene, link, open_study, work)` returns the logic, which is closed with it."""
+    """`make_logic` returns the logic on `TrialServices`, which is closed with it."""
 
-    def __init__(self, path, port, make_logic):
+    def __init__(self, path, port, make_logic, find_scenario=None, records=None):
         scene = HeadlessScene().scene
         self.link = Link(scene, headlessKit)
         self.work = BackgroundWork()
-        self.logic = make_logic(scene, self.link, lambda: Study.open(path), self.work)
+        services = TrialServices(
+            scene, self.link, find_scenario, lambda: Study.open(path), self.work, records
+        )
+        self.logic = make_logic(services)
         self.link.connectTo(port=port)
 
     def run_for(self, steps):

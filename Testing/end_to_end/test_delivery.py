@@ -68,13 +68,9 @@ class Server:
 
 def slicer_side(path, scenario, port, scored):
     """Return Slicer's side; `scored` gets the UUIDs of scored trials."""
-
-    def make(scene, link, open_study, work):
-        logic = TrialLogic(scene, link, lambda _name: scenario, open_study, work)
-        logic.trialScored.connect(lambda trial: scored.append(trial.record.trial_id))
-        return logic
-
-    return SlicerSide(path, port, make)
+    side = SlicerSide(path, port, TrialLogic, lambda _name: scenario)
+    side.logic.trialScored.connect(lambda trial: scored.append(trial.record.trial_id))
+    return side
 
 
 def deliver(folder, simulation, thread, trials, seed, longest_s):
@@ -144,11 +140,7 @@ TRIALS = 12
 
 
 def slicer_side_for_aborted(path, port):
-    return SlicerSide(
-        path,
-        port,
-        lambda _scene, link, open_study, work: AbortedTrialLogic(link, open_study, work),
-    )
+    return SlicerSide(path, port, AbortedTrialLogic)
 
 
 def write_aborted_trials(folder):

@@ -138,13 +138,9 @@ def test_slicer_connecting_later_stores_the_trial_and_its_score_replaces_the_ide
 ):
     alone = Alone(tmp_path / "alone", count, scenario)
 
-    def make_logic(scene, link, open_study, work):
-        return TrialLogic(
-            scene, link, lambda _name: scenario, open_study, work, cohort, alone.folder
-        )
-
+    find, make = lambda _name: scenario, lambda services: TrialLogic(services, cohort)
     with SimulatorProcess(alone.folder, "--no-views") as simulator:
-        slicer = SlicerSide(tmp_path / "study.db", simulator.port, make_logic)
+        slicer = SlicerSide(tmp_path / "study.db", simulator.port, make, find, alone.folder)
         scored, problems = [], []
         slicer.logic.trialScored.connect(scored.append)
         slicer.logic.problemFound.connect(problems.append)
@@ -183,13 +179,8 @@ def test_a_view_of_the_real_simulator_shows_its_own_score_until_slicer_scores_th
             view = WatchingView(joined)
             wait_until(lambda: OWN in said(view), "the simulator's own score")
             own = view.screen.menu
-
-            def make_logic(scene, link, open_study, work):
-                return TrialLogic(
-                    scene, link, lambda _name: scenario, open_study, work, cohort, records
-                )
-
-            slicer = SlicerSide(tmp_path / "study.db", simulator.port, make_logic)
+            find, make = lambda _name: scenario, lambda services: TrialLogic(services, cohort)
+            slicer = SlicerSide(tmp_path / "study.db", simulator.port, make, find, records)
 
             def is_replaced():
                 slicer.run_for(5)

@@ -17,6 +17,7 @@ from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
 from rastrainer.slicer.logic.trial_logic import TrialLogic
+from rastrainer.slicer.logic.trial_services import TrialServices
 from rastrainer.study.database.study import Study
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.scene import HeadlessScene
@@ -51,9 +52,10 @@ class SlicerSide:
 
     def open_logic(self):
         find = ScenarioCache(COLIN).find
-        self.logic = TrialLogic(
+        services = TrialServices(
             self.scene, self.link, find, lambda: Study.open(self.study), self.work
         )
+        self.logic = TrialLogic(services)
         self.logic.trialScored.connect(self.scored.append)
 
     def run_until(self, condition):

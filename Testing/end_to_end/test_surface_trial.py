@@ -81,11 +81,8 @@ def _written(records) -> int:
 
 def _stored_by_slicer(port, scenario, records, folder) -> dict:
     """Have Slicer's side store the trial, register it and score it."""
-
-    def make_logic(scene, link, open_study, work):
-        return TrialLogic(scene, link, lambda _name: scenario, open_study, work, (), records)
-
-    slicer = SlicerSide(folder / "study.db", port, make_logic)
+    find = lambda _name: scenario  # noqa: E731
+    slicer = SlicerSide(folder / "study.db", port, TrialLogic, find, records)
     scored, problems = [], []
     slicer.logic.trialScored.connect(scored.append)
     slicer.logic.problemFound.connect(problems.append)

@@ -53,14 +53,9 @@ def received(folder, port, scenario, **protocol):
         published = read_study_protocol(STUDIES / "published-protocol.json")
         StudyProgress(study).set_protocol(replace(published, **protocol))
     scored, problems = [], []
-
-    def make(scene, link, open_study, work):
-        logic = TrialLogic(scene, link, lambda _name: scenario, open_study, work)
-        logic.trialScored.connect(scored.append)
-        logic.problemFound.connect(problems.append)
-        return logic
-
-    slicer = SlicerSide(path, port, make)
+    slicer = SlicerSide(path, port, TrialLogic, lambda _name: scenario)
+    slicer.logic.trialScored.connect(scored.append)
+    slicer.logic.problemFound.connect(problems.append)
     try:
         # A problem may be one of this moment, after which the trial is asked for again.
         is_over = lambda: scored or (problems and is_revealed(path))  # noqa: E731

@@ -37,11 +37,7 @@ def scenario():
 
 def slicer_for_aborted(folder, simulator):
     """Return Slicer's side, once the simulator knows it."""
-    side = SlicerSide(
-        folder / "study.db",
-        simulator.port,
-        lambda _scene, link, open_study, work: AbortedTrialLogic(link, open_study, work),
-    )
+    side = SlicerSide(folder / "study.db", simulator.port, AbortedTrialLogic)
     run_logic_until(side.link, side.work, lambda: side.link.isOpen, TIMEOUT_S)
     return side
 
@@ -125,13 +121,9 @@ def test_a_foreign_registration_neither_reveals_the_truth_nor_leaves_a_trial_wit
                 assert "headToWorld" not in reply.data
             assert "must be the rigid one of the trial's points" in reply.error
         scored = []
-
-        def make(scene, link, open_study, work):
-            logic = TrialLogic(scene, link, lambda _name: scenario, open_study, work)
-            logic.trialScored.connect(scored.append)
-            return logic
-
-        slicer = SlicerSide(tmp_path / "study.db", simulator.port, make)
+        find = lambda _name: scenario  # noqa: E731
+        slicer = SlicerSide(tmp_path / "study.db", simulator.port, TrialLogic, find)
+        slicer.logic.trialScored.connect(scored.append)
         try:
             run_logic_until(slicer.link, slicer.work, lambda: scored, TIMEOUT_S)
             with Client(port=simulator.port) as bystander:

@@ -6,6 +6,7 @@ from rastrainer.errors import InputError
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.delivery_queue import MAX_WAITING, AbortedTrialLogic
+from rastrainer.slicer.logic.trial_services import TrialServices
 from rastrainer.study.database.study import Study
 from rastrainer_headless.connector import headlessKit
 from Testing.domain.trial.trial_records import make_aborted
@@ -23,7 +24,8 @@ class Lab:
         self.simulator = SimulatorDouble(lambda _name, _arguments: {})
         self.link = Link(scene, headlessKit)
         self.work = BackgroundWork()
-        self.logic = AbortedTrialLogic(self.link, self.open_study, self.work)
+        services = TrialServices(scene, self.link, None, self.open_study, self.work)
+        self.logic = AbortedTrialLogic(services)
         self.kept, self.problems = [], []
         self.logic.kept.connect(self.kept.append)
         self.logic.problemFound.connect(self.problems.append)
@@ -137,7 +139,7 @@ def test_aborted_trials_beyond_the_queue_limit_wait_for_the_next_offer(lab):
     for _ in range(2):
         for record in offered:
             lab.link.trialAborted.emit(record)
-        lab.run_until(lambda: not lab.logic._queue._waiting)
+        lab.run_until(lambda: not lab.logic._waiting)
     lab.run_until(lambda: len(lab.kept) >= MAX_WAITING)
     with Study.open(lab.path) as study:
         assert MAX_WAITING <= len(study.aborted("T-001")) <= len(offered)

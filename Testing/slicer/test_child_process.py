@@ -139,7 +139,7 @@ def test_work_runs_to_completion_with_its_steps_its_warnings_and_its_last_line(p
     steps = []
     code = f"print(*{lines!r}, sep=chr(10)); raise SystemExit(3)"
     ended = runChild([python, "-c", code], lambda *step: steps.append(step), "Beginning")
-    assert (ended.exitStatus, ended.lastLine, ended.warnings) == (3, "done", ("It is loud.",))
+    assert (ended.exitStatus, ended.lastLine, ended.warnings) == (3, "done", ["It is loud."])
     assert steps[-1] == ("Sawing", 0.5)
     assert set(steps) <= {("Beginning", 0.0), ("Sawing", 0.5)}
 

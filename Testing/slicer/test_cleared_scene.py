@@ -39,12 +39,12 @@ def add_list(scene, name, points):
 def test_a_chosen_list_is_not_mistaken_for_the_next_one_with_its_id(host, session):
     logic, fixed = session.registration, np.random.default_rng(1).normal(0, 50, (15, 3))
     own = [add_list(host.scene, name, fixed) for name in ("mine", "also mine")]
-    logic.chooseLists(*own)
+    logic.chooseLists(*own, None)
     logic.process()
     host.scene.Clear(0)
     other = [add_list(host.scene, name, fixed) for name in ("theirs", "also theirs")]
     assert [node.GetID() for node in other] == [node.GetID() for node in own]
-    assert logic.moving() is None
+    assert logic.lists()[0] is None
     assert (logic.shown, bool(logic.problem)) == (None, True)
 
 

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.logic.scenario_logic import MethodComparisonLogic
+from rastrainer.slicer.logic.scenario_logic import compareMethods
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
 from Testing.end_to_end.module.story import Story
 from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
@@ -43,9 +43,9 @@ class Simulator(SimulatorLogic):
 
 def test_the_programs_output_is_read(scenario):
     simulator = Simulator(json.dumps({"methods": {"surface": TOLD, "scan": TOLD}}))
-    surface, scan = MethodComparisonLogic(simulator).compare(scenario, 3, 2.0)
+    surface, scan = compareMethods(simulator, scenario, 3, 2.0)
     assert (surface.name, scan.name) == ("surface", "scan")
-    assert (surface.interval, surface.true, surface.held) == ((0.1, 1.2), 0.7, 0.95)
+    assert (surface.low, surface.high, surface.true, surface.held) == (0.1, 1.2, 0.7, 0.95)
     given = dict(zip(simulator.words[1::2], simulator.words[2::2], strict=True))
     assert (given["--trials"], given["--skin-shift"]) == ("3", "2.0")
 
@@ -64,7 +64,7 @@ def test_the_programs_output_is_read(scenario):
 )
 def test_a_failed_comparison_is_reported_in_one_sentence(scenario, text, script, said):
     with pytest.raises(InputError, match=said):
-        MethodComparisonLogic(Simulator(text, script)).compare(scenario, 1, 0.0)
+        compareMethods(Simulator(text, script), scenario, 1, 0.0)
 
 
 @pytest.mark.soak

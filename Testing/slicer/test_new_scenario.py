@@ -176,9 +176,9 @@ def test_a_found_head_becomes_a_segment_with_the_displayed_base_and_threshold(ho
 def test_a_draft_is_hidden_once_a_scenario_is_made_and_shown_when_it_is_found_again(
     host, monkeypatch
 ):
-    made = host.widget.logic.session.scenario.find("colin27")
+    made = host.widget.logic.session.scenarios.find("colin27")
     monkeypatch.setattr(scenario_maker, "planScenario", lambda *_arguments: [])
-    monkeypatch.setattr(scenario_maker, "load_scenario", lambda _folder: made)
+    monkeypatch.setattr(scenario_logic, "load_scenario", lambda _folder: made)
     monkeypatch.setattr(head_preview, "findSkin", found_once(head_preview.findSkin))
     volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "phantom")
     rendering = host.scene.AddNode(slicer.vtkMRMLCPURayCastVolumeRenderingDisplayNode())
@@ -272,7 +272,7 @@ def test_the_default_setup_is_shown_until_it_is_changed(host):
     assert changed.robot_base_mm == (0.0, -40.0)
 
 
-def test_a_plan_in_the_scene_is_included_in_the_scenario(host, tmp_path):
+def test_a_plan_in_the_scene_is_included_in_the_scenario(host):
     targets = host.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Targets")
     setPoints(targets, ("Tumor", "Cyst"), np.array([[1.0, 2, 3], [4, 5, 6]]))
     line = host.scene.AddNewNodeByClass("vtkMRMLMarkupsLineNode", "Biopsy")
@@ -294,8 +294,7 @@ def test_a_plan_in_the_scene_is_included_in_the_scenario(host, tmp_path):
     assert not wishes.hasSkull
     assert not wishes.hasVolume
     assert (wishes.source, wishes.license) == ("The Head Study", "CC BY 4.0")
-    words = host.widget.logic.session.scenarioMaker._words(wishes, tmp_path)
-    assert words[2:] == (
+    assert scenario_logic.planArguments(wishes.targets, wishes.trajectory) == [
         *("--target", "Tumor", "1.0", "2.0", "3.0", "--target", "Cyst", "4.0", "5.0", "6.0"),
         *("--trajectory", "Biopsy", "0.0", "0.0", "90.0", "1.0", "2.0", "3.0"),
-    )
+    ]

@@ -21,6 +21,7 @@ from rastrainer.trial.analysis import RevealedTruth
 from rastrainer_headless.connector import headlessKit
 from Testing.slicer.shown_scenario import show_whole
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
+from Testing.slicer.work_at_once import WorkAtOnce
 
 TUMOR = np.array([20.0, -30.0, 40.0])
 ENTRY = np.array([60.0, -40.0, 70.0])
@@ -38,7 +39,7 @@ class Room:
         fiducials = scenario.task("task-1").fiducials
         noise = np.random.default_rng(8).normal(0.0, 0.5, (15, 3))
         self.touched = transforms.apply(self.head_to_world, fiducials + noise)
-        self.registration = RegistrationLogic(scene)
+        self.registration = RegistrationLogic(scene, WorkAtOnce())
         self.logic = PlanLogic(scene, self.link, self.registration)
 
     def register(self):
@@ -79,19 +80,18 @@ def test_a_target_is_mapped_into_world_with_its_expected_error(room):
     room.register()
     plan = room.logic.read(room.target(TUMOR))
     shown = room.registration.shown
-    np.testing.assert_allclose(transforms.apply(shown.matrix, plan.targetWorld[None])[0], TUMOR)
+    np.testing.assert_allclose(transforms.apply(shown.matrix, plan.endsWorld), [TUMOR])
     there = transforms.apply(room.head_to_world, TUMOR[None])[0]
-    assert np.linalg.norm(plan.targetWorld - there) < 1.5
-    assert plan.expected == room.registration.targetError(TUMOR)
-    assert plan.entry is None
+    assert np.linalg.norm(plan.endsWorld[-1] - there) < 1.5
+    assert plan.expected == room.registration.comparison.targetError(TUMOR)
+    assert len(plan.ends) == 1
 
 
 def test_a_trajectory_goes_from_its_entry_to_the_target(room):
     room.register()
     plan = room.logic.read(room.target(ENTRY, TUMOR))
-    np.testing.assert_allclose(plan.target, TUMOR)
-    np.testing.assert_allclose(plan.entry, ENTRY)
-    length = np.linalg.norm(plan.entryWorld - plan.targetWorld)
+    np.testing.assert_allclose(plan.ends, [ENTRY, TUMOR])
+    length = np.linalg.norm(plan.endsWorld[0] - plan.endsWorld[1])
     assert length == pytest.approx(np.linalg.norm(ENTRY - TUMOR))
 
 
@@ -102,13 +102,13 @@ def test_each_planned_target_of_a_scenario_is_a_plan_and_so_is_its_trajectory(sc
     assert targetsOf(targets) == ("center", "Tumor")
     first, second = (room.logic.read(targets, row) for row in (0, 1))
     assert (first.name, second.name) == ("center", "Tumor")
-    np.testing.assert_allclose([first.target, second.target], [scenario.target_position, TUMOR])
-    assert second.expected == room.registration.targetError(TUMOR)
+    np.testing.assert_allclose([*first.ends, *second.ends], [scenario.target_position, TUMOR])
+    assert second.expected == room.registration.comparison.targetError(TUMOR)
     line = findNode(scene, "vtkMRMLMarkupsLineNode", Role.TRAJECTORY)
     assert targetsOf(line) == ()
     plan = room.logic.read(line)
     assert plan.name == "Biopsy"
-    np.testing.assert_allclose([plan.entry, plan.target], [ENTRY, TUMOR])
+    np.testing.assert_allclose(plan.ends, [ENTRY, TUMOR])
     room.simulator.close()
 
 

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.commands import CommandName
 from rastrainer.igtl.content import String
 from rastrainer.protocol import DeviceName
 from rastrainer.scenario.points import LABELS
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic, ProcedureStatus
+from rastrainer.slicer.logic.trial_services import TrialServices
 from Testing.slicer.simulator_double import run_logic_until, run_until_received
 from Testing.slicer.training_room import TRIAL, Room
 
@@ -26,7 +26,8 @@ class Theater(Room):
         self.touches, self.refused = [], ""
         super().__init__(scene, scenario)
         self.work = BackgroundWork()
-        self.procedure = ProcedureLogic(scene, self.link, lambda _name: scenario, self.work)
+        services = TrialServices(scene, self.link, lambda _name: scenario, None, self.work)
+        self.procedure = ProcedureLogic(services)
         self.said = []
         self.procedure.answered.connect(self.said.append)
         places = transforms.apply(scenario.head_to_world, scenario.task("task-1").fiducials)
@@ -114,17 +115,6 @@ def test_failures_after_the_procedure_has_moved_on_are_not_shown(theater):
     run_until_received(theater.link)
     assert theater.said == []
     assert not theater.procedure.isRegistrationFailed
-
-
-def test_each_step_sends_its_command(theater):
-    procedure = theater.procedure
-    procedure.command(CommandName.LOCK_GUIDE)
-    theater.run_until(lambda: theater.sent("LockGuide"))
-    procedure.feed(True)
-    procedure.feed(False)
-    theater.run_until(lambda: len(theater.sent("Feed")) == 2)
-    moved = [each["velocityMmS"] * each["durationS"] for each in theater.sent("Feed")]
-    assert moved == [1.0, -1.0]
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.igtl.content import String
-from rastrainer.procedure.errors import analyze_procedure, true_lines
+from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.protocol import DeviceName
 from rastrainer.trial.procedure_outcome import ProcedureMeasures, ProcedureOutcome, score_procedure
 from Testing.domain.procedure.made_up_procedure import made_up_meshes, made_up_procedure
@@ -88,7 +88,7 @@ def test_the_registration_method_is_chosen_beside_the_task(surgery):
 def test_a_head_without_landmarks_offers_only_its_fiducials(surgery):
     host, _simulator = surgery
     session = host.widget.logic.session
-    head = replace(session.scenario.find("colin27"), landmarks=())
+    head = replace(session.scenarios.find("colin27"), landmarks=())
     host.choose("methodComboBox", "Landmarks of the face")
     session.chooseTask(head.task("task-1"), head)
     box = host.find("methodComboBox")
@@ -124,6 +124,8 @@ def test_each_phase_offers_its_steps_and_says_what_comes_next(surgery):
                 lambda command=command, before=before: len(sent(simulator, command)) > before,
                 f"{command} is sent",
             )
+    moved = [each["velocityMmS"] * each["durationS"] for each in sent(simulator, "Feed")]
+    assert moved == [1.0, -1.0, 1.0, -1.0]
     assert "while the registration is verified" in host.find("acceptButton").toolTip
 
 
@@ -151,8 +153,7 @@ def test_the_errors_are_shown_with_the_shares_of_registration_and_hand(host):
     session.procedure.outcome = ProcedureOutcome(
         analysis, score_procedure(ProcedureMeasures.of(analysis, procedure), 300.0)
     )
-    session.procedure.lines = tuple(true_lines(done, np.eye(4)))
-    session.procedure.changed.emit()
+    session.procedure.outcomeChanged.emit()
     host.unfold("procedureErrorsTable")
     table = host.find("procedureErrorsTable")
     assert [table.item(0, column).text() for column in range(4)] == ["Left", "1.50", "1.50", "0.00"]

@@ -28,6 +28,7 @@ from rastrainer.slicer.scene.trial_scene import (
 )
 from rastrainer.transforms import MM_PER_M
 from Testing.slicer.shown_scenario import show_whole
+from Testing.slicer.work_at_once import WorkAtOnce
 
 LEGEND = "vtkMRMLColorLegendDisplayNode"
 
@@ -42,7 +43,7 @@ class Table:
         noise = np.random.default_rng(3).normal(0.0, 0.6, (15, 3))
         self.touched_on_mri = scenario.task("task-1").fiducials + noise
         self.touched = transforms.apply(scenario.perturbed_head_to_world(3), self.touched_on_mri)
-        self.logic = RegistrationLogic(scene)
+        self.logic = RegistrationLogic(scene, WorkAtOnce())
         self.changes = []
         self.logic.changed.connect(lambda: self.changes.append(self.logic.comparison))
 
@@ -103,7 +104,7 @@ def test_nothing_is_recomputed_while_nothing_changes(table, touches):
 def test_the_transform_shows_the_chosen_fit_and_remembers_its_lists(table):
     table.touch()
     table.logic.chooseKind(AFFINE)
-    transform = table.logic.transform()
+    transform = table.logic.transform
     np.testing.assert_allclose(
         arrayFromTransformMatrix(transform), table.logic.comparison.fits[AFFINE].matrix
     )
@@ -190,9 +191,9 @@ def test_a_problem_that_only_new_points_can_fix_has_a_message_and_no_button(chan
 def test_any_fiducial_may_be_left_out_until_too_few_are_left(table):
     table.touch()
     for label in LABELS[:12]:
-        table.logic.exclude(label)
+        table.logic.change(table.logic.choices.without((label,)))
     assert len(table.logic.shown.labels) == 3
-    table.logic.exclude(LABELS[12])
+    table.logic.change(table.logic.choices.without((LABELS[12],)))
     assert table.logic.comparison is None
     assert "at least 3" in table.logic.problem
     table.logic.undo()
@@ -202,7 +203,7 @@ def test_any_fiducial_may_be_left_out_until_too_few_are_left(table):
 def test_a_stated_localization_error_weights_only_the_rigid_fit_and_can_be_undone(table):
     table.touch()
     plain = table.logic.comparison
-    table.logic.localize("4", 5.0)
+    table.logic.change(table.logic.choices.localized("4", 5.0))
     weighted = table.logic.comparison
     fixed = table.scenario.task("task-1").fiducials
     weights = np.array([0.04 if label == "4" else 1.0 for label in LABELS])
@@ -211,7 +212,7 @@ def test_a_stated_localization_error_weights_only_the_rigid_fit_and_can_be_undon
     assert weighted.fits["affine"].fre_mm == plain.fits["affine"].fre_mm
     expected = target_error(again, table.scenario.target_position)
     assert weighted.errors["rigid"].expected_mm == pytest.approx(expected.expected_mm, rel=1e-3)
-    table.logic.exclude("1", "2")
+    table.logic.change(table.logic.choices.without(("1", "2")))
     assert len(table.logic.comparison.fits["rigid"].weights) == 13
     table.logic.undo()
     table.logic.undo()
@@ -221,8 +222,8 @@ def test_a_stated_localization_error_weights_only_the_rigid_fit_and_can_be_undon
 
 def test_the_default_localization_error_removes_the_weights(table):
     table.touch()
-    table.logic.localize("4", 5.0)
-    table.logic.localize("4", 1.0)
+    table.logic.change(table.logic.choices.localized("4", 5.0))
+    table.logic.change(table.logic.choices.localized("4", 1.0))
     assert table.logic.choices == Choices()
 
 
@@ -233,7 +234,7 @@ def test_reordered_points_keep_their_localization_errors():
 
 def test_another_trial_begins_without_the_changes_of_the_previous_one(table):
     table.touch()
-    table.logic.exclude("3")
+    table.logic.change(table.logic.choices.without(("3",)))
     setPoints(capturedPointsNode(table.scene), (), np.zeros((0, 3)))
     table.logic.process()
     table.touch()
@@ -245,7 +246,7 @@ def test_the_target_may_be_any_point_and_is_followed(table):
     table.touch()
     target = table.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Tumor")
     target.AddControlPoint(20.0, -30.0, 40.0)
-    table.logic.chooseTarget(target)
+    table.logic.chooseLists(None, None, target)
     table.logic.process()
     here = table.logic.comparison.errors[RIGID].target_mm
     assert here == (20.0, -30.0, 40.0)
@@ -260,7 +261,7 @@ def test_the_head_is_colored_by_the_expected_error_at_each_place(table):
     head = table.node(Role.HEAD_MODEL, "vtkMRMLModelNode")
     values = slicer.util.arrayFromModelPointData(head, TRE_SCALARS)
     points = slicer.util.arrayFromModelPoints(head)
-    there = table.logic.targetError(points[100])
+    there = table.logic.comparison.targetError(points[100])
     assert values[100] == pytest.approx(there.expected_mm)
     assert len(values) == len(points)
     display = head.GetDisplayNode()
@@ -289,7 +290,7 @@ def test_points_off_the_head_have_an_isotropic_error(table):
     setPoints(table.fixed, LABELS, 0.5 * table.scenario.task("task-1").fiducials)
     table.touch(transforms.apply(table.scenario.head_to_world, 0.5 * table.touched_on_mri))
     shown, position = table.logic.shown, table.scenario.target_position
-    assert table.logic.targetError(position) == target_error(shown, position)
+    assert table.logic.comparison.targetError(position) == target_error(shown, position)
 
 
 def test_other_lists_can_be_registered_and_deleted_nodes_do_not_matter(table):
@@ -297,7 +298,7 @@ def test_other_lists_can_be_registered_and_deleted_nodes_do_not_matter(table):
     mine = table.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Mine")
     moved = table.touched + np.array([10.0, 0.0, 0.0])
     setPoints(mine, LABELS, moved)
-    table.logic.chooseLists(mine, table.fixed)
+    table.logic.chooseLists(mine, table.fixed, None)
     table.logic.process()
     np.testing.assert_allclose(table.logic.shown.moving_mm, moved)
     table.scene.RemoveNode(mine)
@@ -417,11 +418,11 @@ def test_with_turns_each_part_of_a_registration_is_shown_in_a_separate_turn(
         work.yieldTime()
         work.process()
         arrows = table.node(Role.RESIDUAL_ARROWS, "vtkMRMLModelNode")
-        seen.append((logic.transform(), table.node(Role.FITS), arrows, logic.comparison))
+        seen.append((logic.transform, table.node(Role.FITS), arrows, logic.comparison))
     counts = [sum(part is not None for part in parts) for parts in seen]
     assert counts == sorted(counts)
     assert set(counts) == {0, 1, 2, 3, 4}
-    np.testing.assert_array_equal(arrayFromTransformMatrix(logic.transform()), logic.shown.matrix)
+    np.testing.assert_array_equal(arrayFromTransformMatrix(logic.transform), logic.shown.matrix)
 
 
 def test_with_turns_the_result_is_the_same_as_at_once(table, logic_in_turns, work):
@@ -432,7 +433,7 @@ def test_with_turns_the_result_is_the_same_as_at_once(table, logic_in_turns, wor
     for kind in KINDS:
         np.testing.assert_array_equal(in_parts.fits[kind].matrix, at_once.fits[kind].matrix)
         assert in_parts.errors[kind] == at_once.errors[kind]
-    np.testing.assert_array_equal(logic_in_turns.leaveOneOut, table.logic.leaveOneOut)
+    np.testing.assert_array_equal(in_parts.leaveOneOut[RIGID], at_once.leaveOneOut[RIGID])
 
 
 def test_lists_that_are_deleted_between_two_turns_are_not_shown(table, logic_in_turns, work):
@@ -441,7 +442,7 @@ def test_lists_that_are_deleted_between_two_turns_are_not_shown(table, logic_in_
     work.process()
     table.scene.RemoveNode(table.fixed)
     in_turns(work)
-    assert logic_in_turns.transform() is None
+    assert logic_in_turns.transform is None
     logic_in_turns.process()
     in_turns(work)
     assert logic_in_turns.comparison is None
@@ -454,8 +455,8 @@ def test_of_changes_that_follow_one_another_only_the_last_is_shown(table, logic_
     setPoints(capturedPointsNode(table.scene), LABELS, table.touched)
     logic_in_turns.process()
     work.process()
-    logic_in_turns.exclude("4")
-    logic_in_turns.exclude("5")
+    logic_in_turns.change(logic_in_turns.choices.without(("4",)))
+    logic_in_turns.change(logic_in_turns.choices.without(("5",)))
     in_turns(work)
     assert shown == [("4", "5")]
 

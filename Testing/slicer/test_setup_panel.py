@@ -32,10 +32,10 @@ def test_source_size_and_folder_are_reported_before_anything_is_downloaded(host,
     host.find("setupGroupBox").collapsed = False
     host.type("indexLineEdit", "https://mirror.example/simple")
     text = host.text("setupText")
-    sizes = setup.package.sizes()
+    download, kept = setup.package.sizesMB()
     assert "comes from the package index https://mirror.example/simple" in text
     assert str(setup.folder) in text
-    assert f"About {sizes.downloadMB} MB will be downloaded, and {sizes.keptMB} MB kept." in text
+    assert f"About {download} MB will be downloaded, and {kept} MB kept." in text
     host.type("indexLineEdit", "")
     assert "comes from the public package index of Python" in host.text("setupText")
     host.type("wheelsPathLineEdit", "/media/wheels")

@@ -1,5 +1,8 @@
 """What the module hands to the scene comes in parts, between which Slicer's window answers."""
 
+import uuid
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -11,7 +14,10 @@ from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
 from rastrainer.slicer.scene.robot import robotNode
 from rastrainer_simulator.assets import asset_path
 from Testing.slicer.host.scene_load import SceneLoad
+from Testing.slicer.recorded_trial import store_trial_on_colin, write_recorded_trial
 from Testing.slicer.simulator_double import SimulatorDouble
+
+TRIAL = str(uuid.UUID(int=1))
 
 
 @pytest.fixture
@@ -54,6 +60,20 @@ def test_the_nodes_of_a_scenario_come_a_few_in_each_turn(opened):
     # A list of points, its display, and the planned pose.
     assert load.most.nodes <= 3
     assert load.total.nodes >= 12
+
+
+def test_the_nodes_of_a_replay_come_a_few_in_each_turn(opened, make_record):
+    session = opened.widget.logic.session
+    record = make_record(TRIAL, scenario="colin27")
+    store_trial_on_colin(opened, record, 1)
+    write_recorded_trial(Path.home() / "RASTrainer" / "trials", record["trialId"])
+    with SceneLoad(opened.scene) as load:
+        session.replay.show(
+            session.trainees.study.trial(record["trialId"]), lambda _step, _share: load.end_turn()
+        )
+    # The tool's model comes with its display and colors.
+    assert load.most.nodes <= 4
+    assert load.total.nodes >= 20
 
 
 def test_the_robot_comes_one_link_at_a_time_and_is_told_of_once(opened):

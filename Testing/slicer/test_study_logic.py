@@ -85,7 +85,7 @@ def enrolled(lab):
 
 
 def test_without_a_protocol_trainees_practice_freely(lab):
-    assert (lab.logic.protocol(), lab.logic.progress()) == (None, None)
+    assert (lab.logic.study.protocol(), lab.logic.progress()) == (None, None)
     lab.logic.startTrial("task-2", "desktop")
     lab.room.run_until(lambda: lab.room.sent("StartTask"))
 
@@ -344,7 +344,7 @@ def test_a_trial_of_an_unselected_trainee_counts_and_the_simulator_is_sent_the_n
         completedUtc=STARTED,
     )
     enrolled.trainees.study.add_trial(record, score=gentle_score(110.0, 0.5))
-    enrolled.logic.countTrial(record_from_json(TrialRecord, record))
+    enrolled.logic.leadOn(record_from_json(TrialRecord, record).trainee)
     enrolled.room.run_until(lambda: sent_step(enrolled).get("task") == "task-2")
     assert sent_step(enrolled)["trainee"] == "T001"
 
@@ -429,7 +429,7 @@ def test_the_simulator_waits_until_an_aborted_trial_has_its_reason(enrolled):
     started = datetime.now(timezone.utc).isoformat()
     aborted = make_aborted(trainee="T001", mode=step.mode, task=step.task, startedUtc=started)
     enrolled.trainees.study.add_aborted(aborted)
-    enrolled.logic.countTrial(record_from_json(AbortedTrial, aborted))
+    enrolled.logic.leadOn(record_from_json(AbortedTrial, aborted).trainee)
     room = enrolled.room
     room.run_until(lambda: sent_step(enrolled).get("kind") == "repeat")
     assert sent_step(enrolled)["task"] == step.task

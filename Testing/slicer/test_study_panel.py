@@ -129,7 +129,7 @@ def test_the_panel_says_why_a_trial_did_not_count(begun, changes, score, reason)
     )
     with Study.open(begun.find("studyPathLineEdit").currentPath) as elsewhere:
         elsewhere.add_trial(record, score=score)
-    study.countTrial(record_from_json(TrialRecord, record))
+    study.leadOn(record_from_json(TrialRecord, record).trainee)
     assert f"The last trial did not count: {reason}." in begun.text("stepText")
     assert study.progress().next_step == step
 

@@ -13,6 +13,7 @@ from rastrainer.scenario.points import Landmark
 from rastrainer.scenario.scenario import Camera
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.logic.trace_logic import DISTANCE_SCALARS, MODEL, TraceLogic
+from rastrainer.slicer.logic.trial_services import TrialServices
 from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.scenario_nodes import SceneFileLoader
 from Testing.slicer.simulator_double import run_logic_until, run_until_received
@@ -36,7 +37,8 @@ class Tracing(Room):
         super().__init__(scene, scenario)
         self.work = BackgroundWork()
         self.files = SceneFileLoader(scene, self.work)
-        self.traces = TraceLogic(scene, self.link, self.work, lambda: self.now)
+        services = TrialServices(scene, self.link, None, None, self.work)
+        self.traces = TraceLogic(services, lambda: self.now)
         self.logic.sceneShown.connect(self.traces.begin)
 
     def answer(self, name, arguments):

@@ -12,7 +12,7 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.procedure.plan import ProcedureKind
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.slicer.logic.trainee_logic import TraineeLogic
+from rastrainer.slicer.logic.trainee_logic import TraineeLogic, calibration
 from rastrainer.slicer.scene.nodes import Role, findNode
 from rastrainer.slicer.scene.score_tables import (
     Row,
@@ -25,6 +25,8 @@ from rastrainer.slicer.scene.score_tables import (
 )
 from rastrainer.slicer.scene.tables import showCalibration, showHistory, showLearningCurve
 from rastrainer.study.database.study import Study
+from rastrainer.study.tidy_csv import write_histories, write_history
+from rastrainer.study.trainee_data import export_trainee
 from rastrainer.trial.ctps import CTPS_WARNING, Trial
 from rastrainer.trial.scoring import score_trial
 from Testing.domain.trial.trial_records import REFERENCE, gentle_score, make_traced
@@ -109,21 +111,21 @@ def test_a_trainee_deleted_by_another_slicer_is_no_longer_chosen(logic, tmp_path
 def test_one_trainee_is_exported_as_json_and_as_a_table(logic, add_trial, tmp_path):
     add_trial(1, trainee="a")
     logic.choose("a")
-    assert logic.export(tmp_path / "a.json") == 1
+    assert export_trainee(logic.study, "a", tmp_path / "a.json") == 1
     assert json.loads((tmp_path / "a.json").read_text())["trainee"]["pseudonym"] == "a"
-    assert logic.exportHistory(tmp_path / "a.csv") == 1
+    assert write_history(logic.study, ["a"], tmp_path / "a.csv") == 1
 
 
 def test_a_table_of_everyone_has_only_those_who_consented_to_research(logic, add_trial, tmp_path):
     add_trial(1, trainee="a")
     add_trial(2, trainee="b")
     with pytest.raises(InputError, match=r"No trainee of this study consented .* \(2 did not\)"):
-        logic.exportHistories(tmp_path / "all.csv")
+        logic.inStudy(lambda study: write_histories(study, tmp_path / "all.csv"))
     assert not (tmp_path / "all.csv").exists()
     logic.choose("b")
     logic.setConsent(True)
     logic.setArchived(True)
-    assert logic.exportHistories(tmp_path / "all.csv") == (1, 1)
+    assert logic.inStudy(lambda study: write_histories(study, tmp_path / "all.csv")) == (1, 1)
     with (tmp_path / "all.csv").open(newline="") as file:
         assert [row["trainee"] for row in csv.DictReader(file)] == ["b"]
 
@@ -156,7 +158,7 @@ def test_the_learning_curve_plot_begins_at_zero_and_includes_every_trial(scene, 
 def test_true_and_expected_errors_of_all_trainees_are_a_table_and_a_plot(scene, logic, add_trial):
     trials = [add_trial(number, trainee=name) for number, name in ((1, "a"), (2, "b"), (30, "a"))]
     logic.study.change_trainee("b", archived=True)
-    found = logic.calibration()
+    found = logic.inStudy(calibration)
     assert [point.true_mm for point in found.points if not point.is_inside] == [6.0]
     chart = showCalibration(scene, found)
     assert showCalibration(scene, found) is chart
@@ -178,7 +180,7 @@ def test_true_and_expected_errors_of_all_trainees_are_a_table_and_a_plot(scene, 
 
 def test_a_study_without_truths_has_an_empty_plot_and_a_message(scene, logic, make_record):
     logic.study.add_trial(make_record(str(uuid.UUID(int=7))))
-    found = logic.calibration()
+    found = logic.inStudy(calibration)
     assert showCalibration(scene, found).GetTitle() == "True against expected TRE"
     assert found.sentences() == [
         "No trial has both an expected and a true target error.",
@@ -189,11 +191,11 @@ def test_a_study_without_truths_has_an_empty_plot_and_a_message(scene, logic, ma
 def test_plots_of_one_trial_or_none_leave_the_log_empty(scene, logic, add_trial):
     messages = VtkMessages()
     try:
-        draw_chart(showCalibration(scene, logic.calibration()), 200, 150)
+        draw_chart(showCalibration(scene, logic.inStudy(calibration)), 200, 150)
         trial = add_trial(1, trainee="a")
-        assert len(logic.calibration().points) == 1
+        assert len(logic.inStudy(calibration).points) == 1
         for chart in (
-            showCalibration(scene, logic.calibration()),
+            showCalibration(scene, logic.inStudy(calibration)),
             showLearningCurve(scene, "a", [trial]),
         ):
             draw_chart(chart, 200, 150)

@@ -131,6 +131,19 @@ def test_progress_contains_the_next_point_the_proximity_and_the_running_time(roo
     assert room.logic.status.elapsedS == 36.0
 
 
+def test_a_state_in_which_only_time_has_passed_changes_nothing(room):
+    room.tell(elapsedS=1.0)
+    room.run_until(lambda: room.node(Role.WORLD_TO_HEAD, "vtkMRMLLinearTransformNode"))
+    changes, states = [], []
+    room.logic.changed.connect(lambda: changes.append(True))
+    room.link.stateChanged.connect(states.append)
+    room.tell(elapsedS=2.0)
+    room.run_until(lambda: states)
+    assert (changes, room.logic.status.elapsedS) == ([], 2.0)
+    room.tell(elapsedS=3.0, nextPoint="2")
+    room.run_until(lambda: changes)
+
+
 def test_a_cleared_scene_does_not_turn_back_the_trials_clock(room):
     room.tell(elapsedS=30.0)
     room.run_until(lambda: room.logic.status.phase == "running")
@@ -143,11 +156,11 @@ def test_a_cleared_scene_does_not_turn_back_the_trials_clock(room):
 def test_a_trial_is_paused_resumed_and_aborted(room):
     room.tell()
     room.run_until(lambda: room.logic.status.phase == "running")
-    room.logic.pause()
+    room.logic.command("Pause")
     room.run_until(lambda: room.sent("Pause"))
     room.tell(phase="paused")
     room.run_until(lambda: room.logic.status.phase == "paused")
-    room.logic.resume()
+    room.logic.command("Resume")
     room.run_until(lambda: room.sent("Resume"))
     room.logic.abort(TRIAL)
     room.run_until(lambda: room.sent("Abort"))

@@ -16,6 +16,7 @@ from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic import delivery_queue, trial_logic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
+from rastrainer.slicer.logic.trial_services import TrialServices
 from rastrainer.slicer.scene.nodes import Role, findNode
 from rastrainer.slicer.scene.trial_scene import isApplied
 from rastrainer.study.database.database import LockWait, StudyUnreachableError
@@ -50,7 +51,10 @@ class Lab:
         self.logic.problemFound.connect(self.problems.append)
 
     def new_logic(self):
-        return TrialLogic(self.scene, self.link, self.find_scenario, self.open_study, self.work)
+        services = TrialServices(
+            self.scene, self.link, self.find_scenario, self.open_study, self.work
+        )
+        return TrialLogic(services)
 
     def connect(self):
         opened = []

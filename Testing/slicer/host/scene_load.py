@@ -58,16 +58,16 @@ class SceneLoad:
             node = nodes.GetItemAsObject(index)
             self._known[node.GetID()] = _data_of(node)
             self._watch(node)
-        Slot.watchers.append(self._end_turn)
+        Slot.watchers.append(self.end_turn)
         event = slicer.vtkMRMLScene.NodeAddedEvent
         self._tags.append((self._scene, self._scene.AddObserver(event, self._add)))
         return self
 
     def __exit__(self, *_exception: object) -> None:
-        Slot.watchers.remove(self._end_turn)
+        Slot.watchers.remove(self.end_turn)
         for node, tag in self._tags:
             node.RemoveObserver(tag)
-        self._end_turn()
+        self.end_turn()
 
     @property
     def most(self) -> Load:
@@ -103,7 +103,8 @@ class SceneLoad:
         if node.IsA("vtkMRMLSliceNode"):
             self._views.add(node.GetID())
 
-    def _end_turn(self) -> None:
+    def end_turn(self) -> None:
+        """Note that what follows comes in another turn, such as where the application may draw."""
         counts = len(self._added), self._kibibytes, self._cells, len(self._views)
         self._turns.append(Load(self._events, *counts))
         self._events = self._kibibytes = self._cells = 0

@@ -23,7 +23,7 @@ from rastrainer.slicer.logic.views import WITH_PLOT, WITH_TABLE, BorrowedLayout
 from rastrainer.slicer.program.simulator_package import SimulatorPackage, pythonSlicer
 from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS, Settings
 from rastrainer.slicer.translation import _
-from rastrainer.study.database.database import PostgresAddress, study_place
+from rastrainer.study.database.database import study_place
 from rastrainer.work_progress import Progress
 
 
@@ -32,7 +32,11 @@ def findPlaces(moduleFile: Path, settings: Settings) -> ModulePaths:
     paths = qt.QStandardPaths
     documents = Path(paths.writableLocation(paths.DocumentsLocation))
     data = Path(paths.writableLocation(paths.GenericDataLocation))
-    study = settings.get(STUDY)
+    study, address = settings.get(STUDY), None
+    # An address that cannot be used is none.
+    with contextlib.suppress(InputError):
+        place = study_place(settings.get(STUDY_ADDRESS))
+        address = None if isinstance(place, Path) else place
     return ModulePaths(
         assets=assetsFolder(moduleFile),
         python=pythonSlicer(Path(slicer.app.slicerHome)),
@@ -41,16 +45,8 @@ def findPlaces(moduleFile: Path, settings: Settings) -> ModulePaths:
         records=home_folder() / "RASTrainer" / "trials",
         library=user_library(),
         package=SimulatorPackage.of(moduleFile.parent),
-        studyAddress=_studyAddress(settings),
+        studyAddress=address,
     )
-
-
-def _studyAddress(settings: Settings) -> PostgresAddress | None:
-    """Return the address that was chosen; None without one, or where it cannot be used."""
-    with contextlib.suppress(InputError):
-        place = study_place(settings.get(STUDY_ADDRESS))
-        return None if isinstance(place, Path) else place
-    return None
 
 
 def callSoon(work: Callable[[], None]) -> None:
@@ -61,11 +57,8 @@ def callSoon(work: Callable[[], None]) -> None:
 def isAnythingVisible(isEntered: bool, inSlices: bool = False) -> bool:
     """Return whether the module is entered or a view shown, in a window that is not minimized.
 
-    The parts of a minimized window still call themselves visible.
-
-    Args:
-        isEntered: the module is the one that is chosen.
-        inSlices: slice views count as well as 3D views.
+    The parts of a minimized window still call themselves visible. By `inSlices` slice views count
+    as well as 3D views.
     """
     window = slicer.util.mainWindow()
     if window is not None and window.minimized:
@@ -73,17 +66,10 @@ def isAnythingVisible(isEntered: bool, inSlices: bool = False) -> bool:
     layoutManager = slicer.app.layoutManager()
     if isEntered or layoutManager is None:
         return isEntered
-    return _is3DViewShown(layoutManager) or (inSlices and _isSliceViewShown(layoutManager))
-
-
-def _is3DViewShown(layoutManager: Any) -> bool:
-    count = layoutManager.threeDViewCount
-    return any(layoutManager.threeDWidget(index).visible for index in range(count))
-
-
-def _isSliceViewShown(layoutManager: Any) -> bool:
-    names = layoutManager.sliceViewNames()
-    return any(layoutManager.sliceWidget(name).visible for name in names)
+    views = [layoutManager.threeDWidget(index) for index in range(layoutManager.threeDViewCount)]
+    if inSlices:
+        views += [layoutManager.sliceWidget(name) for name in layoutManager.sliceViewNames()]
+    return any(view.visible for view in views)
 
 
 def fitThreeDViews() -> None:
@@ -122,12 +108,9 @@ def showTable(layout: BorrowedLayout, table: Any) -> None:
 
 
 def askWhereToSave(caption: str, proposed: str, kind: str) -> Path | None:
-    """Return the path of the file to be written; None where the user cancels.
+    """Return the path of a file to be written, with the proposed suffix; None if canceled.
 
-    Args:
-        caption: of the dialog.
-        proposed: name of the file, whose suffix it is to have.
-        kind: filter of the dialog, such as `CSV (*.csv)`.
+    `kind` is a filter such as `CSV (*.csv)`.
     """
     chosen = qt.QFileDialog.getSaveFileName(slicer.util.mainWindow(), caption, proposed, kind)
     if not chosen:
@@ -150,37 +133,30 @@ ANSWER_S = 10.0
 def downloadSample(scene: Any, logic: Any, name: str, progress: Progress) -> Any:
     """Return the volume of a sample, downloaded unless Slicer has kept it from before.
 
-    Args:
-        scene: the scene, into which Sample Data loads.
-        logic: of the module Sample Data.
-        name: of the sample.
-        progress: called while the network is checked; may raise to cancel.
+    `logic` is that of the module Sample Data.
     """
     source = logic.sourceForSampleName(name)
     if source is None:
         raise InputError(_("This Slicer's Sample Data has no {name}.").format(name=name))
-    kept = Path(scene.GetCacheManager().GetRemoteCacheDirectory(), source.fileNames[0])
-    if not kept.is_file():
-        inBackground(lambda _report: _checkReachable(source.uris[0], name), progress)
-    volumes = [node for node in logic.downloadSamples(name) if node is not None]
-    if not volumes:
-        raise InputError(_notBrought(name))
-    return volumes[0]
-
-
-def _checkReachable(uri: str, name: str) -> None:
-    """Check once, with a time limit, whether there is a network."""
-    try:
-        with urllib.request.urlopen(urllib.request.Request(uri, method="HEAD"), timeout=ANSWER_S):
-            pass
-    except urllib.error.HTTPError:
-        return  # It answers; Sample Data will find out whether it has the file.
-    except (OSError, ValueError):
-        raise InputError(_notBrought(name)) from None
-
-
-def _notBrought(name: str) -> str:
-    return _(
+    problem = _(
         "{name} could not be downloaded. Connect this computer to the Internet and try "
         "again, or open an MRI of your own: menu File, Add Data."
     ).format(name=name)
+
+    def checkReachable(_report: Progress) -> None:
+        request = urllib.request.Request(source.uris[0], method="HEAD")
+        try:
+            with urllib.request.urlopen(request, timeout=ANSWER_S):
+                pass
+        except urllib.error.HTTPError:
+            return  # It answers; Sample Data will find out whether it has the file.
+        except (OSError, ValueError):
+            raise InputError(problem) from None
+
+    kept = Path(scene.GetCacheManager().GetRemoteCacheDirectory(), source.fileNames[0])
+    if not kept.is_file():
+        inBackground(checkReachable, progress)
+    volumes = [node for node in logic.downloadSamples(name) if node is not None]
+    if not volumes:
+        raise InputError(problem)
+    return volumes[0]

@@ -10,11 +10,11 @@ import slicer
 from rastrainer.number_text import fixed
 from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import toolTip
-from rastrainer.panels.widgets import fillTable, setText, setUsable
+from rastrainer.panels.widgets import fillTable, setEnabled, setText
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.translation import _
+from rastrainer.study.curriculum.curriculum import read_curriculum
 from rastrainer.study.curriculum.standing import (
-    CurriculumStanding,
     advice_of,
     progress_of_assignment,
     short_progress_of,
@@ -39,8 +39,8 @@ class CurriculumPanel(Panel):
 
     def setCurriculum(self) -> None:
         """Have the chosen trainee, or everybody, follow the chosen file's curriculum."""
-        path = Path(self._ui.curriculumPathLineEdit.currentPath)
-        self._logic.choose(path, self._ui.everybodyCheckBox.checked)
+        curriculum = read_curriculum(Path(self._ui.curriculumPathLineEdit.currentPath))
+        self._logic.choose(curriculum, self._ui.everybodyCheckBox.checked)
 
     def endCurriculum(self) -> None:
         """Have the chosen trainee, or everybody, follow no curriculum, after asking."""
@@ -50,7 +50,7 @@ class CurriculumPanel(Panel):
             "End the curriculum of {who}? Trials stay, and count again if it is set again."
         ).format(who=who)
         if slicer.util.confirmYesNoDisplay(toolTip(question), _("End the curriculum")):
-            self._logic.end(isForEverybody)
+            self._logic.choose(None, isForEverybody)
 
     def _show(self) -> None:
         ui, standing = self._ui, self._logic.standing()
@@ -62,13 +62,18 @@ class CurriculumPanel(Panel):
             title, advice = standing.curriculum.title, advice_of(standing)
             setText(ui.curriculumText, text.format(title=title, advice=advice, **values))
         rows = () if standing is None else standing.standings
+        tips = [f"{each.name}: {state_of(each)}, {progress_of_assignment(each)}" for each in rows]
         everybody = self._logic.standings()
         ui.assignmentsTable.visible, ui.classTable.visible = bool(rows), bool(everybody)
-        fillTable(ui.assignmentsTable, map(_row, rows), list(map(_tip, rows)))
+        fillTable(ui.assignmentsTable, map(_row, rows), tips)
         fillTable(
             ui.classTable,
             (
-                (name, f"{each.reached} / {len(each.standings)}", _next(each))
+                (
+                    name,
+                    f"{each.reached} / {len(each.standings)}",
+                    "–" if each.next_best is None else title_of(each.next_best),
+                )
                 for name, each in everybody.items()
             ),
         )
@@ -78,21 +83,14 @@ class CurriculumPanel(Panel):
         ui = self._ui
         isSomebody = ui.everybodyCheckBox.checked or bool(self._session.trainees.chosen)
         nobody = _("Choose a trainee in the section Trainees first.")
-        setUsable(
-            ui.setCurriculumButton,
-            isSomebody and bool(ui.curriculumPathLineEdit.currentPath),
-            _("Follow this curriculum from now on."),
-            _("Choose the file of a curriculum first.") if isSomebody else nobody,
-        )
+        reason = _("Choose the file of a curriculum first.") if isSomebody else nobody
+        hasFile = bool(ui.curriculumPathLineEdit.currentPath)
+        setEnabled(ui.setCurriculumButton, isSomebody and hasFile, reason)
         hasOne = bool(self._logic.standings()) and isSomebody
         if not ui.everybodyCheckBox.checked:
             hasOne = self._logic.standing() is not None
-        setUsable(
-            ui.endCurriculumButton,
-            hasOne,
-            _("Follow no curriculum from now on."),
-            _("There is no curriculum to end.") if isSomebody else nobody,
-        )
+        reason = _("There is no curriculum to end.") if isSomebody else nobody
+        setEnabled(ui.endCurriculumButton, hasOne, reason)
 
 
 def _row(standing: AssignmentStanding) -> tuple[str, str, str]:
@@ -101,13 +99,3 @@ def _row(standing: AssignmentStanding) -> tuple[str, str, str]:
         short_progress_of(standing),
         "–" if standing.mean is None else fixed(standing.mean, 0),
     )
-
-
-def _tip(standing: AssignmentStanding) -> str:
-    name, state = standing.name, state_of(standing)
-    return f"{name}: {state}, {progress_of_assignment(standing)}"
-
-
-def _next(standing: CurriculumStanding) -> str:
-    best = standing.next_best
-    return "–" if best is None else title_of(best)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from rastrainer.errors import InputError
@@ -12,13 +13,14 @@ from rastrainer.panels.widgets import (
     chosenScenario,
     fillComboBox,
     fillTable,
-    setProperty,
+    setEnabled,
     setText,
-    setUsable,
 )
 from rastrainer.scenario.points import FACE_LANDMARKS, Landmark
+from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.translation import _
+from rastrainer.work_progress import Progress
 
 NAMES = {
     "Nasion": _("Nasion"),
@@ -30,6 +32,7 @@ NAMES = {
     "Left tragus": _("Left tragus"),
     "Tip of the nose": _("Tip of the nose"),
 }
+ENTRIES = [(NAMES[name], name) for name in FACE_LANDMARKS]
 
 
 class LandmarksPanel(Panel):
@@ -38,9 +41,8 @@ class LandmarksPanel(Panel):
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
         self._logic = session.landmarks
-        self._work = self.cancelableWork(self._showMessage, self._showProgress, self.showState)
-        entries = [(NAMES[name], name) for name in FACE_LANDMARKS]
-        fillComboBox(ui.landmarkNameComboBox, entries, FACE_LANDMARKS[0])
+        self._work = self.cancelableWork(self._showMessage, None, self.showState)
+        fillComboBox(ui.landmarkNameComboBox, ENTRIES, FACE_LANDMARKS[0])
         self._work.connectButton(
             ui.proposeLandmarksButton, self.propose, _("No landmarks could be proposed.")
         )
@@ -56,10 +58,11 @@ class LandmarksPanel(Panel):
 
     def propose(self) -> None:
         """Replace the landmarks by proposed ones on the chosen head."""
-        scenario = chosenScenario(self._ui, self._session)
-        said = self._work.run(lambda report: self._logic.propose(scenario, report))
-        if said is not None:
-            self._showMessage(said)
+        self._run(self._logic.propose)
+
+    def check(self) -> None:
+        """Check the landmarks on the head of the chosen scenario, and the robot's reach."""
+        self._run(self._logic.check)
 
     def show(self) -> None:
         """Replace the landmarks by those of the chosen scenario."""
@@ -83,13 +86,6 @@ class LandmarksPanel(Panel):
         self._logic.points.undo()
         self.showState()
 
-    def check(self) -> None:
-        """Check the landmarks on the head of the chosen scenario, and the robot's reach."""
-        scenario = chosenScenario(self._ui, self._session)
-        said = self._work.run(lambda report: self._logic.check(scenario, report))
-        if said is not None:
-            self._showMessage(said)
-
     def save(self) -> None:
         """Copy the chosen scenario with these landmarks and use the copy."""
         title = self._ui.landmarksTitleLineEdit.text.strip()
@@ -106,45 +102,21 @@ class LandmarksPanel(Panel):
         self._showMessage(self._message)
         rows = [_row(landmark) for landmark in points.landmarks]
         if fillTable(ui.landmarksTable, rows):
-            self._chooseNext()
-        busy = _("Wait until the current work is done.")
-        first = busy if isAtWork else _("Place landmarks first, or have them proposed.")
-        setProperty(ui.proposeLandmarksButton, "text", _("Cancel") if isAtWork else _("Propose"))
-        setUsable(
-            ui.removeLandmarkButton,
-            bool(rows),
-            _("Remove the landmark that is chosen in the table."),
-            _("No landmark is placed."),
-        )
-        setUsable(
-            ui.undoLandmarkButton,
-            points.canUndo,
-            _("Undo the last placement, removal or proposal."),
-            _("Nothing was changed."),
-        )
-        setUsable(
-            ui.checkLandmarksButton,
-            bool(rows) and not isAtWork,
-            _("Check their places on the head chosen above, and whether the robot reaches them."),
-            first,
-        )
-        setUsable(
-            ui.saveLandmarksButton,
-            bool(rows) and not isAtWork,
-            _("Copy the scenario above with these landmarks."),
-            first,
-        )
+            # The first usual landmark that is missing comes next.
+            fillComboBox(ui.landmarkNameComboBox, ENTRIES, (*points.missing, FACE_LANDMARKS[0])[0])
+        none = _("Place landmarks first, or have them proposed.")
+        setEnabled(ui.removeLandmarkButton, bool(rows), _("No landmark is placed."))
+        setEnabled(ui.undoLandmarkButton, points.canUndo, _("Nothing was changed."))
+        for button in (ui.checkLandmarksButton, ui.saveLandmarksButton):
+            reason = _("Wait until the current work is done.") if isAtWork else none
+            setEnabled(button, bool(rows) and not isAtWork, reason)
 
-    def _chooseNext(self) -> None:
-        """Offer the first usual landmark that is missing."""
-        missing = self._logic.points.missing
-        entries = [(NAMES[name], name) for name in FACE_LANDMARKS]
-        chosen = missing[0] if missing else FACE_LANDMARKS[0]
-        fillComboBox(self._ui.landmarkNameComboBox, entries, chosen)
-
-    def _showProgress(self, step: str, _share: float) -> None:
-        if step:
-            self._showMessage(step)
+    def _run(self, work: Callable[[Scenario, Progress], str]) -> None:
+        """Work on the chosen scenario, and show the sentence that it returns."""
+        scenario = chosenScenario(self._ui, self._session)
+        said = self._work.run(lambda report: work(scenario, report))
+        if said is not None:
+            self._showMessage(said)
 
     def _showMessage(self, sentence: str) -> None:
         self._message, names = sentence, self._logic.points.deselected

@@ -11,9 +11,9 @@ from rastrainer.head.trial_head import MAX_PERTURBATION, Perturbation
 from rastrainer.panels.application import downloadSample, fitThreeDViews
 from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.shown_errors import showErrors
-from rastrainer.panels.widgets import setText, setUsable
+from rastrainer.panels.widgets import setEnabled, setText
 from rastrainer.protocol import WORLD_LIMIT_MM
-from rastrainer.scenario.scenario import STAND_DIAMETERS_MM, OperatingTable, Scenario, Stand
+from rastrainer.scenario.scenario import STAND_DIAMETERS_MM, OperatingTable, Stand
 from rastrainer.scenario.setup import HeadPlace, SetUp
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.scenario_maker import NewScenarioOptions
@@ -49,16 +49,21 @@ class SetUpForm:
         """Fill a widget that has no layout yet."""
         layout = qt.QFormLayout(parent)
         self._boxes: dict[str, list[Any]] = {}
-        for label, name, limits, usual in _ROWS:
+        for label, name, (least, most), usual in _ROWS:
             row = qt.QWidget()
             across = qt.QHBoxLayout(row)
             across.setContentsMargins(0, 0, 0, 0)
-            self._boxes[name] = [
-                _spinBox(f"{name}{place}SpinBox", limits, value)
-                for place, value in enumerate(usual)
-            ]
-            for box in self._boxes[name]:
+            self._boxes[name] = []
+            for place, value in enumerate(usual):
+                box = qt.QDoubleSpinBox()
+                box.objectName = f"{name}{place}SpinBox"
+                box.minimum, box.maximum = least, most
+                box.decimals = 1
+                # Three share a row: they must not be as wide as the widest number.
+                box.minimumWidth = NARROWEST
+                box.value = value
                 across.addWidget(box)
+                self._boxes[name].append(box)
             layout.addRow(label, row)
 
     def setUp(self) -> SetUp:
@@ -71,17 +76,6 @@ class SetUpForm:
             stand=Stand(*values["stand"]),
             robot_base_mm=values["base"],
         )
-
-
-def _spinBox(name: str, limits: tuple[float, float], value: float) -> Any:
-    box = qt.QDoubleSpinBox()
-    box.objectName = name
-    box.minimum, box.maximum = limits
-    box.decimals = 1
-    # Three share a row: they must not be as wide as the widest number.
-    box.minimumWidth = NARROWEST
-    box.value = value
-    return box
 
 
 SAMPLE = "MRBrainTumor1"
@@ -98,14 +92,11 @@ class NewScenarioPanel(Panel):
         ui.sampleDataButton.connect("clicked()", self.loadSampleData)
         self._work.connectButton(ui.makeScenarioButton, self.make, _("The scenario was not made."))
         connectClick(ui.previewHeadButton, self.preview, _("No head could be shown."))
-        connectClick(
-            ui.checkScenarioButton,
-            self.check,
-            _("The scenario could not be made with these choices."),
-        )
+        failure = _("The scenario could not be made with these choices.")
+        connectClick(ui.checkScenarioButton, self.check, failure)
         ui.scanComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._showUsable)
         ui.newScenarioCollapsibleButton.connect("contentsCollapsed(bool)", self._takeShownVolume)
-        setText(ui.newScenarioText, "")
+        self._showMessage("")
         self._showUsable()
 
     def loadSampleData(self) -> None:
@@ -137,26 +128,23 @@ class NewScenarioPanel(Panel):
                 "This is the head that was found. Change the threshold or the cut and find it "
                 "again, or edit its segment in the Segment Editor; then make the scenario."
             )
-            self._showMessage(" ".join([text, *warnings]))
+            self._showMessage(text, *warnings)
             fitThreeDViews()
 
     def check(self) -> None:
         """Report at once whether set-up, plan and fiducials can be used."""
         warnings = self._work.run(lambda report: self._maker.check(*self._wanted(), report))
         if warnings is not None:
-            text = _("Set-up, plan and fiducials can be used.")
-            self._showMessage(" ".join([text, *warnings]))
+            self._showMessage(_("Set-up, plan and fiducials can be used."), *warnings)
 
     def make(self) -> None:
         """Make the scenario and use it."""
         made = self._work.run(lambda report: self._maker.make(*self._wanted(), report))
         if made is not None:
-            self._useScenario(*made)
-
-    def _useScenario(self, scenario: Scenario, warnings: list[str]) -> None:
-        self._session.scenarioMade.emit(scenario.name)
-        text = _("{title} was made and is chosen above.").format(title=scenario.title)
-        self._showMessage(" ".join([text, *warnings]))
+            scenario, warnings = made
+            self._session.scenarioMade.emit(scenario.name)
+            text = _("{title} was made and is chosen above.").format(title=scenario.title)
+            self._showMessage(text, *warnings)
 
     def _wanted(self) -> tuple[Any, NewScenarioOptions]:
         ui = self._ui
@@ -184,30 +172,16 @@ class NewScenarioPanel(Panel):
         hasVolume = ui.scanComboBox.currentNode() is not None
         isAtWork = self._work.isUnderWay
         reason = _("Choose a volume first.")
+        setEnabled(ui.makeScenarioButton, hasVolume or isAtWork, reason)
+        if hasVolume:
+            reason = _("A head is already being searched for.")
+        for button in (ui.previewHeadButton, ui.checkScenarioButton):
+            setEnabled(button, hasVolume and not isAtWork, reason)
         ui.newScenarioProgressBar.visible = isAtWork
-        ui.makeScenarioButton.text = _("Cancel") if isAtWork else _("Make scenario")
-        setUsable(
-            ui.makeScenarioButton,
-            hasVolume or isAtWork,
-            _("Find the head, and place fiducials and tasks; the scenario can be used at once."),
-            reason,
-        )
-        setUsable(
-            ui.previewHeadButton,
-            hasVolume and not isAtWork,
-            _("Show the head, and as a segment that can be edited."),
-            reason if not hasVolume else _("A head is already being searched for."),
-        )
-        setUsable(
-            ui.checkScenarioButton,
-            hasVolume and not isAtWork,
-            _("Check set-up, plan and fiducials without creating anything."),
-            reason if not hasVolume else _("A head is already being searched for."),
-        )
         ui.sampleDataButton.enabled = ui.scanComboBox.enabled = not isAtWork
 
-    def _showMessage(self, sentence: str) -> None:
-        setText(self._ui.newScenarioText, sentence)
+    def _showMessage(self, *sentences: str) -> None:
+        setText(self._ui.newScenarioText, " ".join(sentences))
 
 
 def _chosen(box: Any) -> float | None:

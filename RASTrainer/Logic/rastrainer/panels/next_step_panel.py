@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import qt
@@ -18,37 +20,13 @@ from rastrainer.panels.widgets import (
     setText,
     setUsable,
 )
-from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Phase
+from rastrainer.protocol import TRIAL_RUN, Phase, StepKind
 from rastrainer.slicer.link.link_status import LinkState, notInstalled
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.next_step import NextAction, NextStep, Section, WorkflowState, nextStep
 from rastrainer.slicer.translation import _
 from rastrainer.study.protocol.steps import instruction
 from rastrainer.trial.analysis import TrialAnalysis
-
-
-class SectionFolding:
-    """Folds and opens sections whenever the workflow moves to another one, and only then.
-
-    What the user opens or folds stays so until then. Sections without a next step, such as
-    Scenario and Plan, are never changed.
-    """
-
-    def __init__(self, ui: Any) -> None:
-        self._sections = {each: getattr(ui, f"{each.value}CollapsibleButton") for each in Section}
-        self._present: Section | None = None
-
-    def follow(self, section: Section) -> None:
-        """Open the section of the present step; fold the others where it is another one."""
-        if section is self._present:
-            return
-        self._present = section
-        for each, button in self._sections.items():
-            button.collapsed = each is not section
-
-    def open(self, section: Section) -> None:
-        self._sections[section].collapsed = False
-
 
 SHORTCUT = "Ctrl+Return"
 THIS_COMPUTER = ("", "127.0.0.1", "localhost", "::1")
@@ -66,7 +44,12 @@ WORDS = {
 
 
 class NextStepPanel(Panel):
-    """Leads through a session: it draws what `nextStep` says, and lets the sections do it."""
+    """Leads through a session: it draws what `nextStep` says, and lets the sections do it.
+
+    It folds and opens sections only when the workflow moves to another one. Until then, sections
+    stay as the user opens or folds them. Sections without a next step, such as Scenario and Plan,
+    are never changed.
+    """
 
     def __init__(
         self, ui: Any, session: ModuleSession, actions: Mapping[NextAction, Callable[[], None]]
@@ -74,22 +57,17 @@ class NextStepPanel(Panel):
         """`actions` does what belongs to a section: everything but waiting and viewing."""
         super().__init__(ui, session)
         self._actions = actions
-        self._folding = SectionFolding(ui)
-        self._step: NextStep | None = None
-        self._trainee = ""
-        self._hasTrainees = self._hasPracticed = False
-        self._isUnscored = self._hasNewResult = self._isResultShown = False
-        self._studyStep: Any = None
-        self._repeatSentence = ""
-        self._isSetUp = session.simulator.setup.isCurrent
-        connectAsPressed(ui.nextStepButton, self._action)
+        self._sections = {each: getattr(ui, f"{each.value}CollapsibleButton") for each in Section}
+        self._now = WorkflowState(session.link.status)
+        self._step = nextStep(self._now)
+        self._section: Section | None = None
+        connectAsPressed(ui.nextStepButton, lambda: partial(self._do, self._step))
         ui.hostLineEdit.connect("textChanged(QString)", self.showState)
-        ui.programPathLineEdit.connect("currentPathChanged(QString)", self.showState)
+        ui.programPathLineEdit.connect("currentPathChanged(QString)", self._lookAtSetup)
         ui.scoreCollapsibleButton.connect("contentsCollapsed(bool)", self._noteScoreSeen)
         self.listen(
             (session.link.statusChanged, self.showState),
-            (session.link.stateChanged, self._followTrial),
-            (session.training.changed, self.showState),
+            (session.training.changed, self._followTrial),
             (session.taskChosen, self.showState),
             (session.simulator.program.changed, self.showState),
             (session.simulator.setup.changed, self._lookAtSetup),
@@ -97,71 +75,63 @@ class NextStepPanel(Panel):
             (session.simulator.running.changed, self.showState),
             (session.trainees.changed, self._lookUp),
             (session.study.changed, self._lookUp),
-            (session.trials.trialScored, self._takeResult),
-            (session.trials.problemFound, self._noteProblem),
+            # Each section shows it in a separate turn; only then is there something to see.
+            (
+                session.trials.trialScored,
+                lambda a: session.work.later(partial(self._noteScored, a)),
+            ),
+            (session.trials.problemFound, lambda _sentence: self._note(isUnscored=True)),
         )
+        self._lookAtSetup()
         self._lookUp()
 
-    def _action(self) -> Callable[[], None]:
-        action = NextAction.WAIT if self._step is None else self._step.action
-        return lambda: self._do(action)
-
-    def _do(self, action: NextAction) -> None:
-        if action in self._actions:
-            self._actions[action]()
-        elif action is NextAction.CHOOSE_TRAINEE:
-            self._folding.open(Section.TRAINEES)
+    def _do(self, step: NextStep) -> None:
+        if step.action in self._actions:
+            self._actions[step.action]()
+        elif step.action is NextAction.CHOOSE_TRAINEE:
+            self._sections[Section.TRAINEES].collapsed = False
             self._ui.traineeComboBox.showPopup()
-        elif action is NextAction.ANSWER:
-            self._folding.open(Section.STUDY)
-        elif action is NextAction.SHOW_RESULT:
-            self._hasNewResult, self._isResultShown = False, True
+        elif step.action is NextAction.ANSWER:
+            self._sections[Section.STUDY].collapsed = False
+        elif step.action is NextAction.SHOW_RESULT:
+            self._note(hasNewResult=False, isResultShown=True)
+        self.showState()
+
+    def _note(self, **changes: Any) -> None:
+        self._now = replace(self._now, **changes)
         self.showState()
 
     def showState(self, *_arguments: Any) -> None:
-        now = self._situation()
-        self._step = nextStep(now)
-        self._show(now, self._step)
-
-    def _situation(self) -> WorkflowState:
         session, ui = self._session, self._ui
-        simulator, trial, study = session.simulator, session.training.status, self._studyStep
-        return WorkflowState(
+        simulator, trial = session.simulator, session.training.status
+        self._now = now = replace(
+            self._now,
             # Reported at once, before downloading a simulator to which no connection is possible.
             link=session.link.status if session.link.findKit() else notInstalled(),
             program=simulator.program.state,
             programSentence=simulator.program.sentence,
-            needsSetup=not (self._isSetUp or simulator.ownProgram),
             isBeingSetUp=simulator.setup.isRunning,
             isElsewhere=ui.hostLineEdit.text.strip() not in THIS_COMPUTER,
             runningSentence=simulator.running.sentence if simulator.running.canConnect else "",
-            trainee=self._trainee,
-            hasTrainees=self._hasTrainees,
-            hasPracticed=self._hasPracticed,
-            isLearning=bool(self._trainee) and session.training.learner == self._trainee,
+            isLearning=bool(self._now.trainee) and session.training.learner == self._now.trainee,
             taskTitle=session.taskTitle,
             phase=trial.phase,
             touched=trial.touched,
             total=trial.total,
             isLoading=session.training.isLoading,
-            isUnscored=self._isUnscored,
-            hasNewResult=self._hasNewResult,
-            isResultShown=self._isResultShown,
-            studyStep=None if study is None else study.kind,
-            needsRepeatReason=bool(self._repeatSentence),
-            studySentence=self._repeatSentence or ("" if study is None else instruction(study)),
         )
-
-    def _show(self, now: WorkflowState, step: NextStep) -> None:
-        ui = self._ui
         setLight(ui.linkLight, LINK_COLORS[now.link.state])
         setText(ui.linkText, WORDS[now.link.state])
-        trainee, task = self._trainee, now.taskTitle
-        if now.link.state is LinkState.CONNECTED and now.phase in OPEN_PHASES:
-            trial = self._session.training.status
-            trainee, task = trial.trainee, self._titleOf(trial.task)
+        trainee, task = now.trainee, now.taskTitle
+        if now.link.state is LinkState.CONNECTED and trial.isOpen:
+            titles = {session.task: session.taskTitle, TRIAL_RUN: _("Trial run")}
+            trainee, task = trial.trainee, titles.get(trial.task, trial.task)
         setText(ui.nowTraineeText, shortName(trainee) or _("No trainee"))
         setText(ui.nowTaskText, shortName(task))
+        self._showStep(nextStep(now))
+
+    def _showStep(self, step: NextStep) -> None:
+        ui, self._step = self._ui, step
         if ui.nextStepButton.text != buttonTitle(step.title):
             ui.nextStepButton.text = buttonTitle(step.title)
             # A new text removes the shortcut.
@@ -170,56 +140,50 @@ class NextStepPanel(Panel):
         tip = _("The next thing to do ({shortcut})").format(shortcut=SHORTCUT)
         setUsable(ui.nextStepButton, isPossible, tip, step.sentence)
         setText(ui.nextStepText, step.sentence)
-        self._folding.follow(step.section)
-
-    def _titleOf(self, task: str) -> str:
-        if task == TRIAL_RUN:
-            return _("Trial run")
-        return self._session.taskTitle if task == self._session.task else task
+        if self._section is not step.section:
+            self._section = step.section
+            for each, button in self._sections.items():
+                button.collapsed = each is not step.section
 
     def _lookUp(self, *_arguments: Any) -> None:
         """Look up the chosen trainee in the study."""
-        trainees = self._session.trainees
-        if trainees.chosen != self._trainee:
-            self._trainee = trainees.chosen
-            self._hasPracticed = self._hasNewResult = self._isResultShown = False
-        self._studyStep, self._repeatSentence = None, ""
-        # The section Trainees shows what is wrong with the study.
+        trainees, now = self._session.trainees, self._now
+        if trainees.chosen != now.trainee:
+            now = replace(now, hasPracticed=False, hasNewResult=False, isResultShown=False)
+        now = replace(now, trainee=trainees.chosen, studyStep=None, needsRepeatReason=False)
+        # The section Trainees shows the error.
         with contextlib.suppress(InputError):
-            self._hasTrainees = bool(trainees.trainees())
-            self._hasPracticed = self._hasPracticed or bool(trainees.history())
+            now = replace(now, hasTrainees=bool(trainees.trainees()))
+            now = replace(now, hasPracticed=now.hasPracticed or bool(trainees.history()))
             progress = self._session.study.progress()
-            if progress is not None:
-                self._studyStep = progress.next_step
-                self._repeatSentence = progress.repeat_sentence
+            step = None if progress is None else progress.next_step
+            if progress is not None and step is not None:
+                now = replace(
+                    now,
+                    studyStep=StepKind(step.kind),
+                    needsRepeatReason=bool(progress.repeat_sentence),
+                    studySentence=progress.repeat_sentence or instruction(step),
+                )
+        self._now = now
         self.showState()
 
-    def _lookAtSetup(self, _error: str = "") -> None:
+    def _lookAtSetup(self, *_arguments: Any) -> None:
         # It is in a file, which should not be read at each state of a trial.
-        self._isSetUp = self._session.simulator.setup.isCurrent
+        self._note(needsSetup=self._session.simulator.needsSetup)
+
+    def _followTrial(self) -> None:
+        trial, now = self._session.training.status, self._now
+        if trial.phase == Phase.RUNNING.value:
+            hasPracticed = now.hasPracticed or trial.trainee == now.trainee
+            now = replace(now, hasPracticed=hasPracticed, isUnscored=False)
+            self._now = replace(now, hasNewResult=False, isResultShown=False)
         self.showState()
 
-    def _followTrial(self, state: Mapping[str, Any]) -> None:
-        if state.get("phase") == Phase.RUNNING.value:
-            self._isUnscored = self._hasNewResult = self._isResultShown = False
-            self._hasPracticed = self._hasPracticed or state.get("trainee") == self._trainee
-        self.showState()
-
-    def _takeResult(self, analysis: TrialAnalysis) -> None:
-        # Each section shows it in a separate turn; only then is there something to see.
-        self._session.work.later(lambda: self._noteResult(analysis.record.trainee))
-
-    def _noteResult(self, trainee: str) -> None:
-        if trainee == self._trainee:
-            self._hasNewResult = True
-        self.showState()
-
-    def _noteProblem(self, _sentence: str) -> None:
-        self._isUnscored = True
-        self.showState()
+    def _noteScored(self, analysis: TrialAnalysis) -> None:
+        if analysis.record.trainee == self._now.trainee:
+            self._note(hasNewResult=True)
 
     def _noteScoreSeen(self, isFolded: bool) -> None:
         """Treat a result as seen when the user opens its section."""
-        if not isFolded and self._hasNewResult:
-            self._hasNewResult, self._isResultShown = False, True
-            self.showState()
+        if not isFolded and self._now.hasNewResult:
+            self._note(hasNewResult=False, isResultShown=True)

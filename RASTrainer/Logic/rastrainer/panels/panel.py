@@ -31,7 +31,10 @@ class Panel:
         self._listening = Listening(*pairs)
 
     def cancelableWork(
-        self, showSentence: Callable[[str], None], show: Progress, showUsable: Callable[[], None]
+        self,
+        showSentence: Callable[[str], None],
+        show: Progress | None,
+        showUsable: Callable[[], None],
     ) -> CancelableWork:
         """Return what runs work until this panel is closed."""
         self._works.append(CancelableWork(showSentence, show, showUsable))

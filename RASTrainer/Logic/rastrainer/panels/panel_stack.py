@@ -45,11 +45,6 @@ SECTIONS = (
 """In the order of the work."""
 NESTED = (CurriculumPanel, LandmarksPanel, MethodsPanel)
 """Panels whose widgets are in the files of other sections."""
-PANELS = (
-    NextStepPanel,
-    *SECTIONS,
-)
-"""From top to bottom."""
 
 
 class PanelStack:
@@ -68,7 +63,7 @@ class PanelStack:
     ) -> Iterator[None]:
         """Build all in small steps, each for a turn of the event loop."""
         layout = container.layout()
-        for place, kind in enumerate(PANELS):
+        for place, kind in enumerate((NextStepPanel, *SECTIONS)):
             widget = slicer.util.loadUI(resourcePath(f"UI/RASTrainer{kind.__name__}.ui"))
             layout.insertWidget(place, widget)
             # Nodes can be chosen only from a scene.
@@ -77,12 +72,12 @@ class PanelStack:
             configureWidgets(named.values())
             vars(self.ui).update(named)
             yield
-        sections: dict[type, Any] = {}
+        panels: dict[type, Any] = {}
         for kind in (*SECTIONS, *NESTED):
             yield
-            sections[kind] = kind(self.ui, session)
-            self._panels.append(sections[kind])
-        self._panels.append(NextStepPanel(self.ui, session, _actions(sections)))
+            panels[kind] = kind(self.ui, session)
+            self._panels.append(panels[kind])
+        self._panels.append(NextStepPanel(self.ui, session, _actions(panels)))
 
     def close(self) -> None:
         """Stop listening."""
@@ -90,17 +85,17 @@ class PanelStack:
             panel.close()
 
 
-def _actions(sections: Mapping[type, Any]) -> dict[NextAction, Callable[[], None]]:
+def _actions(panels: Mapping[type, Any]) -> dict[NextAction, Callable[[], None]]:
     """Return the actions of the sections that the line at the top can trigger."""
     return {
-        NextAction.START_SIMULATOR: sections[SimulatorPanel].startAndConnect,
-        NextAction.CONNECT: sections[SimulatorPanel].connect,
-        NextAction.CONNECT_TO_RUNNING: sections[RunningSimulatorPanel].connectToIt,
-        NextAction.CREATE_TRAINEE: sections[TraineesPanel].createTrainee,
-        NextAction.START_STUDY_STEP: sections[StudyPanel].startStep,
-        NextAction.EXPLAIN_REPEAT: sections[StudyPanel].explainRepeat,
-        NextAction.START_TRIAL_RUN: sections[TrainingPanel].startTrialRun,
-        NextAction.START_TASK: sections[TrainingPanel].startTask,
-        NextAction.PAUSE: sections[TrainingPanel].pause,
-        NextAction.RESUME: sections[TrainingPanel].resume,
+        NextAction.START_SIMULATOR: panels[SimulatorPanel].startAndConnect,
+        NextAction.CONNECT: panels[SimulatorPanel].connect,
+        NextAction.CONNECT_TO_RUNNING: panels[RunningSimulatorPanel].connectToIt,
+        NextAction.CREATE_TRAINEE: panels[TraineesPanel].createTrainee,
+        NextAction.START_STUDY_STEP: panels[StudyPanel].startStep,
+        NextAction.EXPLAIN_REPEAT: panels[StudyPanel].explainRepeat,
+        NextAction.START_TRIAL_RUN: panels[TrainingPanel].startTrialRun,
+        NextAction.START_TASK: panels[TrainingPanel].startTask,
+        NextAction.PAUSE: panels[TrainingPanel].pause,
+        NextAction.RESUME: panels[TrainingPanel].resume,
     }

@@ -2,89 +2,52 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
+from functools import partial
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from rastrainer.commands import CommandName
 from rastrainer.number_text import fixed
-from rastrainer.panels.panel import Panel
-from rastrainer.panels.shown_errors import showErrors
-from rastrainer.panels.widgets import bindChecked, fillTable, setText, setUsable
+from rastrainer.panels.panel import Panel, connectClick
+from rastrainer.panels.widgets import bind, fillTable, setEnabled, setText
 from rastrainer.procedure.errors import TrajectoryErrors
 from rastrainer.protocol import Phase
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
-from rastrainer.slicer.logic.procedure_logic import ProcedureLogic, ProcedureStatus
+from rastrainer.slicer.logic.procedure_logic import ProcedureStatus
 from rastrainer.slicer.settings import SLICES_LIE_ALONG
 from rastrainer.slicer.translation import _
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 
+FEED_MM, FEED_MM_S = 1.0, 2.0
+"""How far one press of a button feeds drill or instrument, and how fast."""
+
 
 class _Step(NamedTuple):
-    """A button: its widget's name, the phases it belongs to, what it does, and its tool tip."""
+    """A button: its widget's name, the phases it belongs to, and its command."""
 
     button: str
     phases: tuple[Phase, ...]
-    do: Callable[[ProcedureLogic], None]
-    tip: str
-
-
-def _sends(name: str) -> Callable[[ProcedureLogic], None]:
-    return lambda logic: logic.command(name)
+    command: str
+    arguments: Mapping[str, float] = MappingProxyType({})
 
 
 _VERIFY, _ALIGN = (Phase.VERIFYING,), (Phase.ALIGNING,)
 _DRILL, _INSERT = (Phase.DRILLING,), (Phase.INSERTING,)
+_FEED = {"velocityMmS": FEED_MM_S, "durationS": FEED_MM / FEED_MM_S}
 STEPS = (
+    _Step("acceptButton", _VERIFY, CommandName.ACCEPT_REGISTRATION),
+    _Step("registerAgainButton", _VERIFY, CommandName.REGISTER_AGAIN),
+    _Step("alignButton", _ALIGN, CommandName.ALIGN_GUIDE),
+    _Step("lockButton", _ALIGN, CommandName.LOCK_GUIDE),
+    _Step("advanceButton", _DRILL + _INSERT, CommandName.FEED, _FEED),
     _Step(
-        "acceptButton",
-        _VERIFY,
-        _sends(CommandName.ACCEPT_REGISTRATION),
-        _("Continue with the registration in use; what comes next depends on it."),
+        "withdrawButton", _DRILL + _INSERT, CommandName.FEED, {**_FEED, "velocityMmS": -FEED_MM_S}
     ),
-    _Step(
-        "registerAgainButton",
-        _VERIFY,
-        _sends(CommandName.REGISTER_AGAIN),
-        _("Touch all points again."),
-    ),
-    _Step(
-        "alignButton",
-        _ALIGN,
-        _sends(CommandName.ALIGN_GUIDE),
-        _("Let the robot bring the guide onto the planned line."),
-    ),
-    _Step("lockButton", _ALIGN, _sends(CommandName.LOCK_GUIDE), _("Lock the guide where it is.")),
-    _Step(
-        "advanceButton",
-        (*_DRILL, *_INSERT),
-        lambda logic: logic.feed(True),
-        _("Move drill or instrument 1 mm along the guide."),
-    ),
-    _Step(
-        "withdrawButton",
-        (*_DRILL, *_INSERT),
-        lambda logic: logic.feed(False),
-        _("Move drill or instrument 1 mm back."),
-    ),
-    _Step(
-        "retractDrillButton",
-        _DRILL,
-        _sends(CommandName.RETRACT_DRILL),
-        _("Take the drill out and align the guide again; only before it has cut bone."),
-    ),
-    _Step(
-        "startInsertionButton",
-        _DRILL,
-        _sends(CommandName.START_INSERTION),
-        _("Replace the drill with the instrument."),
-    ),
-    _Step(
-        "releaseButton",
-        _INSERT,
-        _sends(CommandName.RELEASE_INSTRUMENT),
-        _("Leave the instrument where it is."),
-    ),
+    _Step("retractDrillButton", _DRILL, CommandName.RETRACT_DRILL),
+    _Step("startInsertionButton", _DRILL, CommandName.START_INSERTION),
+    _Step("releaseButton", _INSERT, CommandName.RELEASE_INSTRUMENT),
 )
 WHEN = {
     Phase.VERIFYING: _("while the registration is verified"),
@@ -100,15 +63,16 @@ class ProcedurePanel(Panel):
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
         self._logic = session.procedure
-        self._shown: ProcedureOutcome | None = None
-        bindChecked(ui.slicesAlongCheckBox, session.settings, SLICES_LIE_ALONG)
+        bind(ui.slicesAlongCheckBox, "checked", session.settings, SLICES_LIE_ALONG)
         ui.slicesAlongCheckBox.connect("toggled(bool)", self._laySlices)
         for step in STEPS:
-            getattr(ui, step.button).connect("clicked()", self._action(step))
+            send = partial(self._logic.command, step.command, step.arguments)
+            connectClick(getattr(ui, step.button), send, _("The command was not sent."))
         ui.procedureErrorsTable.connect("itemSelectionChanged()", self._jumpToTarget)
         self.listen(
             (self._logic.changed, self.showState),
-            (self._logic.answered, self._showMessage),
+            (self._logic.answered, partial(setText, ui.procedureMessageText)),
+            (self._logic.outcomeChanged, self._showOutcome),
             (session.link.statusChanged, self.showState),
         )
         self._laySlices()
@@ -117,14 +81,17 @@ class ProcedurePanel(Panel):
 
     def showState(self, *_arguments: Any) -> None:
         """Show the progress of the procedure."""
-        ui, status = self._ui, self._logic.status
+        ui, status, isFailed = self._ui, self._logic.status, self._logic.isRegistrationFailed
         isConnected = self._session.link.status.state is LinkState.CONNECTED
         setText(ui.procedureStateText, stateText(status, isConnected))
-        setText(ui.procedureInstructionText, self._instruction() if isConnected else "")
+        advice = instruction(status)
+        if isFailed:
+            advice = _("The touches could not be registered: have all points touched again.")
+        setText(ui.procedureInstructionText, advice if isConnected else "")
         for step in STEPS:
             isReady = status.isRegistered or Phase.VERIFYING not in step.phases
             # If registration fails, the only remedy is to touch again.
-            isReady |= step.button == "registerAgainButton" and self._logic.isRegistrationFailed
+            isReady |= isFailed and step.command == CommandName.REGISTER_AGAIN
             isNow = status.isUnderWay and status.phase in [phase.value for phase in step.phases]
             when = _(" or ").join(WHEN[phase] for phase in step.phases)
             reason = _("Only {when}.").format(when=when)
@@ -132,21 +99,7 @@ class ProcedurePanel(Panel):
                 reason = _("The touches are being registered.")
             if not isConnected:
                 reason = _("Connect to the simulator first.")
-            setUsable(getattr(ui, step.button), isConnected and isNow and isReady, step.tip, reason)
-        if self._logic.outcome is not self._shown:
-            self._showOutcome()
-
-    def _instruction(self) -> str:
-        if self._logic.isRegistrationFailed:
-            return _("The touches could not be registered: have all points touched again.")
-        return instruction(self._logic.status)
-
-    def _action(self, step: _Step) -> Callable[[], None]:
-        def act() -> None:
-            with showErrors(_("The command was not sent.")):
-                step.do(self._logic)
-
-        return act
+            setEnabled(getattr(ui, step.button), isConnected and isNow and isReady, reason)
 
     def _laySlices(self, *_checked: bool) -> None:
         self._session.slices.liesAlong = self._ui.slicesAlongCheckBox.checked
@@ -154,7 +107,6 @@ class ProcedurePanel(Panel):
 
     def _showOutcome(self) -> None:
         ui, outcome = self._ui, self._logic.outcome
-        self._shown = outcome
         each = () if outcome is None else outcome.analysis.trajectories
         fillTable(ui.procedureErrorsTable, map(_row, each), [_tip(errors) for errors in each])
         ui.procedureErrorsTable.visible = outcome is not None
@@ -162,11 +114,8 @@ class ProcedurePanel(Panel):
 
     def _jumpToTarget(self) -> None:
         row = self._ui.procedureErrorsTable.currentRow()
-        if self._shown is not None and 0 <= row < len(self._logic.lines):
+        if self._logic.outcome is not None and 0 <= row < len(self._logic.lines):
             self._session.slices.show(self._logic.lines[row].planned[1])
-
-    def _showMessage(self, sentence: str) -> None:
-        setText(self._ui.procedureMessageText, sentence)
 
 
 def stateText(status: ProcedureStatus, isConnected: bool) -> str:
@@ -194,56 +143,50 @@ def stateText(status: ProcedureStatus, isConnected: bool) -> str:
     return line if status.trajectories else status.name
 
 
+NEXT = {
+    Phase.VERIFYING.value: _(
+        "Touch checkpoints to verify the registration; then accept it, or register again. "
+        "An offset common to all touches does not show there."
+    ),
+    Phase.ALIGNING.value: _(
+        "Bring the guide onto the planned line, by hand or by the robot; then lock it."
+    ),
+    Phase.DRILLING.value: _(
+        "Drill through the skull, and stop past its inner table; then insert the instrument."
+    ),
+    Phase.INSERTING.value: _("Advance the instrument to the target, and release it there."),
+}
+
+
 def instruction(status: ProcedureStatus) -> str:
-    """Return what comes next; empty if that is not part of the procedure."""
-    if not status.isUnderWay:
-        return ""
-    if status.phase == Phase.VERIFYING.value:
-        if not status.isRegistered:
-            return _("The touches are being registered.")
-        checked = _("No checkpoint has been touched.")
-        if status.lastCheckMm is not None:
-            checked = _("The last checkpoint was {error} mm off.").format(
-                error=fixed(status.lastCheckMm, 1)
-            )
-        return (
-            checked
-            + " "
-            + _(
-                "Touch checkpoints to verify the registration; then accept it, or register again. "
-                "An offset common to all touches does not show there."
-            )
-        )
-    return {
-        Phase.ALIGNING.value: _(
-            "Bring the guide onto the planned line, by hand or by the robot; then lock it."
-        ),
-        Phase.DRILLING.value: _(
-            "Drill through the skull, and stop past its inner table; then insert the instrument."
-        ),
-        Phase.INSERTING.value: _("Advance the instrument to the target, and release it there."),
-    }[status.phase]
+    """Return the next thing to do in the procedure, if any."""
+    text = NEXT[status.phase] if status.isUnderWay else ""
+    if not text or status.phase != Phase.VERIFYING.value:
+        return text
+    if not status.isRegistered:
+        return _("The touches are being registered.")
+    checked = _("No checkpoint has been touched.")
+    if status.lastCheckMm is not None:
+        mm = fixed(status.lastCheckMm, 1)
+        checked = _("The last checkpoint was {error} mm off.").format(error=mm)
+    return f"{checked} {text}"
 
 
 def scoreText(outcome: ProcedureOutcome) -> str:
     """Return the score of a procedure, and why it is not acceptable, if so."""
     score, analysis = outcome.score, outcome.analysis
-    text = _("Score of the procedure: {score} of 100 (version {version}).").format(
-        score=fixed(score.score, 1), version=score.version
-    )
-    for trajectory, structure in analysis.hits:
-        text += " " + _("{trajectory} hit {structure}.").format(
-            trajectory=trajectory, structure=structure
-        )
+    text = _("Score of the procedure: {score} of 100 (version {version}).")
+    said = [text.format(score=fixed(score.score, 1), version=score.version)]
+    text = _("{trajectory} hit {structure}.")
+    said += [text.format(trajectory=line, structure=hit) for line, hit in analysis.hits]
     if analysis.self_aligned:
-        text += " " + _(
-            "The robot aligned {count} of {lines} lines: only their depth is by hand."
-        ).format(count=analysis.self_aligned, lines=len(analysis.trajectories))
-    for trajectory in analysis.missed_bone:
-        text += " " + _("{trajectory} missed the skull.").format(trajectory=trajectory)
+        text = _("The robot aligned {count} of {lines} lines: only their depth is by hand.")
+        said.append(text.format(count=analysis.self_aligned, lines=len(analysis.trajectories)))
+    text = _("{trajectory} missed the skull.")
+    said += [text.format(trajectory=line) for line in analysis.missed_bone]
     if not score.acceptable:
-        text += " " + _("Not acceptable: an error is beyond its limit, or a structure was hit.")
-    return text
+        said.append(_("Not acceptable: an error is beyond its limit, or a structure was hit."))
+    return " ".join(said)
 
 
 def _row(errors: TrajectoryErrors) -> tuple[str, ...]:
@@ -266,10 +209,12 @@ def _tip(errors: TrajectoryErrors) -> str:
         entry = _("Entry: registration {shown} mm, robot {hand} mm.")
         angle = _("Angle: registration {shown}°, robot {hand}°.")
     plunge = "–" if errors.plunge_mm is None else f"{fixed(errors.plunge_mm, 1)} mm"
+    deviation = _(
+        "Radial error {radial} mm, depth error {depth} mm (registration {shown}, hand {hand})."
+    )
+    kept = _("{mm} mm to {name}.")
     lines = [
-        _(
-            "Radial error {radial} mm, depth error {depth} mm (registration {shown}, hand {hand})."
-        ).format(
+        deviation.format(
             radial=fixed(errors.radial_error.mm, 2),
             depth=fixed(errors.depth_error_mm, 2),
             shown=fixed(errors.depth_error_by_registration_mm, 2),
@@ -281,9 +226,6 @@ def _tip(errors: TrajectoryErrors) -> str:
             hand=fixed(errors.angular_deviation_by_hand_deg, 2),
         ),
         _("Plunge depth {plunge}.").format(plunge=plunge),
-        *(
-            _("{mm} mm to {name}.").format(mm=fixed(kept, 1), name=name)
-            for name, kept in errors.kept_mm.items()
-        ),
+        *(kept.format(mm=fixed(mm, 1), name=name) for name, mm in errors.kept_mm.items()),
     ]
     return "\n".join(lines)

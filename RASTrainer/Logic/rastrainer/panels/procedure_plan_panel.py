@@ -10,14 +10,16 @@ import slicer
 from rastrainer.number_text import fixed
 from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.widgets import (
+    blockedSignals,
     chosenData,
     chosenScenario,
     fillComboBox,
     fillTable,
     offerEntries,
+    setEnabled,
     setProperty,
+    setSilently,
     setText,
-    setUsable,
 )
 from rastrainer.procedure.checks import LineMeasures, MeasuredProcedure
 from rastrainer.procedure.plan import ProcedureKind
@@ -26,7 +28,6 @@ from rastrainer.slicer.logic.procedure_plan_logic import PlanDescription
 from rastrainer.slicer.scene.nodes import Role, findNode, worldPoints
 from rastrainer.slicer.scene.plan_points import LIST, startPlacing
 from rastrainer.slicer.scene.procedure_lines import (
-    RemovedLine,
     checkpointList,
     instrumentOf,
     isNoGo,
@@ -59,7 +60,7 @@ class ProcedurePlanPanel(Panel):
         self._name = ""
         self._checked: tuple[tuple, MeasuredProcedure] | None = None
         self._problem = ""
-        self._removed: list[RemovedLine] = []
+        self._removed: list[tuple[Any, int]] = []
         self._work = self.cancelableWork(self._showProblem, self._showProgress, self.showState)
         fillComboBox(ui.procedureKindComboBox, KINDS, ProcedureKind.BIOPSY.value)
         connectClick(ui.editProcedureButton, self.edit, _("The procedure cannot be edited."))
@@ -108,13 +109,13 @@ class ProcedurePlanPanel(Panel):
         """Remove the chosen line; it can be restored."""
         line = self._line()
         if line is not None:
-            self._removed.append(removeLine(slicer.mrmlScene, line))
-            self.showState()
+            self._removed.append((line, removeLine(slicer.mrmlScene, line)))
+        self.showState()
 
     def restoreLine(self) -> None:
         if self._removed:
-            restoreLine(slicer.mrmlScene, self._removed.pop())
-            self.showState()
+            restoreLine(slicer.mrmlScene, *self._removed.pop())
+        self.showState()
 
     def raiseLine(self) -> None:
         """Have the chosen line carried out before the one above it; it stays chosen."""
@@ -122,7 +123,7 @@ class ProcedurePlanPanel(Panel):
         if line is not None:
             raiseLine(slicer.mrmlScene, line)
             table.selectRow(max(table.currentRow() - 1, 0))
-            self.showState()
+        self.showState()
 
     def placeCheckpoint(self) -> None:
         """Let the next click place a checkpoint, in the chosen list or in the plan's own."""
@@ -164,49 +165,21 @@ class ProcedurePlanPanel(Panel):
         hasLines, line = bool(planLines(slicer.mrmlScene)), self._line()
         for box in (ui.lineNameLineEdit, ui.lineDiameterSpinBox, ui.lineSafetySpinBox):
             box.enabled = line is not None
-        setUsable(
-            ui.removeLineButton,
-            line is not None,
-            _("Remove the chosen line."),
-            _("Choose a line in the table first."),
-        )
-        setUsable(
-            ui.restoreLineButton,
-            bool(self._removed),
-            _("Bring back the line that was removed last."),
-            _("No line has been removed."),
-        )
-        setUsable(
-            ui.raiseLineButton,
-            line is not None and ui.linesTable.currentRow() > 0,
-            _("Carry out the chosen line before the one above it."),
-            _("Choose a line below the first one in the table."),
-        )
+        setEnabled(ui.removeLineButton, line is not None, _("Choose a line in the table first."))
+        setEnabled(ui.restoreLineButton, bool(self._removed), _("No line has been removed."))
+        isBelow = line is not None and ui.linesTable.currentRow() > 0
+        first = _("Choose a line below the first one in the table.")
+        setEnabled(ui.raiseLineButton, isBelow, first)
         node = ui.noGoComboBox.currentNode()
         isKept = node is not None and isNoGo(node)
         setProperty(ui.noGoButton, "text", _("Ignore") if isKept else _("Keep away"))
-        setUsable(
-            ui.noGoButton,
-            node is not None,
-            _("Make instruments keep away from this, or no longer."),
-            _("Choose a model or a segmentation first."),
-        )
+        setEnabled(ui.noGoButton, node is not None, _("Choose a model or a segmentation first."))
         names = ", ".join(each.GetName() for each in noGoNodes(slicer.mrmlScene))
         setText(ui.noGoText, _("To keep away from: {names}").format(names=names or "–"))
-        setProperty(ui.checkLinesButton, "text", _("Cancel") if isAtWork else _("Check"))
         first = _("Place a line first.")
-        setUsable(
-            ui.checkLinesButton,
-            hasLines or isAtWork,
-            _("Measure angles, distances and reach of all lines on the head chosen above."),
-            first,
-        )
-        setUsable(
-            ui.saveProcedureButton,
-            hasLines and not isAtWork,
-            _("Copy the scenario above with this procedure."),
-            _("Wait until the current work is done.") if isAtWork else first,
-        )
+        setEnabled(ui.checkLinesButton, hasLines or isAtWork, first)
+        reason = _("Wait until the current work is done.") if isAtWork else first
+        setEnabled(ui.saveProcedureButton, hasLines and not isAtWork, reason)
         if not isAtWork:
             setText(ui.procedurePlanText, self._problem or self._verdict(isFresh))
 
@@ -235,29 +208,20 @@ class ProcedurePlanPanel(Panel):
         lines, table = planLines(slicer.mrmlScene), self._ui.linesTable
         measured = {each.name: each for each in found}
         chosen = table.currentRow()
-        wasBlocked = table.blockSignals(True)
-        if fillTable(table, [_row(line, measured.get(line.GetName())) for line in lines]):
-            if lines:
-                table.selectRow(min(max(chosen, 0), len(lines) - 1))
-            self._showLine()
-        table.blockSignals(wasBlocked)
+        with blockedSignals(table):
+            if fillTable(table, [_row(line, measured.get(line.GetName())) for line in lines]):
+                if lines:
+                    table.selectRow(min(max(chosen, 0), len(lines) - 1))
+                self._showLine()
 
     def _showLine(self) -> None:
         """Show name and instrument of the chosen line."""
         ui, line = self._ui, self._line()
-        if line is None:
-            return
-        diameter, safety = instrumentOf(line)
-        boxes: Sequence[tuple[Any, float]] = (
-            (ui.lineDiameterSpinBox, diameter),
-            (ui.lineSafetySpinBox, safety),
-        )
-        for box, value in boxes:
-            wasBlocked = box.blockSignals(True)
-            box.value = value
-            box.blockSignals(wasBlocked)
-        if ui.lineNameLineEdit.text != line.GetName():
-            ui.lineNameLineEdit.text = line.GetName()
+        if line is not None:
+            diameter, safety = instrumentOf(line)
+            setSilently(ui.lineDiameterSpinBox, "value", diameter)
+            setSilently(ui.lineSafetySpinBox, "value", safety)
+            setProperty(ui.lineNameLineEdit, "text", line.GetName())
 
     def _renameLine(self) -> None:
         line, name = self._line(), self._ui.lineNameLineEdit.text.strip()
@@ -266,9 +230,8 @@ class ProcedurePlanPanel(Panel):
             self.showState()
 
     def _changeInstrument(self, _value: float = 0.0) -> None:
-        line = self._line()
+        ui, line = self._ui, self._line()
         if line is not None:
-            ui = self._ui
             setInstrument(line, ui.lineDiameterSpinBox.value, ui.lineSafetySpinBox.value)
             self.showState()
 
@@ -299,23 +262,23 @@ class ProcedurePlanPanel(Panel):
             setText(self._ui.procedurePlanText, f"{step}: {100 * share:.0f} %")
 
     def _showProblem(self, sentence: str) -> None:
+        """Keep the sentence for `showState`."""
         self._problem = sentence
 
 
 def _row(line: Any, measured: LineMeasures | None) -> tuple[str, ...]:
-    length = lengthMm(line)
-    first = (line.GetName(), "–" if length is None else fixed(length, 1))
+    first = (line.GetName(), _fixed(lengthMm(line)))
     if measured is None:
         return (*first, "–", "–", "–", "–")
-    angle, nearest = measured.skull_angle_deg, measured.nearest_no_go
+    nearest = measured.nearest_no_go
     return (
         *first,
-        "–" if angle is None else fixed(angle, 1),
-        _named(measured.no_go_mm.get(nearest), nearest),
-        _named(measured.nearest_line_mm, measured.nearest_line),
+        _fixed(measured.skull_angle_deg),
+        _fixed(measured.no_go_mm.get(nearest), f" {nearest}"),
+        _fixed(measured.nearest_line_mm, f" {measured.nearest_line}"),
         REACH[measured.is_held],
     )
 
 
-def _named(distanceMm: float | None, name: str) -> str:
-    return "–" if distanceMm is None else f"{fixed(distanceMm, 1)} {name}"
+def _fixed(value: float | None, name: str = "") -> str:
+    return "–" if value is None else f"{fixed(value, 1)}{name}"

@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import qt
 
 from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import buttonTitle
-from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
-    bindChecked,
+    bind,
     bindChosen,
+    blockedSignals,
     chosenData,
     fillTable,
     setChecked,
+    setEnabled,
     setText,
-    setUsable,
     textLabel,
 )
 from rastrainer.registration.fits import AFFINE, RIGID, SIMILARITY
-from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.registration_comparison import Comparison
@@ -39,131 +38,104 @@ class RegistrationPanel(Panel):
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
         self._logic = session.registration
-        self._slices = session.slices
         self._remedies: tuple[Remedy, ...] = ()
         self._remedyWidgets: list[Any] = []
         self._labels: tuple[str, ...] = ()
         entries = [(title, kind) for kind, title in TITLES.items()]
         bindChosen(ui.kindComboBox, entries, session.settings, FIT)
         self._logic.kind = chosenData(ui.kindComboBox)
-        ui.kindComboBox.connect("activated(int)", self._chooseKind)
-        for combo in (ui.movingComboBox, ui.fixedComboBox):
+        ui.kindComboBox.connect(
+            "activated(int)", lambda _index: self._logic.chooseKind(chosenData(ui.kindComboBox))
+        )
+        for combo in (ui.movingComboBox, ui.fixedComboBox, ui.targetComboBox):
             combo.connect("currentNodeChanged(vtkMRMLNode*)", self._chooseLists)
-        ui.targetComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._chooseTarget)
         ui.residualsTable.connect("itemSelectionChanged()", self._chooseFiducial)
         connectClick(ui.excludeButton, self.excludeChosen, _("The fiducial was not left out."))
         connectClick(ui.fleButton, self.localizeChosen, _("The localization error was not set."))
-        connectClick(ui.undoButton, lambda: self._logic.undo(), _("Nothing was undone."))
+        connectClick(ui.undoButton, self._logic.undo, _("Nothing was undone."))
         ui.appliedCheckBox.connect("toggled(bool)", self._apply)
         ui.headColoredCheckBox.connect("toggled(bool)", self._logic.setHeadColored)
-        bindChecked(ui.headColoredCheckBox, session.settings, IS_HEAD_COLORED)
-        self._woken = session.woken
+        bind(ui.headColoredCheckBox, "checked", session.settings, IS_HEAD_COLORED)
         self.listen((self._logic.changed, self._show), (session.sceneChanged, self._showApplied))
         self._show()
 
     def excludeChosen(self) -> None:
         """Register again without the chosen fiducial."""
-        row = self._ui.residualsTable.currentRow()
-        if row >= 0 and self._logic.shown is not None:
-            self._logic.exclude(self._logic.shown.labels[row])
+        if self._chosen() >= 0:
+            self._logic.change(self._logic.choices.without((self._labels[self._chosen()],)))
 
     def localizeChosen(self) -> None:
         """Register again with the stated localization error of the chosen fiducial."""
+        if self._chosen() >= 0:
+            label, fleMm = self._labels[self._chosen()], self._ui.fleSpinBox.value
+            self._logic.change(self._logic.choices.localized(label, fleMm))
+
+    def _chosen(self) -> int:
+        """Return the chosen row of the residuals; -1 where none is."""
         row = self._ui.residualsTable.currentRow()
-        if row >= 0 and self._logic.shown is not None:
-            self._logic.localize(self._logic.shown.labels[row], self._ui.fleSpinBox.value)
+        return row if row < len(self._labels) else -1
 
     def _showApplied(self) -> None:
-        transform = self._logic.transform()
+        transform = self._logic.transform
         setChecked(self._ui.appliedCheckBox, transform is not None and isApplied(transform))
         self._ui.appliedCheckBox.enabled = transform is not None
 
     def _chooseLists(self, _node: Any = None) -> None:
         ui = self._ui
-        self._logic.chooseLists(ui.movingComboBox.currentNode(), ui.fixedComboBox.currentNode())
-        self._woken.emit()
-
-    def _chooseTarget(self, node: Any = None) -> None:
-        self._logic.chooseTarget(node)
-        self._woken.emit()
-
-    def _chooseKind(self, _index: int = 0) -> None:
-        with showErrors(_("The fit cannot be shown.")):
-            self._logic.chooseKind(chosenData(self._ui.kindComboBox))
+        combos = (ui.movingComboBox, ui.fixedComboBox, ui.targetComboBox)
+        self._logic.chooseLists(*(combo.currentNode() for combo in combos))
+        self._session.woken.emit()
 
     def _apply(self, applied: bool) -> None:
-        transform = self._logic.transform()
+        transform = self._logic.transform
         if transform is not None:
             setApplied(transform, applied)
 
     def _chooseFiducial(self) -> None:
         """Center the slices on the chosen fiducial."""
-        row, shown = self._ui.residualsTable.currentRow(), self._logic.shown
-        if shown is not None and 0 <= row < len(shown.labels):
-            self._slices.show(shown.fixed_mm[row])
+        if self._logic.shown is not None and self._chosen() >= 0:
+            self._session.slices.show(self._logic.shown.fixed_mm[self._chosen()])
         self._showButtons()
 
     def _show(self) -> None:
         ui, comparison = self._ui, self._logic.comparison
         setText(ui.registrationText, _summary(comparison) if comparison else self._logic.problem)
         setText(ui.treText, _treText(comparison) if comparison else "", INTERVAL_NOTE)
-        fits = [] if comparison is None else _fitRows(comparison)
+        fits = _fitRows(comparison) if comparison else []
         fillTable(ui.fitsTable, fits, [INTERVAL_NOTE] * len(fits))
-        shown = self._logic.shown
-        self._showResiduals(shown)
-        self._showRemedies(() if comparison is None else comparison.remedies)
+        self._showResiduals(comparison)
+        self._showRemedies(comparison.remedies if comparison else ())
         self._showButtons()
         self._showApplied()
 
     def _showButtons(self) -> None:
         ui = self._ui
-        hasRow = self._logic.shown is not None and ui.residualsTable.currentRow() >= 0
-        setUsable(
-            ui.excludeButton,
-            hasRow,
-            _("Register again without the chosen fiducial."),
-            _("Choose a row of the table first."),
-        )
-        setUsable(
-            ui.fleButton,
-            hasRow,
-            _(
-                "Weight the chosen fiducial by 1/FLE² in the rigid fit. Only ratios matter: "
-                "others have 1 mm, and the size of the errors is estimated from the residuals."
-            ),
-            _("Choose a row of the table first."),
-        )
-        setUsable(
-            ui.undoButton,
-            self._logic.canUndo,
-            _("Undo the last change to the pairs."),
-            _("No pair was changed."),
-        )
+        for button in (ui.excludeButton, ui.fleButton):
+            setEnabled(button, self._chosen() >= 0, _("Choose a row of the table first."))
+        setEnabled(ui.undoButton, self._logic.canUndo, _("No pair was changed."))
 
-    def _showResiduals(self, shown: Registration | None) -> None:
+    def _showResiduals(self, comparison: Comparison | None) -> None:
         """Show the residuals; the chosen fiducial stays chosen, whichever row it is in now."""
-        table, row = self._ui.residualsTable, self._ui.residualsTable.currentRow()
-        chosen = self._labels[row] if 0 <= row < len(self._labels) else ""
-        self._labels = () if shown is None else shown.labels
-        wasBlocked = table.blockSignals(True)
-        fillTable(table, [] if shown is None else self._residualRows(shown))
-        newRow = self._labels.index(chosen) if chosen in self._labels else -1
-        if newRow != row:
-            table.clearSelection()
-            table.setCurrentCell(newRow, 0 if newRow >= 0 else -1)
-        table.blockSignals(wasBlocked)
-
-    def _residualRows(self, shown: Registration) -> list[tuple[str, ...]]:
-        without: Sequence[float | None] = [None] * len(shown.labels)
-        if self._logic.leaveOneOut is not None:
-            without = self._logic.leaveOneOut.tolist()
-        sizes = dict(self._logic.choices.fle)
-        return [
-            (label, _number(residual), _number(alone), _number(sizes.get(label)))
-            for label, residual, alone in zip(
-                shown.labels, shown.residuals_mm, without, strict=True
-            )
-        ]
+        table, row = self._ui.residualsTable, self._chosen()
+        chosen = self._labels[row] if row >= 0 else ""
+        rows: list[tuple[str, ...]] = []
+        self._labels = ()
+        if comparison is not None:
+            shown, sizes = comparison.shown, dict(self._logic.choices.fle)
+            self._labels = shown.labels
+            without = comparison.leaveOneOut.get(shown.kind, [None] * len(shown.labels))
+            rows = [
+                (label, _number(residual), _number(alone), _number(sizes.get(label)))
+                for label, residual, alone in zip(
+                    shown.labels, shown.residuals_mm, without, strict=True
+                )
+            ]
+        with blockedSignals(table):
+            fillTable(table, rows)
+            newRow = self._labels.index(chosen) if chosen in self._labels else -1
+            if newRow != row:
+                table.clearSelection()
+                table.setCurrentCell(newRow, 0 if newRow >= 0 else -1)
 
     def _showRemedies(self, remedies: tuple[Remedy, ...]) -> None:
         """Show each warning with its button, in place of those before, unless they are the same.
@@ -182,25 +154,17 @@ class RegistrationPanel(Panel):
         for number, remedy in enumerate(remedies):
             text = textLabel("⚠ " + remedy.warning.message)
             text.setObjectName(f"warning{number}Text")
-            self._add(layout, text)
+            self._remedyWidgets.append(text)
             if remedy.title:
                 button = qt.QPushButton(buttonTitle(remedy.title))
                 button.setObjectName(f"remedy{number}Button")
                 button.minimumWidth = 1
                 button.toolTip = _("Apply this change and register again. Undo reverts it.")
-                button.connect("clicked()", self._applying(remedy))
-                self._add(layout, button)
-
-    def _add(self, layout: Any, widget: Any) -> None:
-        layout.addWidget(widget)
-        self._remedyWidgets.append(widget)
-
-    def _applying(self, remedy: Remedy) -> Callable[[], None]:
-        def apply() -> None:
-            with showErrors(_("The pairs were not changed.")):
-                self._logic.change(remedy.choices)
-
-        return apply
+                change = partial(self._logic.change, remedy.choices)
+                connectClick(button, change, _("The pairs were not changed."))
+                self._remedyWidgets.append(button)
+        for widget in self._remedyWidgets:
+            layout.addWidget(widget)
 
 
 def _summary(comparison: Comparison) -> str:
@@ -238,9 +202,9 @@ def _fitRows(comparison: Comparison) -> list[tuple[str, ...]]:
             rows.append((title, "–", "–", "–", "–"))
             continue
         interval = "–" if error is None else "{:.2f}–{:.2f}".format(*error.interval_mm)
-        expected = "–" if error is None else f"{error.expected_mm:.2f}"
-        largest = f"{fit.residuals_mm.max():.2f}"
-        rows.append((title, f"{fit.fre_mm:.2f}", largest, expected, interval))
+        expected = None if error is None else error.expected_mm
+        lengths = (fit.fre_mm, fit.residuals_mm.max(), expected)
+        rows.append((title, *map(_number, lengths), interval))
     return rows
 
 

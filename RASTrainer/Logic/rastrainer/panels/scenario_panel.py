@@ -22,14 +22,13 @@ from rastrainer.panels.widgets import (
     fillTable,
     offerEntries,
     setChecked,
+    setEnabled,
     setText,
-    setUsable,
 )
 from rastrainer.protocol import TRIAL_RUN, RegistrationMethod
-from rastrainer.scenario.library import ListedScenario
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
-from rastrainer.slicer.logic.scenario_logic import ComparedMethod
+from rastrainer.slicer.logic.scenario_logic import ComparedMethod, compareMethods
 from rastrainer.slicer.settings import SCENARIO, TASK
 from rastrainer.slicer.translation import _
 from rastrainer.work_progress import no_progress
@@ -43,18 +42,19 @@ class ScenarioPanel(Panel):
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
         self._logic = session.scenario
+        self._scenarios, self._files = session.scenarios, session.scenarioFiles
         self._work = self.cancelableWork(
             self._showHeadMessage, self._showProgress, self._showUsable
         )
         self._writing = self.cancelableWork(self._showMessage, no_progress, self._showUsable)
-        self._adding = self.cancelableWork(self._showMessage, self._showAdding, self._showUsable)
+        self._adding = self.cancelableWork(self._showMessage, None, self._showUsable)
         ui.scenarioComboBox.connect("activated(int)", self._showTasks)
         ui.taskComboBox.connect("activated(int)", self._chooseTask)
         for combo in (ui.scenarioComboBox, ui.taskComboBox):
             combo.connect("activated(int)", self._keepChoice)
         ui.showScenarioButton.connect("clicked()", self.show)
         ui.loadScenarioButton.connect("clicked()", self.loadIntoSimulator)
-        ui.robotCheckBox.connect("toggled(bool)", self.showRobot)
+        ui.robotCheckBox.connect("toggled(bool)", self._logic.setRobotShown)
         self._work.connectButton(
             ui.useHeadButton, self.useHead, _("This cannot be used as the head.")
         )
@@ -71,9 +71,12 @@ class ScenarioPanel(Panel):
             (session.scenarioMade, self.continueWith),
             (session.files.shown, self._frame),
             (session.files.problemFound, self._showMessage),
-            (session.scenario.robotShown, fitThreeDViews),
-            (session.scenario.problemFound, self._showMessage),
-            (session.sceneChanged, self._showRobotBox),
+            (self._logic.robotShown, fitThreeDViews),
+            (self._logic.problemFound, self._showMessage),
+            (
+                session.sceneChanged,
+                lambda: setChecked(ui.robotCheckBox, self._logic.isRobotShown),
+            ),
         )
         self._fill(session.settings.get(SCENARIO))
 
@@ -81,7 +84,7 @@ class ScenarioPanel(Panel):
         """Show the chosen head and the fiducials of the chosen task."""
         with showErrors(_("The scenario cannot be shown.")):
             name = chosenData(self._ui.scenarioComboBox)
-            target = self._logic.find(name).target_position
+            target = self._scenarios.find(name).target_position
 
             def showTarget() -> None:
                 self._session.slices.show(target)
@@ -92,16 +95,12 @@ class ScenarioPanel(Panel):
     def loadIntoSimulator(self) -> None:
         """Load the chosen head into the simulator."""
         with showErrors(_("The scenario was not loaded.")):
-            scenario = self._session.scenario.find(chosenData(self._ui.scenarioComboBox))
+            scenario = self._scenarios.find(chosenData(self._ui.scenarioComboBox))
             self._showMessage(
                 _("The simulator was asked to load {title}.").format(title=scenario.title)
             )
             loaded = _("The simulator now uses {title}.").format(title=scenario.title)
             self._session.training.loadScenario(scenario.name, lambda: self._showMessage(loaded))
-
-    def showRobot(self, shown: bool) -> None:
-        """Show the robot in the 3D view, or hide it."""
-        self._logic.setRobotShown(shown)
 
     def useHead(self) -> None:
         """Show a model, or the skin of a volume, as the head."""
@@ -118,12 +117,9 @@ class ScenarioPanel(Panel):
         path = qt.QFileDialog.getOpenFileName(
             slicer.util.mainWindow(), _("Add a scenario"), "", "Zip (*.zip)"
         )
-        files = self._session.scenarioFiles
-        added = (
-            self._adding.run(lambda report: files.importScenario(Path(path), report))
-            if path
-            else None
-        )
+        if not path:
+            return
+        added = self._adding.run(lambda report: self._files.importScenario(Path(path), report))
         if added is not None:
             self._fill(added.name)
             self._showMessage(_("{title} was added.").format(title=added.title))
@@ -136,24 +132,22 @@ class ScenarioPanel(Panel):
         # A file named after the patient would reveal the name, too.
         proposed = f"{name}.zip" if keepsNames else "head.zip"
         path = askWhereToSave(_("Save the scenario"), proposed, "Zip (*.zip)")
-        if path is not None and (keepsFace or self._isFaceGone(name)):
-            taken = self._writing.run(
-                lambda report: self._session.scenarioFiles.exportScenario(
-                    name, path, keepsFace, keepsNames, report
-                )
-            )
-            if taken is not None:
-                self._showMessage(_("{path} was written.").format(path=path) + f" {taken}")
+        if path is None or not (keepsFace or self._isFaceGone(name)):
+            return
+        taken = self._writing.run(
+            lambda report: self._files.exportScenario(name, path, keepsFace, keepsNames, report)
+        )
+        if taken is not None:
+            self._showMessage(_("{path} was written.").format(path=path) + f" {taken}")
 
     def _isFaceGone(self, name: str) -> bool:
         """Show a scenario's head before and after its face is removed, and ask the user."""
         with tempfile.TemporaryDirectory() as temporary:
             picture = Path(temporary) / "before-and-after.png"
-            files = self._session.scenarioFiles
-            drawn = self._writing.run(lambda report: files.drawFaceRemoval(name, picture, report))
-            if drawn is None:
-                return False
-            return slicer.util.confirmYesNoDisplay(
+            drawn = self._writing.run(
+                lambda report: self._files.drawFaceRemoval(name, picture, report)
+            )
+            return drawn is not None and slicer.util.confirmYesNoDisplay(
                 toolTip(f"{drawn} " + _("Is the face gone?")),
                 _("Save the scenario without its face"),
                 iconPixmap=qt.QPixmap(str(picture)),
@@ -180,18 +174,12 @@ class ScenarioPanel(Panel):
         if step:
             self._showHeadMessage(f"{step}: {100 * share:.0f} %")
 
-    def _showAdding(self, step: str, _share: float) -> None:
-        self._showMessage(step)
-
     def _showHeadMessage(self, sentence: str) -> None:
         setText(self._ui.otherHeadText, sentence)
 
-    def _showRobotBox(self) -> None:
-        setChecked(self._ui.robotCheckBox, self._logic.isRobotShown)
-
     def _fill(self, wanted: str = "") -> None:
         """Offer the available scenarios, and choose one; the first if it is missing."""
-        listed = self._logic.listed()
+        listed = self._scenarios.listed()
         names = [entry.name for entry in listed if not entry.problem] or [""]
         chosen = wanted if wanted in names else names[0]
         combo = self._ui.scenarioComboBox
@@ -203,31 +191,28 @@ class ScenarioPanel(Panel):
 
     def _showTasks(self, _index: int = 0) -> None:
         """Show the chosen scenario's picture and tasks, or why it cannot be used."""
-        name = chosenData(self._ui.scenarioComboBox)
-        entry = next((each for each in self._logic.listed() if each.name == name), None)
-        self._showPicture(entry)
-        isUsable = entry is not None and not entry.problem
-        self._ui.taskComboBox.enabled = isUsable
+        ui = self._ui
+        name = chosenData(ui.scenarioComboBox)
+        entry = next((each for each in self._scenarios.listed() if each.name == name), None)
+        preview = None if entry is None else entry.preview
+        if preview is not None:
+            picture = qt.QPixmap(str(preview)).scaledToHeight(PICTURE_HEIGHT)
+            ui.scenarioPicture.setPixmap(picture)
+        ui.scenarioPicture.visible = preview is not None
+        ui.taskComboBox.enabled = isUsable = entry is not None and not entry.problem
         self._showUsable()
         if not isUsable:
             self._showMessage(_("There is no scenario.") if entry is None else entry.problem)
             return
-        scenario = self._logic.find(name)
+        scenario = self._scenarios.find(name)
         tasks = [(task.title, task.name) for task in scenario.tasks]
         last = self._session.task or self._session.settings.get(TASK)
         others = (task for _title, task in tasks if task != TRIAL_RUN)
-        offerEntries(self._ui.taskComboBox, tasks, last, *others)
+        offerEntries(ui.taskComboBox, tasks, last, *others)
         self._chooseTask()
 
-    def _showPicture(self, entry: ListedScenario | None) -> None:
-        label = self._ui.scenarioPicture
-        preview = None if entry is None else entry.preview
-        if preview is not None:
-            label.setPixmap(qt.QPixmap(str(preview)).scaledToHeight(PICTURE_HEIGHT))
-        label.visible = preview is not None
-
     def _chooseTask(self, _index: int = 0) -> None:
-        scenario = self._logic.find(chosenData(self._ui.scenarioComboBox))
+        scenario = self._scenarios.find(chosenData(self._ui.scenarioComboBox))
         task = scenario.task(chosenData(self._ui.taskComboBox))
         self._session.chooseTask(task, scenario)
         self._showMessage(
@@ -242,29 +227,17 @@ class ScenarioPanel(Panel):
         settings.set(TASK, chosenData(ui.taskComboBox))
 
     def _showUsable(self, *_arguments: Any) -> None:
+        ui = self._ui
         isConnected = self._session.link.status.state is LinkState.CONNECTED
-        isUsable = self._ui.taskComboBox.enabled
-        broken = _("Choose a scenario that can be used.")
-        self._ui.showScenarioButton.enabled = self._ui.exportScenarioButton.enabled = isUsable
-        isWriting = self._writing.isUnderWay
-        self._ui.exportScenarioButton.text = _("Cancel") if isWriting else _("Save as a zip file")
-        isAdding = self._adding.isUnderWay
-        self._ui.importScenarioButton.text = _("Cancel") if isAdding else _("Add from a zip file")
-        setUsable(
-            self._ui.loadScenarioButton,
-            isConnected and isUsable,
-            _("Load this head into the simulator; only between trials."),
-            _("Connect to the simulator first.") if isUsable else broken,
-        )
-        hasHead = self._ui.headModelComboBox.currentNode() is not None
-        isAtWork = self._work.isUnderWay
-        self._ui.useHeadButton.text = _("Cancel") if isAtWork else _("Use as the head")
-        setUsable(
-            self._ui.useHeadButton,
-            hasHead or isAtWork,
-            _("Use this as the head in Slicer, instead of the one above; for a volume, its skin."),
-            _("Choose a model or a volume of the scene first."),
-        )
+        isUsable = ui.taskComboBox.enabled
+        ui.showScenarioButton.enabled = ui.exportScenarioButton.enabled = isUsable
+        reason = _("Choose a scenario that can be used.")
+        if isUsable:
+            reason = _("Connect to the simulator first.")
+        setEnabled(ui.loadScenarioButton, isConnected and isUsable, reason)
+        mayUse = ui.headModelComboBox.currentNode() is not None or self._work.isUnderWay
+        reason = _("Choose a model or a volume of the scene first.")
+        setEnabled(ui.useHeadButton, mayUse, reason)
 
     def _showMessage(self, sentence: str) -> None:
         if sentence:
@@ -283,7 +256,7 @@ class MethodsPanel(Panel):
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
-        self._work = self.cancelableWork(self._showMessage, self._showProgress, self._showUsable)
+        self._work = self.cancelableWork(self._showMessage, None, lambda: None)
         self._work.connectButton(
             ui.compareMethodsButton, self.compare, _("The methods were not compared.")
         )
@@ -291,44 +264,34 @@ class MethodsPanel(Panel):
 
     def compare(self) -> None:
         """Simulate trials on the chosen head, and show how each method registers them."""
-        ui, logic = self._ui, self._session.methodComparison
+        ui, simulator = self._ui, self._session.simulator
         scenario = chosenScenario(ui, self._session)
         trials, shift = ui.methodTrialsSpinBox.value, ui.methodShiftSpinBox.value
         self._showMessage(_("Trials are being simulated and registered."))
-        found = self._work.run(lambda report: logic.compare(scenario, trials, shift, report))
+        found = self._work.run(
+            lambda report: compareMethods(simulator, scenario, trials, shift, report)
+        )
         if found is not None:
             fillTable(ui.methodsTable, [_row(method) for method in found])
-            self._showMessage(self._said(found))
-
-    def _said(self, found: tuple[ComparedMethod, ...]) -> str:
-        text = _(
-            "Residuals of different methods are of different points: they do not show which is "
-            "better. The true error does."
-        )
-        if len(found) == len(METHOD_NAMES):
-            return text
-        few = _("The head has too few landmarks for the other methods.")
-        return f"{text} {few}"
-
-    def _showUsable(self) -> None:
-        isAtWork = self._work.isUnderWay
-        self._ui.compareMethodsButton.text = _("Cancel") if isAtWork else _("Compare")
-
-    def _showProgress(self, step: str, _share: float) -> None:
-        if step:
-            self._showMessage(step)
+            text = _(
+                "Residuals of different methods are of different points: they do not show which "
+                "is better. The true error does."
+            )
+            if len(found) < len(METHOD_NAMES):
+                few = _("The head has too few landmarks for the other methods.")
+                text = f"{text} {few}"
+            self._showMessage(text)
 
     def _showMessage(self, sentence: str) -> None:
         setText(self._ui.methodsText, sentence)
 
 
 def _row(method: ComparedMethod) -> tuple[str, ...]:
-    low, high = method.interval
     return (
         METHOD_NAMES.get(method.name, method.name),
         fixed(method.residual, 2),
         fixed(method.true, 2),
         fixed(method.expected, 2),
-        _("{low} to {high}").format(low=fixed(low, 2), high=fixed(high, 2)),
+        _("{low} to {high}").format(low=fixed(method.low, 2), high=fixed(method.high, 2)),
         _("{share} %").format(share=fixed(100.0 * method.held, 0)),
     )

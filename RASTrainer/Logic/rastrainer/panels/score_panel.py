@@ -18,6 +18,7 @@ from rastrainer.panels.widgets import (
     fillTable,
     offerEntries,
     setChecked,
+    setEnabled,
     setText,
     setUsable,
 )
@@ -32,6 +33,7 @@ from rastrainer.slicer.scene.score_tables import (
     showStandings,
     standings,
 )
+from rastrainer.slicer.scene.trial_replay import moment
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.outcomes import short_mode_title, task_title
@@ -46,12 +48,13 @@ class ScorePanel(Panel):
         super().__init__(ui, session)
         self._trainees = session.trainees
         self._work = self.cancelableWork(self._showMessage, self._showProgress, self._showUsable)
+        self._trial: StoredTrial | None = None
         self._newTrial = ""
         self._worst = ""
         self._named: str | None = None
         ui.trialComboBox.connect("activated(int)", self._showTrial)
-        ui.showTablesButton.connect("clicked()", self.showTables)
-        ui.exportScoresButton.connect("clicked()", self.exportScores)
+        connectClick(ui.showTablesButton, self.showTables, _("The tables cannot be shown."))
+        connectClick(ui.exportScoresButton, self.exportScores, _("The trials were not exported."))
         ui.reportButton.connect("clicked()", self.writeReport)
         ui.scoreCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
         self._work.connectButton(ui.replayButton, self.replay, _("The trial is not shown."))
@@ -69,33 +72,31 @@ class ScorePanel(Panel):
         if not self._ui.showTablesButton.checked:
             self._session.layout.giveBack(TABLES)
             return
-        with showErrors(_("The tables cannot be shown.")):
-            trial = self._trial()
-            if trial is None:
-                return
-            rows = [*scoreRows(trial), *ctpsRows(trial, self._session.cohort)]
-            showStandings(slicer.mrmlScene, self._standings(trial))
-            showRows(slicer.mrmlScene, Role.MOTION, "Motion metrics", motionRows(trial))
-            score = showRows(slicer.mrmlScene, Role.SCORE, "Score", rows)
-            showTable(self._session.layout, score)
-            self._showMessage(
-                _("Score, Comparison and Motion metrics are now tables in the scene.")
-            )
+        trial, cohort, scene = self._trial, self._session.cohort, slicer.mrmlScene
+        if trial is None:
+            return
+        showStandings(scene, standings(self._trainees.study, trial, cohort))
+        showRows(scene, Role.MOTION, "Motion metrics", motionRows(trial))
+        rows = [*scoreRows(trial), *ctpsRows(trial, cohort)]
+        table = showRows(scene, Role.SCORE, "Score", rows)
+        showTable(self._session.layout, table)
+        self._showMessage(_("Score, Comparison and Motion metrics are now tables in the scene."))
 
     def exportScores(self) -> None:
         """Write all trials of the study as a table."""
+        from rastrainer.study.tidy_csv import write_histories
+
         path = askWhereToSave(_("Export all trials"), "trials.csv", "CSV (*.csv)")
-        if path is not None:
-            with showErrors(_("The trials were not exported.")):
-                written = self._work.run(
-                    lambda report: self._trainees.exportHistories(path, report)
-                )
-                if written is not None:
-                    text = _(
-                        "{count} trials were written to {path}. Trainees left out because they did "
-                        "not consent to research: {leftOut}."
-                    )
-                    self._showMessage(text.format(count=written[0], path=path, leftOut=written[1]))
+        if path is None:
+            return
+        read, write = self._trainees.inStudy, lambda study: write_histories(study, path)
+        written = self._work.run(lambda report: read(write, report))
+        if written is not None:
+            text = _(
+                "{count} trials were written to {path}. Trainees left out because they did not "
+                "consent to research: {leftOut}."
+            )
+            self._showMessage(text.format(count=written[0], path=path, leftOut=written[1]))
 
     def writeReport(self) -> None:
         """Have the simulator write the report of the study into a folder, and open it."""
@@ -120,28 +121,32 @@ class ScorePanel(Panel):
 
     def replay(self) -> None:
         """Show the trial again in the 3D view."""
-        trial = self._chosenTrial()
-        self._work.run(lambda report: self._session.replay.show(trial, report))
-        fitThreeDViews()
+        trial = self._trial
+        if trial is not None:
+            self._work.run(lambda report: self._session.replay.show(trial, report))
+            fitThreeDViews()
 
     def replayWorstTouch(self) -> None:
         """Show again how the worst touch came about."""
-        trial = self._chosenTrial()
-        self._work.run(lambda report: self._session.replay.showWorstTouch(trial, report))
+        trial = self._trial
+        if trial is not None:
+            self._work.run(lambda report: self._session.replay.showWorstTouch(trial, report))
 
     def _showReplay(self) -> None:
         setChecked(self._ui.showTablesButton, self._session.layout.purpose == TABLES)
         if not self._work.isUnderWay:
-            setText(self._ui.replayText, self._session.replay.sentence)
+            now = moment(slicer.mrmlScene)
+            text = _("{time:.1f} s, clearance {clearance}")
+            shown = "" if now is None else text.format(time=now[0], clearance=now[1])
+            setText(self._ui.replayText, shown)
 
     def _fold(self, isFolded: bool) -> None:
         if isFolded:
             self._session.layout.giveBack(TABLES)
 
     def _noteNewTrial(self, analysis: TrialAnalysis) -> None:
-        record = analysis.record
-        if record.trainee == self._trainees.chosen:
-            self._newTrial = record.trial_id
+        if analysis.record.trainee == self._trainees.chosen:
+            self._newTrial = analysis.record.trial_id
 
     def _show(self) -> None:
         try:
@@ -150,62 +155,50 @@ class ScorePanel(Panel):
             self._named = None
             self._showMessage(str(error))
             return
-        entries = [(_entry(n, t), t.record.trial_id) for n, t in enumerate(history, start=1)]
-        entries.reverse()
+        text = _("{number}: {task}, {day}")
+        entries: list[tuple[str, str]] = []
+        for number, trial in enumerate(history, start=1):
+            record = trial.record
+            day = record.started_utc[:16].replace("T", " ")
+            entry = text.format(number=number, task=task_title(record.task), day=day)
+            entries.insert(0, (entry, record.trial_id))
         wanted = self._newTrial or chosenData(self._ui.trialComboBox)
         self._newTrial = ""
         offerEntries(self._ui.trialComboBox, entries, wanted)
         self._showTrial()
 
     def _showTrial(self, _index: int = 0) -> None:
-        ui = self._ui
+        ui, cohort, trialId = self._ui, self._session.cohort, chosenData(self._ui.trialComboBox)
         self._session.replay.retryFeedback()
         try:
-            trial = self._trial()
-            beside = [] if trial is None else self._standings(trial)
+            study = self._trainees.study
+            self._trial = trial = study.trial(trialId) if trialId else None
+            beside = [] if trial is None else standings(study, trial, cohort)
         except InputError as error:
             self._named = None
             self._showMessage(str(error))
             return
         scores = [] if trial is None else scoreRows(trial)
-        ctps = [] if trial is None else ctpsRows(trial, self._session.cohort)
+        ctps = [] if trial is None else ctpsRows(trial, cohort)
         motion = [] if trial is None else motionRows(trial)
-        fillTable(
-            ui.scoreTable,
-            ((row.title, row.text, row.note) for row in scores),
-            [row.tip for row in scores],
-        )
+        rows = ((row.title, row.text, row.note) for row in scores)
+        fillTable(ui.scoreTable, rows, [row.tip for row in scores])
         fillTable(ui.ctpsTable, ((row.title, row.text) for row in ctps), [row.note for row in ctps])
         setText(ui.ctpsText, CTPS_WARNING if ctps else "")
         fillTable(ui.standingsTable, (_standingRow(s) for s in beside))
-        fillTable(
-            ui.motionTable, ((row.title, row.text) for row in motion), [row.note for row in motion]
-        )
-        self._nameTrial(trial)
+        notes = [row.note for row in motion]
+        fillTable(ui.motionTable, ((row.title, row.text) for row in motion), notes)
+        # Once for each trial, so that messages about an export or a report stay.
+        if trialId != self._named:
+            self._named = trialId
+            self._showMessage(_title(trial))
         self._showFeedback()
-
-    def _nameTrial(self, trial: StoredTrial | None) -> None:
-        """Name the displayed trial once, so that messages about an export or a report stay."""
-        named = "" if trial is None else trial.record.trial_id
-        if named == self._named:
-            return
-        self._named = named
-        self._showMessage(
-            _("Choose a trainee with a scored trial.")
-            if trial is None
-            else _("{trainee}, {task}, {mode}").format(
-                trainee=trial.record.trainee,
-                task=task_title(trial.record.task),
-                mode=short_mode_title(trial.record.mode),
-            )
-        )
 
     def _showFeedback(self) -> None:
         """Show the feedback on the trial when it is known."""
-        sentences: list[str] = []
-        self._worst = ""
+        trial, self._worst = self._trial, ""
+        sentences = [] if trial is None else [_("Feedback on the trial is being prepared.")]
         try:
-            trial = self._trial()
             feedback = None if trial is None else self._session.replay.feedback(trial)
         except InputError as error:
             sentences = [str(error)]
@@ -216,8 +209,6 @@ class ScorePanel(Panel):
                 score, others = feedback.sentences[:parts], feedback.sentences[parts:]
                 sentences = [*filter(None, [" ".join(score)]), *others]
                 self._worst = feedback.worst.label
-            elif trial is not None:
-                sentences = [_("Feedback on the trial is being prepared.")]
         setText(self._ui.feedbackText, "\n".join(sentences))
         self._showUsable()
 
@@ -226,30 +217,15 @@ class ScorePanel(Panel):
         hasTrial = bool(chosenData(ui.trialComboBox))
         reason = _("Choose a trial first.")
         busy = _("Wait until the current work is done.")
-        setUsable(
-            ui.showTablesButton,
-            hasTrial,
-            _("Put score, comparison and motion metrics into table nodes of the scene."),
-            reason,
-        )
-        ui.replayButton.text = _("Cancel") if isAtWork else _("Show the trial again")
-        setUsable(
-            ui.replayButton,
-            hasTrial or isAtWork,
-            _("Show the tool, the touches and the clearance over time, as a Sequence."),
-            reason,
-        )
-        unjudged = reason if not hasTrial else _("The trial cannot be analyzed.")
-        setUsable(
-            ui.worstTouchButton,
-            bool(self._worst) and not isAtWork,
-            _("Show how point {label} was touched.").format(label=self._worst),
-            busy if isAtWork else unjudged,
-        )
-        allTrials = _("Write all trials of all trainees of the study to a CSV file.")
-        report = _("Write the report of the whole study as a printable page, and open it.")
-        setUsable(ui.exportScoresButton, not isAtWork, allTrials, busy)
-        setUsable(ui.reportButton, not isAtWork, report, busy)
+        setEnabled(ui.showTablesButton, hasTrial, reason)
+        setEnabled(ui.replayButton, hasTrial or isAtWork, reason)
+        setEnabled(ui.exportScoresButton, not isAtWork, busy)
+        setEnabled(ui.reportButton, not isAtWork, busy)
+        if hasTrial:
+            reason = _("The trial cannot be analyzed.")
+        tip = _("Show how point {label} was touched.").format(label=self._worst)
+        isUsable = bool(self._worst) and not isAtWork
+        setUsable(ui.worstTouchButton, isUsable, tip, busy if isAtWork else reason)
         self._showReplay()
 
     def _showProgress(self, step: str, share: float) -> None:
@@ -259,25 +235,14 @@ class ScorePanel(Panel):
     def _showMessage(self, sentence: str) -> None:
         setText(self._ui.scoreMessageText, sentence)
 
-    def _trial(self) -> StoredTrial | None:
-        trialId = chosenData(self._ui.trialComboBox)
-        return self._trainees.study.trial(trialId) if trialId else None
 
-    def _chosenTrial(self) -> StoredTrial:
-        trial = self._trial()
-        if trial is None:
-            raise InputError(_("Choose a trial first."))
-        return trial
-
-    def _standings(self, trial: StoredTrial) -> list[GroupComparison]:
-        return standings(self._trainees.study, trial, self._session.cohort)
-
-
-def _entry(number: int, trial: StoredTrial) -> str:
-    return _("{number}: {task}, {day}").format(
-        number=number,
+def _title(trial: StoredTrial | None) -> str:
+    if trial is None:
+        return _("Choose a trainee with a scored trial.")
+    return _("{trainee}, {task}, {mode}").format(
+        trainee=trial.record.trainee,
         task=task_title(trial.record.task),
-        day=trial.record.started_utc[:16].replace("T", " "),
+        mode=short_mode_title(trial.record.mode),
     )
 
 

@@ -23,25 +23,22 @@ def configureWidgets(widgets: Iterable[Any]) -> None:
         if kind == "QTableWidget":
             configureTable(widget)
         elif kind == "ctkCollapsibleButton":
-            configureSection(widget)
+            # Narrow when it is open, and its header alone when not.
+            widget.setSizePolicy(qt.QSizePolicy.Preferred, qt.QSizePolicy.Preferred)
+            widget.collapsedHeight = 0
+        elif kind == "QPushButton":
+            # Its tool tip also says why it is disabled.
+            widget.whatsThis = widget.toolTip
         elif kind == "QLabel" and name.endswith("Light"):
             widget.textFormat = qt.Qt.RichText
         elif kind == "QLabel":
             configureLabel(widget, isWrapped=name.endswith("Text"))
 
 
-def configureSection(section: Any) -> None:
-    """Let a `ctkCollapsibleButton` be narrow when it is open, and its header alone when not."""
-    section.setSizePolicy(qt.QSizePolicy.Preferred, qt.QSizePolicy.Preferred)
-    section.collapsedHeight = 0
-
-
 def configureLabel(label: Any, isWrapped: bool) -> None:
     """Let a label show what anyone may have written, as it is; `setText` shows it once it has any.
 
-    Args:
-        label: a `QLabel`.
-        isWrapped: whether its text is more than a caption.
+    A wrapped label is more than a caption.
     """
     label.textFormat = qt.Qt.PlainText
     if isWrapped:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -27,23 +26,19 @@ NOISE_MM = 0.5
 
 
 class SelfTestFixture:
-    """A session and its panels, driven without a timer; to be used in a `with` statement.
+    """A session and its panels, driven without a timer; to be used in a `with` statement."""
 
-    Attributes:
-        session: the logic.
-        ui: the panels' widgets by name.
-        study: file of the study, in a folder that is deleted at the end.
-    """
+    def __init__(self, moduleFile: Path) -> None:
+        def resourcePath(name: str) -> str:
+            return str(moduleFile.parent / "Resources" / name)
 
-    def __init__(self, moduleFile: Path, resourcePath: Callable[[str], str]) -> None:
         self._folder = tempfile.TemporaryDirectory(prefix="RASTrainer-")
         folder = Path(self._folder.name)
-        self.study = folder / "study.db"
         # In memory only: a test changes no setting of the user.
         settings = Settings()
         places = replace(
             findPlaces(moduleFile, settings),
-            study=self.study,
+            study=folder / "study.db",
             records=folder / "trials",
             library=folder / "scenarios",
         )
@@ -79,7 +74,7 @@ class SelfTestFixture:
 
     def touches(self) -> np.ndarray:
         """Return good touches of task 1, (15, 3) float, World, mm."""
-        scenario = self.session.scenario.find(SCENARIO)
+        scenario = self.session.scenarios.find(SCENARIO)
         noise = np.random.default_rng(SEED).normal(0.0, NOISE_MM, (len(LABELS), 3))
         return transforms.apply(
             scenario.perturbed_head_to_world(SEED), scenario.task(TASK).fiducials + noise
@@ -91,9 +86,5 @@ class SelfTestFixture:
         self.process()
 
     def child(self, name: str) -> Any:
-        """Return a widget that came later than the `.ui` files.
-
-        Raises:
-            RuntimeError: there is none of that name.
-        """
+        """Return a widget that came later than the `.ui` files."""
         return slicer.util.findChild(self._container, name)

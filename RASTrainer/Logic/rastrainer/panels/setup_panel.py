@@ -9,7 +9,7 @@ import slicer
 from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.shown_errors import showErrors
-from rastrainer.panels.widgets import bindPath, bindText, connectAsPressed, setText, setUsable
+from rastrainer.panels.widgets import bind, connectAsPressed, setEnabled, setText
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from rastrainer.slicer.settings import INDEX, PROGRAM, WHEELS
@@ -22,9 +22,9 @@ class SetupPanel(Panel):
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
         self._simulator = session.simulator
-        bindText(ui.indexLineEdit, session.settings, INDEX)
-        bindPath(ui.wheelsPathLineEdit, session.settings, WHEELS)
-        bindPath(ui.programPathLineEdit, session.settings, PROGRAM)
+        bind(ui.indexLineEdit, "text", session.settings, INDEX)
+        bind(ui.wheelsPathLineEdit, "currentPath", session.settings, WHEELS)
+        bind(ui.programPathLineEdit, "currentPath", session.settings, PROGRAM)
         ui.indexLineEdit.connect("textChanged(QString)", self._showSetup)
         ui.wheelsPathLineEdit.connect("currentPathChanged(QString)", self._showSetup)
         setup = self._simulator.setup
@@ -63,37 +63,34 @@ class SetupPanel(Panel):
         self._showProgress()
         ui.setupProgressBar.visible = setup.isRunning
         ui.setupButton.text = _("Cancel") if setup.isRunning else _("Set up")
-        setUsable(
-            ui.setupButton,
-            not runs,
-            _("Install the simulator into its own folder, with Slicer's Python."),
-            _("Stop the simulator first."),
-        )
-        setUsable(
-            ui.removeSetupButton,
-            setup.isInstalled and not (runs or setup.isRunning),
-            _("Remove the simulator's folder from this computer. Trials and studies stay."),
-            _("Stop the simulator first.") if runs else _("There is nothing to remove."),
-        )
+        stopFirst, none = _("Stop the simulator first."), _("There is nothing to remove.")
+        setEnabled(ui.setupButton, not runs, stopFirst)
+        mayRemove = setup.folder.is_dir() and not (runs or setup.isRunning)
+        setEnabled(ui.removeSetupButton, mayRemove, stopFirst if runs else none)
 
     def _showProgress(self) -> None:
         ui, setup = self._ui, self._simulator.setup
         setText(ui.setupText, self._sentence())
-        isFetching = setup.isRunning and not setup.progress.isInstalling
+        isFetching = setup.isRunning and not setup.isInstalling
         # A maximum of 0 makes a busy indicator.
-        ui.setupProgressBar.maximum = setup.progress.count if isFetching else 0
-        ui.setupProgressBar.value = setup.progress.done if isFetching else 0
+        ui.setupProgressBar.maximum = setup.count if isFetching else 0
+        ui.setupProgressBar.value = setup.fetched if isFetching else 0
 
     def _sentence(self) -> str:
         setup = self._simulator.setup
-        if setup.isEnding:
+        if setup.isRunning and setup.isCanceled:
             return _("The set-up is ending.")
+        if setup.isRunning and setup.isInstalling:
+            return _("All packages are downloaded and are being installed.")
         if setup.isRunning:
-            return self._progressSentence()
+            return _("Package {number} of {count} is being downloaded.").format(
+                number=setup.fetched, count=setup.count
+            )
         if setup.isCurrent:
             size = setup.installedMB
             sentence = _("The simulator is set up in {folder}.").format(folder=setup.folder)
-            return sentence if size is None else f"{sentence} {self._holds(size)}"
+            takes = _("It takes {size} MB; Remove deletes it.")
+            return sentence if size is None else f"{sentence} {takes.format(size=size)}"
         old = setup.installedVersion
         need = _("The simulator is not set up on this computer yet: press Set up, once.")
         if old:
@@ -103,30 +100,16 @@ class SetupPanel(Panel):
             ).format(old=old)
         return f"{need} {costSentence(self._ui, setup)}"
 
-    def _holds(self, size: int) -> str:
-        return _("It takes {size} MB; Remove deletes it.").format(size=size)
-
-    def _progressSentence(self) -> str:
-        progress = self._simulator.setup.progress
-        if progress.isInstalling:
-            return _("All packages are downloaded and are being installed.")
-        return _("Package {number} of {count} is being downloaded.").format(
-            number=progress.done, count=progress.count
-        )
-
     def _follow(self, line: str) -> None:
-        self._log(line)
+        self._ui.setupLogEdit.appendPlainText(line)
         self._showProgress()
 
     def _finish(self, error: str) -> None:
-        self._log(error or _("The simulator is set up."))
+        self._ui.setupLogEdit.appendPlainText(error or _("The simulator is set up."))
         self._showSetup()
         if error:
             setText(self._ui.setupText, error)
         self._ui.setupCollapsibleButton.collapsed = not self._simulator.needsSetup
-
-    def _log(self, line: str) -> None:
-        self._ui.setupLogEdit.appendPlainText(line)
 
 
 def costSentence(ui: Any, setup: SimulatorSetup) -> str:
@@ -140,10 +123,10 @@ def costSentence(ui: Any, setup: SimulatorSetup) -> str:
         "The simulator itself comes with this module. What it needs comes from {source}, each "
         "file verified by its hash, and is installed in {folder}."
     ).format(source=source, folder=setup.folder)
-    sizes = setup.package.sizes()
+    sizes = setup.package.sizesMB()
     if sizes is None:
         return where
     size = _("About {download} MB will be downloaded, and {kept} MB kept.").format(
-        download=sizes.downloadMB, kept=sizes.keptMB
+        download=sizes[0], kept=sizes[1]
     )
     return f"{where} {size}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import slicer
@@ -13,13 +12,12 @@ from rastrainer.panels.setup_panel import costSentence
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
     LINK_COLORS,
-    bindChecked,
-    bindNumber,
-    bindText,
+    bind,
     connectAsPressed,
+    setEnabled,
     setLight,
+    setSilently,
     setText,
-    setUsable,
 )
 from rastrainer.slicer.link.link_status import LinkState, LinkStatus
 from rastrainer.slicer.logic.module_session import ModuleSession
@@ -36,34 +34,34 @@ class SimulatorPanel(Panel):
         super().__init__(ui, session)
         self._link = session.link
         self._simulator = session.simulator
-        bindText(ui.hostLineEdit, session.settings, HOST)
-        bindNumber(ui.portSpinBox, session.settings, PORT)
-        bindChecked(ui.windowCheckBox, session.settings, HAS_WINDOW)
-        bindChecked(ui.networkCheckBox, session.settings, HAS_NETWORK)
+        bind(ui.hostLineEdit, "text", session.settings, HOST)
+        bind(ui.portSpinBox, "value", session.settings, PORT)
+        bind(ui.windowCheckBox, "checked", session.settings, HAS_WINDOW)
+        bind(ui.networkCheckBox, "checked", session.settings, HAS_NETWORK)
         self._startsAfterSetup = False
         ui.startSimulatorButton.connect("clicked()", self.startAndConnect)
         connectClick(
-            ui.stopSimulatorButton,
-            lambda: self._simulator.stop(),
-            _("The simulator could not be stopped."),
+            ui.stopSimulatorButton, self._simulator.stop, _("The simulator could not be stopped.")
         )
         ui.programPathLineEdit.connect("currentPathChanged(QString)", self._showProgram)
         connectAsPressed(
             ui.connectButton, lambda: self.connect if self._isOff() else self.disconnect
         )
         connectClick(ui.probeButton, self.testConnection, _("The connection could not be tested."))
+        setup, program = self._simulator.setup, self._simulator.program
         self.listen(
             (self._link.statusChanged, self._showStatus),
-            (self._link.stateChanged, self._showTraining),
-            (self._simulator.setup.changed, self._showProgram),
-            (self._simulator.setup.finished, self._startAfterSetup),
-            (self._simulator.program.wroteLine, self._log),
-            (self._simulator.program.changed, self._showProgram),
-            (self._simulator.program.pairingChanged, self._showPairing),
+            (
+                self._link.stateChanged,
+                lambda state: setText(ui.trainingText, str(state.get("instruction", ""))),
+            ),
+            (setup.changed, self._showProgram),
+            (setup.finished, self._startAfterSetup),
+            (program.wroteLine, ui.simulatorLogEdit.appendPlainText),
+            (program.changed, self._showProgram),
         )
         self._showStatus(self._link.status)
         self._showProgram()
-        self._showPairing()
 
     def startAndConnect(self) -> None:
         """Start the simulator on this computer and connect; set it up first, after asking."""
@@ -91,8 +89,13 @@ class SimulatorPanel(Panel):
 
     def testConnection(self) -> None:
         """Check once whether a simulator answers, and show the result."""
+
+        def show(status: LinkStatus) -> None:
+            if self._isOff():
+                self._showWords(status)
+
         host, port = self._ui.hostLineEdit.text, self._ui.portSpinBox.value
-        self._showWords(self._link.testConnection(host, port, self._showTest))
+        self._showWords(self._link.testConnection(host, port, show))
 
     def _isOff(self) -> bool:
         return self._link.status.state is LinkState.OFF
@@ -120,34 +123,15 @@ class SimulatorPanel(Panel):
         else:
             text = program.sentence
         setText(ui.programText, text)
+        setText(ui.pairingText, program.pairingSentence)
         isEnding = program.state is ProgramState.STOPPING
-        setUsable(
-            ui.startSimulatorButton,
-            not ((program.isRunning and not isEnding) or setup.isRunning),
-            _("Start the simulator on this computer and connect to it."),
-            _("It is running.") if program.isRunning else _("It is being set up."),
-        )
-        setUsable(
-            ui.stopSimulatorButton,
-            program.isRunning and not isEnding,
-            _("End the simulator that was started here. Recorded trials stay."),
-            _("It is ending.") if isEnding else _("No simulator was started from here."),
-        )
+        isUp = program.isRunning and not isEnding
+        why = _("It is running.") if program.isRunning else _("It is being set up.")
+        setEnabled(ui.startSimulatorButton, not (isUp or setup.isRunning), why)
+        why = _("It is ending.") if isEnding else _("No simulator was started from here.")
+        setEnabled(ui.stopSimulatorButton, isUp, why)
         if program.state is ProgramState.READY:
-            self._showPort(program.port)
-
-    def _showPairing(self) -> None:
-        setText(self._ui.pairingText, self._simulator.program.pairingSentence)
-
-    def _showPort(self, port: int) -> None:
-        """Show where the simulator listens, which is not chosen by the user and not saved."""
-        box = self._ui.portSpinBox
-        wasBlocked = box.blockSignals(True)
-        box.value = port
-        box.blockSignals(wasBlocked)
-
-    def _log(self, line: str) -> None:
-        self._ui.simulatorLogEdit.appendPlainText(line)
+            setSilently(ui.portSpinBox, "value", program.port)
 
     def _showStatus(self, status: LinkStatus) -> None:
         self._showWords(status)
@@ -156,26 +140,15 @@ class SimulatorPanel(Panel):
         ui.connectButton.text = _("Connect") if isOff else _("Disconnect")
         ui.hostLineEdit.enabled = isOff
         ui.portSpinBox.enabled = isOff
-        setUsable(
-            ui.probeButton,
-            isOff,
-            _("Check once whether a simulator answers at this host and port."),
-            _("Disconnect first: the state of the connection is shown below."),
-        )
+        why = _("Disconnect first: the state of the connection is shown below.")
+        setEnabled(ui.probeButton, isOff, why)
         if status.state is not LinkState.CONNECTED:
             setText(ui.trainingText, "")
-
-    def _showTest(self, status: LinkStatus) -> None:
-        if self._link.status.state is LinkState.OFF:
-            self._showWords(status)
 
     def _showWords(self, status: LinkStatus) -> None:
         setLight(self._ui.stateLight, LINK_COLORS[status.state])
         setText(self._ui.stateText, status.sentence)
         setText(self._ui.remedyText, status.remedy)
-
-    def _showTraining(self, state: Mapping[str, Any]) -> None:
-        setText(self._ui.trainingText, str(state.get("instruction", "")))
 
 
 class RunningSimulatorPanel(Panel):
@@ -183,13 +156,11 @@ class RunningSimulatorPanel(Panel):
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
-        self._running = session.simulator.running
+        self._running = running = session.simulator.running
         ui.connectToRunningButton.connect("clicked()", self.connectToIt)
-        connectClick(
-            ui.endRunningButton, lambda: self._running.end(), _("The simulator could not be ended.")
-        )
-        self.listen((self._running.changed, self._show))
-        self._running.look()
+        connectClick(ui.endRunningButton, running.end, _("The simulator could not be ended."))
+        self.listen((running.changed, self._show))
+        running.look()
         self._show()
 
     def connectToIt(self) -> None:
@@ -200,15 +171,7 @@ class RunningSimulatorPanel(Panel):
         ui, running = self._ui, self._running
         ui.runningSimulatorFrame.visible = running.holder is not None
         setText(ui.runningSimulatorText, running.sentence)
-        setUsable(
-            ui.connectToRunningButton,
-            running.canConnect,
-            _("Continue with this simulator, and with any trial that is under way in it."),
-            _("Its address is not known."),
-        )
-        setUsable(
-            ui.endRunningButton,
-            running.canEnd,
-            _("End this simulator and its window. A trial under way can be resumed afterward."),
-            _("It is ending, or its process is not known."),
-        )
+        why = _("Its address is not known.")
+        setEnabled(ui.connectToRunningButton, running.canConnect, why)
+        why = _("It is ending, or its process is not known.")
+        setEnabled(ui.endRunningButton, running.canEnd, why)

@@ -14,10 +14,11 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import toolTip
-from rastrainer.panels.shown_errors import showErrors
+from rastrainer.panels.shown_errors import guardedAction
 from rastrainer.panels.widgets import (
     chosenData,
     fillTable,
+    setEnabled,
     setText,
     setUsable,
     textLabel,
@@ -26,14 +27,9 @@ from rastrainer.protocol import StepKind
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.study_logic import TRIALS
 from rastrainer.slicer.translation import _
-from rastrainer.study.protocol.questionnaires import (
-    Questionnaire,
-    QuestionnaireItem,
-    find_questionnaire,
-)
-from rastrainer.study.protocol.step_progress import SKIPPED, StepEntry, StepProgress
+from rastrainer.study.protocol.questionnaires import Questionnaire, find_questionnaire
+from rastrainer.study.protocol.step_progress import SKIPPED, StepProgress
 from rastrainer.study.protocol.steps import instruction
-from rastrainer.study_messages import StudyStep
 
 TIMED = (StepKind.TRIAL_RUN, StepKind.BREAK)
 
@@ -46,14 +42,13 @@ class StudyPanel(Panel):
         self._logic = session.study
         self._form = QuestionnaireForm(ui.questionnaireWidget)
         self._progress: StepProgress | None = None
-        self._judged: tuple | None = None
         connectClick(ui.beginStudyButton, self.begin, _("The study was not started."))
-        connectClick(
-            ui.enrollButton, lambda: self._logic.enroll(), _("The trainee was not enrolled.")
-        )
+        connectClick(ui.enrollButton, self._logic.enroll, _("The trainee was not enrolled."))
+        self.startStep = guardedAction(self._logic.startStep, _("The step was not started."))
+        self.explainRepeat = guardedAction(self._explainRepeat, _("The reason was not saved."))
         ui.startStepButton.connect("clicked()", self.startStep)
-        ui.skipStepButton.connect("clicked()", self.skipStep)
         ui.repeatStepButton.connect("clicked()", self.explainRepeat)
+        connectClick(ui.skipStepButton, self.skipStep, _("The step was not skipped."))
         connectClick(
             ui.saveAnswersButton,
             lambda: self._logic.answer(self._form.answers()),
@@ -78,85 +73,62 @@ class StudyPanel(Panel):
         if slicer.util.confirmYesNoDisplay(question, _("Begin the study")):
             self._logic.begin(Path(self._ui.protocolPathLineEdit.currentPath))
 
-    def startStep(self) -> None:
-        """Start the trial that comes next."""
-        with showErrors(_("The step was not started.")):
-            self._logic.startStep()
-
     def skipStep(self) -> None:
         """Skip the step, for a reason; a reason that is refused can be completed."""
         question = _("Why is it skipped? The reason goes into the report.")
         step = None if self._progress is None else self._progress.next_step
         if step is not None:
-            # By its name: while the dialog is open, the step may be done.
+            # The step may be done while the dialog is open.
             skip = partial(self._logic.skipStep, step.name)
-            with showErrors(_("The step was not skipped.")):
-                self._withReason(_("Skip the step"), question, skip)
+            self._withReason(_("Skip the step"), question, skip)
 
-    def explainRepeat(self) -> None:
+    def _explainRepeat(self) -> None:
         """Say why an aborted trial is played again; only then can it be started."""
         question = _("Why is the aborted trial repeated? The reason goes into the report.")
-        with showErrors(_("The reason was not saved.")):
-            self._withReason(_("Repeat the step"), question, self._logic.explainRepeat)
+        self._withReason(_("Repeat the step"), question, self._logic.explainRepeat)
 
     def _withReason(self, title: str, question: str, do: Callable[[str], None]) -> None:
         """Do what needs a reason; a reason that is refused can be completed."""
-        reason = self._askWhy(title, question, "", "")
-        while reason:
+        reason = problem = ""
+        while True:
+            text = toolTip(f"{problem} {question}".strip())
+            window, isShown = slicer.util.mainWindow(), qt.QLineEdit.Normal
+            reason = qt.QInputDialog.getText(window, title, text, isShown, reason)
+            if not reason:
+                return
             try:
                 do(reason)
             except InputError as error:
-                reason = self._askWhy(title, question, reason, str(error))
+                problem = str(error)
             else:
                 return
 
-    def _askWhy(self, title: str, question: str, reason: str, problem: str) -> str:
-        """Return the reason, beginning with what was typed; empty if canceled."""
-        return qt.QInputDialog.getText(
-            slicer.util.mainWindow(),
-            title,
-            toolTip(f"{problem} {question}".strip()),
-            qt.QLineEdit.Normal,
-            reason,
-        )
-
     def _showTime(self) -> None:
         """Show the time of a trial run or a break."""
-        progress = self._progress
+        progress, text = self._progress, ""
         step = None if progress is None else progress.next_step
-        if progress is None or step is None or step.kind not in TIMED:
-            setText(self._ui.stepTimeText, "")
-        else:
-            setText(
-                self._ui.stepTimeText,
-                _("{over} of {minutes:g} min have passed.").format(
-                    over=_clock(self._logic.minutesElapsed(progress)), minutes=step.minutes
-                ),
+        if progress is not None and step is not None and step.kind in TIMED:
+            minutes, seconds = divmod(int(60.0 * self._logic.minutesElapsed(progress)), 60)
+            text = _("{over} of {minutes:g} min have passed.").format(
+                over=f"{minutes}:{seconds:02d}", minutes=step.minutes
             )
+        setText(self._ui.stepTimeText, text)
 
     def _followTrial(self) -> None:
-        """Warn, once for each trial, of one that will not count."""
+        """Warn of a trial that will not count."""
         self._showButtons()
-        trial = self._session.training.status
-        key = (trial.trainee, trial.task, trial.mode, trial.method, trial.procedure, trial.isOpen)
-        if key != self._judged:
-            self._judged = key
-            with contextlib.suppress(InputError):
-                setText(self._ui.offProtocolText, self._logic.offProtocolSentence())
+        with contextlib.suppress(InputError):
+            setText(self._ui.offProtocolText, self._logic.offProtocolSentence())
 
     def _show(self) -> None:
         ui = self._ui
-        self._judged = None
+        protocol = progress = None
+        title = _("No protocol: trainees practice freely.")
         try:
-            protocol, progress = self._logic.protocol(), self._logic.progress()
+            protocol, progress = self._logic.study.protocol(), self._logic.progress()
         except InputError as error:
-            protocol = progress = None
-            setText(ui.protocolText, str(error))
-        else:
-            setText(
-                ui.protocolText,
-                _("No protocol: trainees practice freely.") if protocol is None else protocol.title,
-            )
+            title = str(error)
+        setText(ui.protocolText, title if protocol is None else protocol.title)
         self._progress = progress
         ui.protocolPathLineEdit.visible = ui.beginStudyButton.visible = protocol is None
         ui.enrollButton.visible = protocol is not None and progress is None
@@ -170,13 +142,13 @@ class StudyPanel(Panel):
             ui.stepsProgressBar.value = len(progress.entries)
             fillTable(ui.stepsTable, [_row(progress, n) for n in range(len(progress.steps))])
         step = None if progress is None else progress.next_step
-        questionnaire = step if step is not None and step.kind is StepKind.QUESTIONNAIRE else None
-        ui.questionnaireWidget.visible = ui.saveAnswersButton.visible = questionnaire is not None
-        if questionnaire is None:
-            self._form.show(None, None)
+        isAsked = step is not None and step.kind is StepKind.QUESTIONNAIRE
+        ui.questionnaireWidget.visible = ui.saveAnswersButton.visible = isAsked
+        if step is not None and isAsked:
+            key = (self._session.trainees.chosen, step.name)
+            self._form.show(key, find_questionnaire(step.questionnaire))
         else:
-            key = (self._session.trainees.chosen, questionnaire.name)
-            self._form.show(key, find_questionnaire(questionnaire.questionnaire))
+            self._form.show(None, None)
         isAborted = progress is not None and bool(progress.unexplained)
         ui.repeatStepButton.visible = isAborted
         ui.startStepButton.visible = step is not None and step.kind in TRIALS and not isAborted
@@ -186,43 +158,23 @@ class StudyPanel(Panel):
 
     def _showButtons(self, *_arguments: Any) -> None:
         ui = self._ui
-        setUsable(
-            ui.beginStudyButton,
-            bool(ui.protocolPathLineEdit.currentPath),
-            _("Guide the trainees through this protocol from now on."),
-            _("Choose the file of a protocol first."),
-        )
-        setUsable(
-            ui.enrollButton,
-            bool(self._session.trainees.chosen),
-            _("Give the trainee the first free place, which decides the order of modes and tasks."),
-            _("Choose a trainee in the section Trainees first."),
-        )
+        hasProtocol = bool(ui.protocolPathLineEdit.currentPath)
+        setEnabled(ui.beginStudyButton, hasProtocol, _("Choose the file of a protocol first."))
+        nobody = _("Choose a trainee in the section Trainees first.")
+        setEnabled(ui.enrollButton, bool(self._session.trainees.chosen), nobody)
         if self._progress is not None and self._progress.next_step is not None:
-            self._showStartButton(self._progress.next_step)
-
-    def _showStartButton(self, step: StudyStep) -> None:
-        reason = self._session.training.obstacle
-        setUsable(self._ui.startStepButton, not reason, instruction(step), reason)
+            reason = self._session.training.obstacle
+            tip = instruction(self._progress.next_step)
+            setUsable(ui.startStepButton, not reason, tip, reason)
 
 
 def _row(progress: StepProgress, number: int) -> tuple[str, str, str]:
-    step = progress.steps[number]
+    outcome = _("next") if number == len(progress.entries) else ""
     if number < len(progress.entries):
-        return str(number + 1), _outcome(progress.entries[number]), instruction(step)
-    isNext = number == len(progress.entries)
-    return str(number + 1), _("next") if isNext else "", instruction(step)
-
-
-def _outcome(entry: StepEntry) -> str:
-    if entry.outcome == SKIPPED:
-        return _("skipped: {reason}").format(reason=entry.details["reason"])
-    return _("done")
-
-
-def _clock(minutes: float) -> str:
-    whole, seconds = divmod(int(60.0 * minutes), 60)
-    return f"{whole}:{seconds:02d}"
+        entry, outcome = progress.entries[number], _("done")
+        if entry.outcome == SKIPPED:
+            outcome = _("skipped: {reason}").format(reason=entry.details["reason"])
+    return str(number + 1), outcome, instruction(progress.steps[number])
 
 
 class QuestionnaireForm:
@@ -241,26 +193,35 @@ class QuestionnaireForm:
         if key == self._key:
             return
         self._key, self._questionnaire = key, questionnaire
-        self._clear()
+        layout = self._widget.layout()
+        for part in self._parts:
+            layout.removeWidget(part)
+            part.setParent(None)
+            part.deleteLater()
+        self._parts, self._boxes = [], []
         if questionnaire is None:
             return
+        ends = {"lowest": questionnaire.lowest, "highest": questionnaire.highest}
         head = textLabel(
             _(
                 "{title}: {lowest} is {low}, {highest} is {high}, unless a line says otherwise. "
                 "Read the wording from its form."
             ).format(
                 title=questionnaire.title,
-                lowest=questionnaire.lowest,
                 low=questionnaire.anchors[0],
-                highest=questionnaire.highest,
                 high=questionnaire.anchors[1],
+                **ends,
             )
         )
-        layout = self._widget.layout()
         layout.addRow(head)
         self._parts.append(head)
         for number, item in enumerate(questionnaire.items, start=1):
-            label, box = textLabel(f"{number}. {_lineOf(item, questionnaire)}"), qt.QComboBox()
+            line = item.topic
+            if item.anchors:
+                low, high = item.anchors
+                text = _("{topic}: {lowest} is {low}, {highest} is {high}")
+                line = text.format(topic=item.topic, low=low, high=high, **ends)
+            label, box = textLabel(f"{number}. {line}"), qt.QComboBox()
             label.setObjectName(f"{item.name}Label")
             box.setObjectName(f"{item.name}ComboBox")
             box.addItem("–", "")
@@ -281,23 +242,3 @@ class QuestionnaireForm:
                 )
             )
         return tuple(int(mark) for mark in chosen)
-
-    def _clear(self) -> None:
-        for part in self._parts:
-            self._widget.layout().removeWidget(part)
-            part.setParent(None)
-            part.deleteLater()
-        self._parts, self._boxes = [], []
-
-
-def _lineOf(item: QuestionnaireItem, questionnaire: Questionnaire) -> str:
-    """Return an item's question, with the ends of its scale if they are its own."""
-    if not item.anchors:
-        return item.topic
-    return _("{topic}: {lowest} is {low}, {highest} is {high}").format(
-        topic=item.topic,
-        lowest=questionnaire.lowest,
-        low=item.anchors[0],
-        highest=questionnaire.highest,
-        high=item.anchors[1],
-    )

@@ -18,14 +18,14 @@ from rastrainer.panels.widgets import (
     fillComboBox,
     isFilled,
     millimeters,
+    setEnabled,
     setLight,
-    setProperty,
     setText,
-    setUsable,
 )
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.logic.scenario_logic import planArguments
 from rastrainer.slicer.logic.target_plan_logic import PlanOnImages, targetsOf
 from rastrainer.slicer.scene.plan_points import startPlacing, whyNotRemoved
 from rastrainer.slicer.translation import _
@@ -79,15 +79,10 @@ class PlanPanel(Panel):
 
     def save(self) -> None:
         """Copy the scenario chosen above with this plan and use the copy."""
-        ui = self._ui
-        scenario = self._keeping.run(
-            lambda report: self._session.scenarioFiles.savePlan(
-                chosenData(ui.scenarioComboBox),
-                ui.planTitleLineEdit.text.strip(),
-                ui.planComboBox.currentNode(),
-                report,
-            )
-        )
+        ui, files = self._ui, self._session.scenarioFiles
+        name, title = chosenData(ui.scenarioComboBox), ui.planTitleLineEdit.text.strip()
+        plan = planArguments(ui.planComboBox.currentNode())
+        scenario = self._keeping.run(lambda report: files.saveWith(plan, name, title, report))
         if scenario is not None:
             self._session.scenarioMade.emit(scenario.name)
 
@@ -95,49 +90,23 @@ class PlanPanel(Panel):
         """Show the plan."""
         plan, problem = self._read()
         self._logic.follow(plan)
-        ui = self._ui
-        self._showPointButtons()
+        ui, logic, node = self._ui, self._logic, self._ui.planComboBox.currentNode()
+        kept = whyNotRemoved(node)
+        setEnabled(ui.removePlanPointButton, not kept, kept)
+        unchanged = _("Nothing was placed or removed.")
+        setEnabled(ui.undoPlanButton, logic.points.canUndo, unchanged)
         setText(ui.planWorldText, problem if plan is None else _place(plan))
         setText(ui.planTreText, "–" if plan is None else _expected(plan), INTERVAL_NOTE)
         isConnected = self._session.link.status.state is LinkState.CONNECTED
-        setUsable(
-            ui.sendPlanButton,
-            plan is not None and isConnected,
-            _("Show the plan to the trainee, and ask whether the robot can carry it out."),
-            problem or _("Connect to the simulator first."),
-        )
-        isKeeping = self._keeping.isUnderWay
-        title = _("Cancel") if isKeeping else _("Save as a new scenario")
-        setProperty(ui.keepPlanButton, "text", title)
-        setUsable(
-            ui.keepPlanButton,
-            isKeeping or ui.planComboBox.currentNode() is not None,
-            _("Copy the scenario above, with this plan in place of its targets or trajectory."),
-            _("Place a target or a trajectory, or choose one."),
-        )
-        color = {None: GRAY, True: GREEN, False: RED}[self._logic.isReachable]
-        sentence = self._logic.sentence
-        setLight(ui.reachableLight, color)
-        setText(ui.reachableText, sentence or "–")
-        true = self._logic.trueErrorMm
+        problem = problem or _("Connect to the simulator first.")
+        setEnabled(ui.sendPlanButton, plan is not None and isConnected, problem)
+        none = _("Place a target or a trajectory, or choose one.")
+        setEnabled(ui.keepPlanButton, self._keeping.isUnderWay or node is not None, none)
+        setLight(ui.reachableLight, {None: GRAY, True: GREEN, False: RED}[logic.isReachable])
+        setText(ui.reachableText, logic.sentence or "–")
         unknown = _("known once the trial is scored and the plan is shown")
+        true = logic.trueErrorMm
         setText(ui.planTrueText, unknown if true is None else millimeters(true))
-
-    def _showPointButtons(self) -> None:
-        ui = self._ui
-        problem = whyNotRemoved(ui.planComboBox.currentNode())
-        setUsable(
-            ui.removePlanPointButton,
-            not problem,
-            _("Remove the chosen target, or the last point of a trajectory."),
-            problem,
-        )
-        setUsable(
-            ui.undoPlanButton,
-            bool(self._logic.points.changes),
-            _("Undo the last placement or removal of a point."),
-            _("Nothing was placed or removed."),
-        )
 
     def _read(self) -> tuple[PlanOnImages | None, str]:
         """Return the plan, or why there is none."""
@@ -183,11 +152,13 @@ def _entries(node: Any | None) -> list[tuple[str, str]]:
 
 
 def _place(plan: PlanOnImages) -> str:
-    x, y, z = (fixed(value, 1) for value in plan.targetWorld)
-    words = _("target x {x}, y {y}, z {z} mm").format(x=x, y=y, z=z)
-    if plan.entryWorld is not None:
-        x, y, z = (fixed(value, 1) for value in plan.entryWorld)
-        words += _("; entry x {x}, y {y}, z {z} mm").format(x=x, y=y, z=z)
+    *entry, target = (
+        {axis: fixed(value, 1) for axis, value in zip("xyz", end, strict=True)}
+        for end in plan.endsWorld
+    )
+    words = _("target x {x}, y {y}, z {z} mm").format(**target)
+    if entry:
+        words += _("; entry x {x}, y {y}, z {z} mm").format(**entry[0])
     return words
 
 

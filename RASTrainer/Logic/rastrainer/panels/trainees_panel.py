@@ -1,8 +1,9 @@
-"""The section Trainees: create, choose, archive, export and delete, and what they have done."""
+"""The section Trainees: create, choose, archive, export and delete them, and show their trials."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.panels.application import CALIBRATION, CURVE, askWhereToSave, showChart
-from rastrainer.panels.panel import Panel
+from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
@@ -20,13 +21,15 @@ from rastrainer.panels.widgets import (
     fillTable,
     millimeters,
     setChecked,
+    setEnabled,
     setText,
     setUsable,
 )
 from rastrainer.protocol import Mode
 from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.logic.trainee_logic import calibration
 from rastrainer.slicer.scene.tables import showCalibration, showLearningCurve
-from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS
+from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS, Setting
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.database import EXAMPLE, study_place
 from rastrainer.study.database.values import StoredAbortedTrial, StoredTrial, Trainee, day_of
@@ -39,57 +42,56 @@ class TraineesPanel(Panel):
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
         self._logic = session.trainees
-        self._isStateShown = False
-        self._isErasing = False
+        self._trainee: Trainee | None = None
+        self._isStateShown = self._isErasing = False
         self._deletion = self.cancelableWork(
-            lambda sentence: self._showMessage("{text}", text=sentence),
-            self._noteErasing,
-            self._showDeleting,
+            self._showMessage, self._noteErasing, self._showDeleting
         )
         self._showPlace()
         ui.studyPathLineEdit.connect("currentPathChanged(QString)", self.chooseStudy)
         ui.studyAddressLineEdit.connect("editingFinished()", self.chooseStudyAddress)
-        ui.traineeComboBox.connect("activated(int)", self.chooseTrainee)
+        ui.traineeComboBox.connect(
+            "activated(int)", lambda _index: self._logic.choose(chosenData(ui.traineeComboBox))
+        )
         ui.archivedCheckBox.connect("toggled(bool)", self._show)
         ui.consentCheckBox.connect("toggled(bool)", self.setConsent)
-        connectAsPressed(ui.archiveButton, self._archiving)
-        ui.exportTraineeButton.connect("clicked()", self.exportTrainee)
+        ui.createTraineeButton.connect("clicked()", self.createTrainee)
+        ui.traineesCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
+        connectAsPressed(ui.archiveButton, lambda: partial(self.setArchived, not self._isArchived))
         self._deletion.connectButton(
             ui.deleteTraineeButton, self.deleteTrainee, _("The trainee was not deleted.")
         )
-        ui.createTraineeButton.connect("clicked()", self.createTrainee)
-        ui.learningCurveButton.connect("clicked()", self.showLearningCurve)
-        ui.calibrationButton.connect("clicked()", self.showCalibration)
-        ui.traineesCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
-        ui.exportHistoryButton.connect("clicked()", self.exportHistory)
-        self._isArchived = self._hasTrainee = False
+        for button, action, failure in (
+            (ui.exportTraineeButton, self.exportTrainee, _("The trainee was not exported.")),
+            (ui.exportHistoryButton, self.exportHistory, _("The history was not exported.")),
+            (ui.learningCurveButton, self.showCurve, _("The learning curve cannot be shown.")),
+            (ui.calibrationButton, self.showCalibration, _("The target errors cannot be shown.")),
+        ):
+            connectClick(button, action, failure)
         self.listen((self._logic.changed, self._show), (session.sceneChanged, self._showPlots))
         self._show()
 
+    @property
+    def _isArchived(self) -> bool:
+        return self._trainee is not None and self._trainee.archived
+
     def chooseStudy(self, path: str) -> None:
         """Continue with the study of another file, once its name is complete."""
-        isFile = isinstance(self._session.studyPlace, Path)
-        if not isFile or Path(path) == self._session.studyFile:
+        isFile, file = isinstance(self._session.studyPlace, Path), Path(path)
+        if not isFile or file == self._session.studyFile:
             return
         if not path.endswith(".db"):
-            self._showNoStudy(Path(path))
+            self._showNoStudy(file)
             return
-        folder = Path(path).parent
-        question = _("There is no folder {folder}. Make it, for a new study?").format(folder=folder)
-        if not folder.is_dir() and not slicer.util.confirmYesNoDisplay(
-            toolTip(question), _("Choose a study")
-        ):
+        question = _("There is no folder {folder}. Make it, for a new study?")
+        text, title = toolTip(question.format(folder=file.parent)), _("Choose a study")
+        if file.parent.is_dir() or slicer.util.confirmYesNoDisplay(text, title):
+            self._openStudy(file, STUDY, path)
+        else:
             self._showPlace()
-            return
-        with showErrors(_("The study cannot be used.")):
-            try:
-                self._session.chooseStudy(Path(path))
-            finally:
-                self._showPlace()
-            self._session.settings.set(STUDY, path)
 
     def _showNoStudy(self, path: Path) -> None:
-        """Say why what was chosen is no study; the beginning of a path is none either, yet."""
+        """Say why a path is no study, unless the user may still be typing it."""
         sentence = ""
         if path.is_dir():
             sentence = _(
@@ -101,34 +103,30 @@ class TraineesPanel(Panel):
                 "{path} is no study, whose name ends with .db. Until one is chosen, {study} stays "
                 "open."
             )
-        example, study = path / "study.db", self._session.studyFile
-        self._showMessage(sentence, isState=True, path=path, example=example, study=study)
+        names = {"path": path, "example": path / "study.db", "study": self._session.studyFile}
+        self._showMessage(sentence.format(**names), isState=True)
 
     def chooseStudyAddress(self) -> None:
-        """Continue with the study at another address; without one, with that of the file."""
-        session, text = self._session, self._ui.studyAddressLineEdit.text.strip()
+        address = self._ui.studyAddressLineEdit.text.strip()
+        self._openStudy(address or self._session.studyFile, STUDY_ADDRESS, address)
+
+    def _openStudy(self, where: str | Path, setting: Setting[str], chosen: str) -> None:
         with showErrors(_("The study cannot be used.")):
             try:
-                place = study_place(text or session.studyFile)
-                if text and isinstance(place, Path):
+                place = study_place(where)
+                if setting is STUDY_ADDRESS and chosen and isinstance(place, Path):
                     raise InputError(_("An address looks like {text}.").format(text=EXAMPLE))
-                if place == session.studyPlace:
+                if place == self._session.studyPlace:
                     return
-                session.chooseStudy(place)
+                self._session.chooseStudy(place)
             finally:
                 self._showPlace()
-            session.settings.set(STUDY_ADDRESS, text)
+            self._session.settings.set(setting, chosen)
 
     def _showPlace(self) -> None:
-        """Show where the study is; a file is chosen only if no address is."""
         ui, place = self._ui, self._session.studyPlace
-        isFile = isinstance(place, Path)
-        ui.studyAddressLineEdit.text = "" if isFile else str(place)
-        ui.studyPathLineEdit.enabled = isFile
+        ui.studyAddressLineEdit.text = "" if isinstance(place, Path) else str(place)
         ui.studyPathLineEdit.currentPath = str(self._session.studyFile)
-
-    def chooseTrainee(self, _index: int = 0) -> None:
-        self._logic.choose(chosenData(self._ui.traineeComboBox))
 
     def createTrainee(self) -> None:
         """Add a trainee and choose them."""
@@ -147,37 +145,35 @@ class TraineesPanel(Panel):
                 setChecked(self._ui.consentCheckBox, not consent)
                 raise
 
-    def archive(self) -> None:
-        """Archive the chosen trainee, who stays in view."""
-        with showErrors(_("The trainee was not archived.")):
-            self._ui.archivedCheckBox.checked = True
-            self._logic.setArchived(True)
-
-    def unarchive(self) -> None:
-        with showErrors(_("The trainee was not restored.")):
-            self._logic.setArchived(False)
+    def setArchived(self, isArchived: bool) -> None:
+        """Archive the chosen trainee, who stays in view, or bring them back."""
+        failed = _("The trainee was not archived.")
+        with showErrors(failed if isArchived else _("The trainee was not restored.")):
+            if isArchived:
+                self._ui.archivedCheckBox.checked = True
+            self._logic.setArchived(isArchived)
 
     def exportTrainee(self) -> None:
         """Write everything about the chosen trainee into a file."""
-        name = f"{self._logic.chosen}.json"
-        path = askWhereToSave(_("Export the trainee"), name, "JSON (*.json)")
+        from rastrainer.study.trainee_data import export_trainee
+
+        chosen = self._logic.chosen
+        path = askWhereToSave(_("Export the trainee"), f"{chosen}.json", "JSON (*.json)")
         if path is not None:
-            with showErrors(_("The trainee was not exported.")):
-                count = self._logic.export(path)
-                self._showMessage(
-                    _("{count} trials were written to {path}."), count=count, path=path
-                )
+            self._showWritten(export_trainee(self._logic.study, chosen, path), path)
 
     def exportHistory(self) -> None:
-        """Write the trials of the chosen trainee as a table."""
-        name = f"{self._logic.chosen}.csv"
-        path = askWhereToSave(_("Export the history"), name, "CSV (*.csv)")
+        """Write the trials of the chosen trainee as a table, the aborted ones beside it."""
+        from rastrainer.study.tidy_csv import write_history
+
+        chosen = self._logic.chosen
+        path = askWhereToSave(_("Export the history"), f"{chosen}.csv", "CSV (*.csv)")
         if path is not None:
-            with showErrors(_("The history was not exported.")):
-                count = self._logic.exportHistory(path)
-                self._showMessage(
-                    _("{count} trials were written to {path}."), count=count, path=path
-                )
+            self._showWritten(write_history(self._logic.study, [chosen], path), path)
+
+    def _showWritten(self, count: int, path: Path) -> None:
+        text = _("{count} trials were written to {path}.")
+        self._showMessage(text.format(count=count, path=path))
 
     def deleteTrainee(self) -> None:
         """Delete the chosen trainee for good, after asking."""
@@ -194,62 +190,54 @@ class TraineesPanel(Panel):
             text = _("{name} was deleted with {trials} trials and {journals} journals.").format(
                 name=name, trials=erased.trials, journals=erased.journals
             )
-            self._showMessage("{text}", text=" ".join((text, *erased.warnings)))
+            self._showMessage(" ".join((text, *erased.warnings)))
 
     def _noteErasing(self, step: str, _share: float) -> None:
         """Show that the deletion has begun, which nothing can undo."""
         if step and not self._isErasing:
             self._isErasing = True
-            self._showMessage("{text}", text=step)
+            self._showMessage(step)
             self._showDeleting()
 
     def _showDeleting(self) -> None:
         """Show whether a trainee is being deleted, and whether that can be canceled."""
         ui, isAtWork = self._ui, self._deletion.isUnderWay
         self._isErasing = self._isErasing and isAtWork
-        # What is deleted is what was chosen.
+        # Nobody else is chosen meanwhile. A file is chosen only if no address is.
         for widget in (ui.studyAddressLineEdit, ui.traineeComboBox):
             widget.enabled = not isAtWork
         isFile = isinstance(self._session.studyPlace, Path)
         ui.studyPathLineEdit.enabled = isFile and not isAtWork
-        ui.deleteTraineeButton.text = _("Cancel") if isAtWork else _("Delete…")
         if isAtWork:
-            begun = _("The deletion has begun, and can no longer be canceled.")
             tip = _("Delete nothing; the study is still being opened.")
+            begun = _("The deletion has begun, and can no longer be canceled.")
             setUsable(ui.deleteTraineeButton, not self._isErasing, tip, begun)
         else:
-            tip = _("Delete the trainee with all trials, permanently.")
             reason = _("Choose a trainee first.")
-            setUsable(ui.deleteTraineeButton, self._hasTrainee, tip, reason)
+            setEnabled(ui.deleteTraineeButton, self._trainee is not None, reason)
 
-    def showLearningCurve(self) -> None:
+    def showCurve(self) -> None:
         """Show score and time over the trials as a plot, or restore the user's layout."""
         if not self._ui.learningCurveButton.checked:
             self._session.layout.giveBack(CURVE)
             return
-        with showErrors(_("The learning curve cannot be shown.")):
-            trials = self._logic.history()
-            chart = showLearningCurve(slicer.mrmlScene, self._logic.chosen, trials)
-            showChart(self._session.layout, chart)
+        chart = showLearningCurve(slicer.mrmlScene, self._logic.chosen, self._logic.history())
+        showChart(self._session.layout, chart)
 
     def showCalibration(self) -> None:
         """Plot true over expected TRE of the study's trials, or restore the user's layout."""
         if not self._ui.calibrationButton.checked:
             self._session.layout.giveBack(CALIBRATION)
             return
-        with showErrors(_("The target errors cannot be shown.")):
-            found = self._logic.calibration()
-            chart = showCalibration(slicer.mrmlScene, found)
-            showChart(self._session.layout, chart, CALIBRATION)
-            self._showMessage("{text}", text=" ".join(found.sentences()))
+        found = self._logic.inStudy(calibration)
+        chart = showCalibration(slicer.mrmlScene, found)
+        showChart(self._session.layout, chart, CALIBRATION)
+        self._showMessage(" ".join(found.sentences()))
 
     def _showPlots(self) -> None:
         purpose = self._session.layout.purpose
         setChecked(self._ui.learningCurveButton, purpose == CURVE)
         setChecked(self._ui.calibrationButton, purpose == CALIBRATION)
-
-    def _archiving(self) -> Callable[[], None]:
-        return self.unarchive if self._isArchived else self.archive
 
     def _fold(self, isFolded: bool) -> None:
         if isFolded:
@@ -261,59 +249,53 @@ class TraineesPanel(Panel):
         try:
             trainees = self._logic.trainees(archived=ui.archivedCheckBox.checked)
             trainee, history = self._logic.chosenTrainee(), self._logic.history()
-            aborted = self._logic.aborted()
+            aborted = () if trainee is None else self._logic.study.aborted(trainee.pseudonym)
         except InputError as error:
-            self._showMessage("{error}", isState=True, error=error)
+            self._showMessage(str(error), isState=True)
             return
-        entries = [(_("Choose a trainee"), ""), *((_entry(t), t.pseudonym) for t in trainees)]
+        self._trainee = trainee
+        archived = _("{name} (archived)")
+        entries = [
+            (
+                archived.format(name=each.pseudonym) if each.archived else each.pseudonym,
+                each.pseudonym,
+            )
+            for each in trainees
+        ]
+        entries.insert(0, (_("Choose a trainee"), ""))
         ui.pseudonymLineEdit.placeholderText = self._logic.study.next_pseudonym()
         fillComboBox(ui.traineeComboBox, entries, trainee.pseudonym if trainee else "")
         setChecked(ui.consentCheckBox, trainee is not None and trainee.consent)
-        self._hasTrainee = hasTrainee = trainee is not None
         self._showDeleting()
-        reason = _("Choose a trainee first.")
-        ui.consentCheckBox.enabled = hasTrainee
-        self._isArchived = trainee is not None and trainee.archived
+        ui.consentCheckBox.enabled = trainee is not None
         ui.archiveButton.text = _("Bring back") if self._isArchived else _("Archive")
-        for button, tip in (
-            (ui.archiveButton, _("Hide the trainee from the list, or show them again.")),
-            (ui.exportTraineeButton, _("Write all that is known about the trainee to a file.")),
-        ):
-            setUsable(button, hasTrainee, tip, reason)
-        hasTrials = _("The trainee has no trials yet.") if hasTrainee else reason
-        for button, tip in (
-            (ui.learningCurveButton, _("Show score and time over the trials.")),
-            (ui.exportHistoryButton, _("Write the trainee's trials to a CSV file.")),
-        ):
-            setUsable(button, bool(history), tip, hasTrials)
+        nobody = _("Choose a trainee first.")
+        for button in (ui.archiveButton, ui.exportTraineeButton):
+            setEnabled(button, trainee is not None, nobody)
+        nothing = nobody if trainee is None else _("The trainee has no trials yet.")
+        for button in (ui.learningCurveButton, ui.exportHistoryButton):
+            setEnabled(button, bool(history), nothing)
         if trainee is not None:
-            self._showMessage(
-                _("{name}, since {day}. Trials: {count}. {aborted}"),
-                isState=True,
+            text = _("{name}, since {day}. Trials: {count}. {aborted}").format(
                 name=trainee.pseudonym,
                 count=len(history),
                 day=day_of(trainee.created_utc),
                 aborted=_aborted(aborted),
             )
+            self._showMessage(text, isState=True)
         elif self._isStateShown or not ui.traineeText.text:
-            sentence = _("Choose who is training, or create a new trainee.")
-            self._showMessage(sentence, isState=True)
+            text = _("Choose who is training, or create a new trainee.")
+            self._showMessage(text, isState=True)
         fillTable(
             ui.historyTable,
             (_historyRow(number, trial) for number, trial in enumerate(history, start=1)),
             [trial.record.started_utc for trial in history],
         )
 
-    def _showMessage(self, sentence: str, isState: bool = False, **values: Any) -> None:
+    def _showMessage(self, sentence: str, isState: bool = False) -> None:
         """Show a sentence; one about the present state, until there is another state."""
         self._isStateShown = isState
-        setText(self._ui.traineeText, sentence.format(**values).rstrip())
-
-
-def _entry(trainee: Trainee) -> str:
-    if trainee.archived:
-        return _("{name} (archived)").format(name=trainee.pseudonym)
-    return trainee.pseudonym
+        setText(self._ui.traineeText, sentence.rstrip())
 
 
 def _aborted(aborted: Sequence[StoredAbortedTrial]) -> str:

@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import slicer
 
+from rastrainer.commands import CommandName
 from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import buttonTitle, shortName, toolTip
-from rastrainer.panels.shown_errors import showErrors
+from rastrainer.panels.shown_errors import guardedAction
 from rastrainer.panels.widgets import (
     GRAY,
     GREEN,
     RED,
     YELLOW,
-    bindChecked,
+    bind,
     bindChosen,
     chosenData,
     connectAsPressed,
     offerEntries,
+    setEnabled,
     setLight,
     setProperty,
     setText,
@@ -62,7 +65,6 @@ METHODS = {
     RegistrationMethod.SURFACE.value: _("Trace over the skin"),
     RegistrationMethod.LANDMARKS_SURFACE.value: _("Landmarks, then a trace"),
 }
-_PAUSABLE = (Phase.RUNNING, *PROCEDURE_PHASES)
 NEARNESS = {
     Proximity.FREE.value: (GREEN, _("free")),
     Proximity.PROXIMITY.value: (YELLOW, _("near the head")),
@@ -78,20 +80,33 @@ class TrainingPanel(Panel):
         self._logic = session.training
         modes = [(_("Desktop screen"), Mode.DESKTOP.value), (_("Headset"), Mode.HMD.value)]
         bindChosen(ui.modeComboBox, modes, session.settings, MODE)
-        bindChecked(ui.tutorialCheckBox, session.settings, IS_TUTORIAL_FIRST)
-        bindChecked(ui.slicesNextPointCheckBox, session.settings, SLICES_SHOW_NEXT_POINT)
-        bindChecked(ui.slicesToolCheckBox, session.settings, SLICES_FOLLOW_TOOL)
+        bind(ui.tutorialCheckBox, "checked", session.settings, IS_TUTORIAL_FIRST)
+        bind(ui.slicesNextPointCheckBox, "checked", session.settings, SLICES_SHOW_NEXT_POINT)
+        bind(ui.slicesToolCheckBox, "checked", session.settings, SLICES_FOLLOW_TOOL)
         for box in (ui.slicesNextPointCheckBox, ui.slicesToolCheckBox):
             box.connect("toggled(bool)", self._moveSlices)
+        notStarted, logic = _("The trial was not started."), self._logic
+        self.startTrialRun = guardedAction(lambda: self._start(TRIAL_RUN), notStarted)
+        self.startTask = guardedAction(self._startTask, notStarted)
+        pause = partial(logic.command, CommandName.PAUSE)
+        self.pause = guardedAction(pause, _("The trial was not paused."))
+        resume = partial(logic.command, CommandName.RESUME)
+        self.resume = guardedAction(resume, _("The trial was not resumed."))
         ui.startTrialRunButton.connect("clicked()", self.startTrialRun)
         ui.startTaskButton.connect("clicked()", self.startTask)
-        connectAsPressed(ui.pauseButton, lambda: self.resume if self._isPaused() else self.pause)
+        connectAsPressed(
+            ui.pauseButton,
+            lambda: self.resume if logic.status.phase == Phase.PAUSED.value else self.pause,
+        )
         connectClick(ui.abortButton, self.abort, _("The trial was not aborted."))
+        sayings = (
+            self._logic.answered,
+            session.trials.problemFound,
+            session.aborted.problemFound,
+        )
         self.listen(
             (self._logic.changed, self.showState),
-            (self._logic.answered, self._showMessage),
-            (session.trials.problemFound, self._showMessage),
-            (session.aborted.problemFound, self._showMessage),
+            *((signal, partial(setText, ui.trainingMessageText)) for signal in sayings),
             (session.trainees.changed, self.showState),
             (session.taskChosen, self._showChoices),
             (session.link.statusChanged, self.showState),
@@ -102,22 +117,14 @@ class TrainingPanel(Panel):
         self._moveSlices()
         self.showState()
 
-    def startTrialRun(self) -> None:
-        """Start the trial run, which does not count."""
-        self._start(TRIAL_RUN)
-
-    def startTask(self) -> None:
+    def _startTask(self) -> None:
         ui = self._ui
         procedure, method = (chosenData(box) for box in (ui.procedureComboBox, ui.methodComboBox))
         self._start(self._session.task, procedure, method)
 
-    def pause(self) -> None:
-        with showErrors(_("The trial was not paused.")):
-            self._logic.pause()
-
-    def resume(self) -> None:
-        with showErrors(_("The trial was not resumed.")):
-            self._logic.resume()
+    def _start(self, task: str, procedure: str = "", method: str = "") -> None:
+        mode, isTutorialFirst = chosenData(self._ui.modeComboBox), self._ui.tutorialCheckBox.checked
+        self._session.study.startTrial(task, mode, isTutorialFirst, procedure, method)
 
     def abort(self) -> None:
         """End the trial without registering it, after asking."""
@@ -152,13 +159,13 @@ class TrainingPanel(Panel):
 
     def showState(self, *_arguments: Any) -> None:
         """Show the state of the trial."""
-        ui, progress, session = self._ui, self._logic.status, self._session
+        ui, trial, session = self._ui, self._logic.status, self._session
         nobody = _("None: choose one in the section Trainees.")
         setText(ui.trainingTraineeText, session.trainees.chosen or nobody)
         title = _("Start {task}").format(task=buttonTitle(session.taskTitle))
         setProperty(ui.startTaskButton, "text", title)
         isConnected = session.link.status.state is LinkState.CONNECTED
-        self._showButtons(progress, isConnected)
+        self._showButtons(trial, isConnected)
         received = len(session.trials.received)
         kept = _("{count}, all stored in the study").format(count=received)
         setText(ui.receivedText, kept if received else _("none"))
@@ -169,60 +176,32 @@ class TrainingPanel(Panel):
                 setText(label, "–")
             setText(ui.instructionText, "")
             return
-        trial = f"{shortName(progress.trainee)}, {shortName(task_title(progress.task))}"
-        setText(ui.trialText, trial if progress.trainee else "–")
-        setText(ui.phaseText, PHASES.get(progress.phase, progress.phase))
-        setProperty(ui.pointsProgressBar, "maximum", progress.total)
-        setProperty(ui.pointsProgressBar, "value", min(progress.touched, progress.total))
-        setText(ui.nextPointText, progress.nextPoint or "–")
+        named = f"{shortName(trial.trainee)}, {shortName(task_title(trial.task))}"
+        setText(ui.trialText, named if trial.trainee else "–")
+        setText(ui.phaseText, PHASES.get(trial.phase, trial.phase))
+        setProperty(ui.pointsProgressBar, "maximum", trial.total)
+        setProperty(ui.pointsProgressBar, "value", min(trial.touched, trial.total))
+        setText(ui.nextPointText, trial.nextPoint or "–")
         self._showTime()
-        self._showClearance(progress)
-        text = _("Shown to the trainee: {sentence}").format(sentence=progress.instruction)
-        setText(ui.instructionText, text if progress.instruction else "")
+        color, words = NEARNESS.get(trial.proximity, (GRAY, trial.proximity))
+        setLight(ui.clearanceLight, color)
+        setText(ui.clearanceText, words or "–")
+        text = _("Shown to the trainee: {sentence}").format(sentence=trial.instruction)
+        setText(ui.instructionText, text if trial.instruction else "")
 
     def _showTime(self) -> None:
         if self._session.link.status.state is LinkState.CONNECTED:
-            setText(self._ui.elapsedText, _clock(self._logic.status.elapsedS))
+            minutes, seconds = divmod(int(self._logic.status.elapsedS), 60)
+            setText(self._ui.elapsedText, f"{minutes}:{seconds:02d} min")
 
-    def _start(self, task: str, procedure: str = "", method: str = "") -> None:
-        with showErrors(_("The trial was not started.")):
-            mode = chosenData(self._ui.modeComboBox)
-            isTutorialFirst = self._ui.tutorialCheckBox.checked
-            self._session.study.startTrial(task, mode, isTutorialFirst, procedure, method)
-
-    def _isPaused(self) -> bool:
-        return self._logic.status.phase == Phase.PAUSED.value
-
-    def _showButtons(self, progress: TrialStatus, isConnected: bool) -> None:
+    def _showButtons(self, trial: TrialStatus, isConnected: bool) -> None:
         ui = self._ui
         nobody = _("Choose a trainee in the section Trainees first.")
         reason = self._logic.obstacle or ("" if self._session.trainees.chosen else nobody)
-        for button, tip in (
-            (ui.startTrialRunButton, _("Start the trial run, which does not count.")),
-            (ui.startTaskButton, _("Start the task that is chosen in the section Scenario.")),
-        ):
-            setUsable(button, not reason, tip, reason)
-        isPaused = progress.phase == Phase.PAUSED.value
+        for button in (ui.startTrialRunButton, ui.startTaskButton):
+            setEnabled(button, not reason, reason)
+        isPaused = trial.phase == Phase.PAUSED.value
         setProperty(ui.pauseButton, "text", _("Resume") if isPaused else _("Pause"))
-        mayPause = isConnected and (isPaused or progress.phase in _PAUSABLE)
-        noTrial = _("No trial is running.")
-        setUsable(ui.pauseButton, mayPause, _("Pause the trial and its time."), noTrial)
-        setUsable(
-            ui.abortButton,
-            isConnected and progress.isOpen,
-            _("End the trial without registering it."),
-            noTrial,
-        )
-
-    def _showClearance(self, progress: TrialStatus) -> None:
-        color, words = NEARNESS.get(progress.proximity, (GRAY, progress.proximity))
-        setLight(self._ui.clearanceLight, color)
-        setText(self._ui.clearanceText, words or "–")
-
-    def _showMessage(self, sentence: str) -> None:
-        setText(self._ui.trainingMessageText, sentence)
-
-
-def _clock(seconds: float) -> str:
-    minutes, rest = divmod(int(seconds), 60)
-    return f"{minutes}:{rest:02d} min"
+        mayPause = isPaused or trial.phase in (Phase.RUNNING, *PROCEDURE_PHASES)
+        for button, isPossible in ((ui.pauseButton, mayPause), (ui.abortButton, trial.isOpen)):
+            setEnabled(button, isConnected and isPossible, _("No trial is running."))

@@ -5,7 +5,8 @@ During such work the window stays responsive, and its user may cancel it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+import contextlib
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, TypeVar
 
 import qt
@@ -70,11 +71,8 @@ def textLabel(text: str) -> Any:
 def connectAsPressed(button: Any, action: Callable[[], Callable[[], None]]) -> None:
     """Have a click do what the button meant when it was pressed.
 
-    A button may get another meaning while the mouse is down, such as Resume for Pause.
-
-    Args:
-        button: whose meaning changes.
-        action: returns what the button does as it is labeled now.
+    A button may get another meaning while the mouse is down, such as Resume for Pause: `action`
+    returns what it does as it is labeled now.
     """
     pressed: list[Callable[[], None]] = []
 
@@ -89,6 +87,11 @@ def setUsable(button: Any, usable: bool, tip: str, reason: str = "") -> None:
     # In a closed group, each button says that it is disabled.
     button.enabled = usable
     setProperty(button, "toolTip", toolTip(tip if usable or not reason else reason))
+
+
+def setEnabled(button: Any, isEnabled: bool, reason: str) -> None:
+    """Enable a button with the tool tip of its `.ui` file, or disable it for a reason."""
+    setUsable(button, isEnabled, button.whatsThis, reason)
 
 
 def fillTable(table: Any, rows: Iterable[Sequence[str]], tips: Sequence[str] = ()) -> bool:
@@ -113,18 +116,31 @@ def fillTable(table: Any, rows: Iterable[Sequence[str]], tips: Sequence[str] = (
     return hasChanged
 
 
+@contextlib.contextmanager
+def blockedSignals(widget: Any) -> Iterator[None]:
+    wasBlocked = widget.blockSignals(True)
+    try:
+        yield
+    finally:
+        widget.blockSignals(wasBlocked)
+
+
+def setSilently(widget: Any, name: str, value: Any) -> None:
+    """Set a property without a signal: the user has not chosen it."""
+    with blockedSignals(widget):
+        setProperty(widget, name, value)
+
+
 def fillComboBox(combo: Any, entries: Iterable[tuple[str, str]], chosen: str) -> None:
     """Replace the entries (text, data) of a `QComboBox` and choose one, without a signal."""
     entries = [(shortName(text), data) for text, data in entries]
-    wasBlocked = combo.blockSignals(True)
-    if not isFilled(combo, entries):
-        combo.clear()
-        for text, data in entries:
-            combo.addItem(text, data)
-    index = next((i for i, (_text, data) in enumerate(entries) if data == chosen), -1)
-    if combo.currentIndex != index:
-        combo.setCurrentIndex(index)
-    combo.blockSignals(wasBlocked)
+    with blockedSignals(combo):
+        if not isFilled(combo, entries):
+            combo.clear()
+            for text, data in entries:
+                combo.addItem(text, data)
+        index = next((i for i, (_text, data) in enumerate(entries) if data == chosen), -1)
+        setProperty(combo, "currentIndex", index)
 
 
 def offerEntries(combo: Any, entries: Sequence[tuple[str, str]], *wanted: str) -> None:
@@ -148,14 +164,11 @@ def chosenScenario(ui: Any, session: ModuleSession) -> Scenario:
     name = chosenData(ui.scenarioComboBox)
     if not name:
         raise InputError(_("Choose a scenario that can be used."))
-    return session.scenario.find(name)
+    return session.scenarios.find(name)
 
 
 def setChecked(box: Any, checked: bool) -> None:
-    """Check a box or not, without a signal."""
-    wasBlocked = box.blockSignals(True)
-    setProperty(box, "checked", checked)
-    box.blockSignals(wasBlocked)
+    setSilently(box, "checked", checked)
 
 
 def millimeters(value: float | None, digits: int = 2) -> str:
@@ -163,24 +176,18 @@ def millimeters(value: float | None, digits: int = 2) -> str:
     return "–" if value is None else f"{value:.{digits}f} mm"
 
 
-def bindChecked(box: Any, settings: Settings, setting: Setting[bool]) -> None:
-    box.checked = settings.get(setting)
-    box.connect("toggled(bool)", lambda checked: settings.set(setting, checked))
+_CHANGES = {
+    "checked": "toggled(bool)",
+    "text": "textChanged(QString)",
+    "value": "valueChanged(int)",
+    "currentPath": "currentPathChanged(QString)",
+}
 
 
-def bindText(edit: Any, settings: Settings, setting: Setting[str]) -> None:
-    edit.text = settings.get(setting)
-    edit.connect("textChanged(QString)", lambda text: settings.set(setting, text))
-
-
-def bindNumber(box: Any, settings: Settings, setting: Setting[int]) -> None:
-    box.value = settings.get(setting)
-    box.connect("valueChanged(int)", lambda value: settings.set(setting, value))
-
-
-def bindPath(edit: Any, settings: Settings, setting: Setting[str]) -> None:
-    edit.currentPath = settings.get(setting)
-    edit.connect("currentPathChanged(QString)", lambda path: settings.set(setting, path))
+def bind(widget: Any, name: str, settings: Settings, setting: Setting[Any]) -> None:
+    """Give a property of a widget the value of a setting, which then follows what is chosen."""
+    setattr(widget, name, settings.get(setting))
+    widget.connect(_CHANGES[name], lambda value: settings.set(setting, value))
 
 
 def bindChosen(
@@ -199,33 +206,33 @@ class _CanceledError(Exception):
 
 
 class CancelableWork:
-    """Runs one piece of work at a time.
+    """Runs one piece of work at a time; meanwhile its button says Cancel, and does that.
 
     Attributes:
         isUnderWay: whether it runs.
     """
 
     def __init__(
-        self, showSentence: Callable[[str], None], show: Progress, showUsable: Callable[[], None]
+        self,
+        showSentence: Callable[[str], None],
+        show: Progress | None,
+        showUsable: Callable[[], None],
     ) -> None:
         """Prepare for work.
 
         Args:
             showSentence: shows a sentence, an empty one where the work has failed.
-            show: shows a step's name and the share of the work done.
+            show: shows a step and the share of the work done; None shows the step as a sentence.
             showUsable: called when work begins and ends.
         """
-        self.isUnderWay = False
-        self._isCanceled = False
+        self.isUnderWay = self._isCanceled = False
+        self._button: Any = None
         self._showSentence, self._show, self._showUsable = showSentence, show, showUsable
 
     def run(self, work: Callable[[Progress], T]) -> T | None:
-        """Return what the work returns, None where the user has canceled it.
-
-        Args:
-            work: is given what it reports its progress to, which raises to cancel it.
-        """
+        """Return what the work returns, None where the user has canceled it."""
         self.isUnderWay, self._isCanceled = True, False
+        title, self._button.text = self._button.text, _("Cancel")
         self._showUsable()
         try:
             return work(self._progress)
@@ -237,10 +244,12 @@ class CancelableWork:
             raise
         finally:
             self.isUnderWay = False
+            self._button.text = title
             self._showUsable()
 
     def connectButton(self, button: Any, start: Callable[[], None], failure: str) -> None:
         """Have a click start or cancel work; `failure` says what was not done where it fails."""
+        self._button = button
         guarded = guardedAction(start, failure)
         connectAsPressed(button, lambda: self.cancel if self.isUnderWay else guarded)
 
@@ -249,7 +258,10 @@ class CancelableWork:
         self._isCanceled = True
 
     def _progress(self, step: str, share: float) -> None:
-        self._show(step, share)
+        if self._show is not None:
+            self._show(step, share)
+        elif step:
+            self._showSentence(step)
         slicer.app.processEvents()
         if self._isCanceled:
             raise _CanceledError

@@ -24,15 +24,7 @@ SETTINGS_ATTRIBUTE = "RASTrainer.previewedWith"
 def findSkin(
     run: Run, volumeNode: Any, settings: HeadSettings | None, progress: Progress
 ) -> tuple[HeadBody, HeadMesh, list[str]]:
-    """Return the head of a `vtkMRMLScalarVolumeNode`, its skin, and warnings.
-
-    Args:
-        run: runs the function that looks for it.
-        volumeNode: MRI or CT of a head.
-        settings: deviations from the defaults.
-        progress: called with each step and the share of the work done, many times a second; it may
-            let the application draw, and may raise to cancel.
-    """
+    """Return the head in a `vtkMRMLScalarVolumeNode`, its skin, and warnings."""
     from rastrainer.slicer.head.volume import imageOfNode
 
     image, scene = imageOfNode(volumeNode), volumeNode.GetScene()

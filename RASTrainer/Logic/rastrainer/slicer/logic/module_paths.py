@@ -20,7 +20,6 @@ class ModulePaths:
         study: file of the study, until another is chosen.
         records: folder of the journals of the simulator that is started from here.
         library: folder of the user's own scenarios, which the simulator knows too.
-        package: the simulator as it comes with the module.
         studyAddress: of the study in PostgreSQL; None for that of the file.
     """
 

@@ -21,11 +21,7 @@ from rastrainer.slicer.logic.procedure_plan_logic import ProcedurePlanLogic
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
 from rastrainer.slicer.logic.replay_logic import ReplayLogic
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
-from rastrainer.slicer.logic.scenario_logic import (
-    MethodComparisonLogic,
-    ScenarioFiles,
-    ScenarioLogic,
-)
+from rastrainer.slicer.logic.scenario_logic import ScenarioFiles, ScenarioLogic
 from rastrainer.slicer.logic.scenario_maker import ScenarioMaker
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
 from rastrainer.slicer.logic.study_logic import StudyLogic
@@ -34,6 +30,7 @@ from rastrainer.slicer.logic.trace_logic import TraceLogic
 from rastrainer.slicer.logic.trainee_logic import CurriculumLogic, TraineeLogic
 from rastrainer.slicer.logic.training_logic import TrainingLogic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
+from rastrainer.slicer.logic.trial_services import TrialServices
 from rastrainer.slicer.logic.views import BorrowedLayout, SliceFollower
 from rastrainer.slicer.program.child_process import OwnProcess
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
@@ -45,7 +42,6 @@ from rastrainer.slicer.signal import Signal
 from rastrainer.study.database.database import LockWait, StudyPlace
 from rastrainer.study.database.postgres_connecting import find_driver_in
 from rastrainer.study.database.study import Study
-from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.analysis import TrialAnalysis
 from rastrainer.trial.ctps import PUBLISHED_STUDY, read_trials
 
@@ -58,31 +54,9 @@ class ModuleSession:
     `process` is to be called soon after `woken` has been emitted, and when `restS` are over.
 
     Attributes:
-        work: background jobs, one after the other.
-        simulator: its set-up and process.
-        trainees: who trains.
-        scenario: head, tasks and robot in the scene.
-        files: loads meshes and images of the displayed scenario.
-        scenarioFiles: takes and gives scenarios as files, and keeps plans in them.
-        training: running trials.
-        slices: keeps the slice views at the next point, or at the tool.
-        study: leads through the protocol.
-        curriculum: what each trainee is to reach.
-        trials: where finished trials arrive.
-        aborted: where aborted trials arrive.
-        replay: feedback on stored trials, and their replay.
-        registration: the displayed one.
-        plan: of a target.
-        procedure: that the trial continues with.
-        traces: shows the trace of the trial on the head.
-        landmarks: of a head, in the scene and in scenarios.
-        methodComparison: has trials simulated and registered by every method.
-        procedurePlan: of a procedure, in the scene and in scenarios.
-        cohort: trials of the published study, with which CTPS compares.
         studyFile: file of the study that is not kept at an address.
         studyPlace: where the present study is: that file, or an address.
-        task: name of the chosen task.
-        taskTitle: what people read.
+        task: name of the chosen task; `taskTitle` is what people read.
         procedures: names and titles of the procedures of the chosen scenario.
         methods: names of the ways in which a trial of that scenario can be registered.
         isSeen: returns whether someone may be looking at the module, at the 3D view, or (where
@@ -92,8 +66,6 @@ class ModuleSession:
         woken: emits nothing when `process` has something to do soon; perhaps from inside VTK.
         sceneChanged: emits nothing when what the panels show of the scene may be another.
         secondPassed: emits nothing, about once a second as long as `process` is called.
-        settings: what the user has chosen in the panels.
-        layout: of the views, while tables or plots are shown.
     """
 
     def __init__(
@@ -107,9 +79,8 @@ class ModuleSession:
         """Open a session.
 
         Args:
-            places: where things are.
-            findKit: returns what makes the connector; None where it is not installed.
-            settings: without them what the user chooses is forgotten at the end.
+            findKit: returns the factory of the connector; None if it is not installed.
+            settings: of the user; without them what the user chooses is forgotten at the end.
             callSoon: has something called in the application's next turn.
         """
         self.places = places
@@ -120,7 +91,7 @@ class ModuleSession:
         self._scene = scene
         self._lockWait = LockWait.interactive()
         find_driver_in(places.simulator)
-        cache = ScenarioCache.below(places.assets / "scenarios", places.library)
+        self.scenarios = cache = ScenarioCache.below(places.assets / "scenarios", places.library)
         self.procedures: tuple[tuple[str, str], ...] = ()
         self.methods: tuple[str, ...] = (RegistrationMethod.FIDUCIALS.value,)
         self.cohort = read_trials(places.assets.joinpath(*PUBLISHED_STUDY))
@@ -132,40 +103,31 @@ class ModuleSession:
         self.trainees = TraineeLogic(self.openStudy, places.records, self.openStudyPatiently)
         self.scenario = ScenarioLogic(scene, cache, places.assets / ROBOT, run, self.work)
         self.files = SceneFileLoader(scene, self.work)
-        self.scenarioMaker = ScenarioMaker(scene, self.simulator, cache, places.library, run)
         self.scenarioFiles = ScenarioFiles(self.simulator, cache, places.library)
+        self.scenarioMaker = ScenarioMaker(scene, self.scenarioFiles, run)
         self.training = TrainingLogic(scene, self.link, cache.find, later=self.work.changeScene)
         self.slices = SliceFollower(scene, self.training, later=self.work.later)
         self.study = StudyLogic(self.trainees, self.training, self.link)
         self.curriculum = CurriculumLogic(self.trainees, self.link)
-        self.trials = TrialLogic(
+        services = TrialServices(
             scene,
             self.link,
             cache.find,
             self.openStudyPatiently,
             self.work,
-            self.cohort,
             places.records,
             run,
         )
-        self.aborted = AbortedTrialLogic(self.link, self.openStudyPatiently, self.work)
+        self.trials = TrialLogic(services, self.cohort)
+        self.aborted = AbortedTrialLogic(services)
+        self.procedure = ProcedureLogic(services)
+        self.traces = TraceLogic(services)
         self.replay = ReplayLogic(
-            scene,
-            self.openStudyPatiently,
-            self.work,
-            cache.find,
-            places.records,
-            places.assets / ROBOT,
-            self._isTrialOpen,
-            run,
-            self.trials.isBeingScored,
+            services, places.assets / ROBOT, self._isTrialOpen, self.trials.isBeingScored
         )
         self.registration = RegistrationLogic(scene, self.work)
         self.plan = PlanLogic(scene, self.link, self.registration)
-        self.procedure = ProcedureLogic(scene, self.link, cache.find, self.work, run)
-        self.traces = TraceLogic(scene, self.link, self.work)
         self.landmarks = LandmarkLogic(scene, self.scenarioFiles)
-        self.methodComparison = MethodComparisonLogic(self.simulator)
         self.procedurePlan = ProcedurePlanLogic(scene, self.scenarioFiles)
         self.task = ""
         self.taskTitle = ""
@@ -180,9 +142,10 @@ class ModuleSession:
         self._trial = ""
         self.training.sceneShown.connect(self.procedure.showPlan)
         self.training.sceneShown.connect(self.traces.begin)
-        self.trials.trialKept.connect(self.study.countTrial)
+        for kept in (self.trials.trialKept, self.aborted.kept):
+            kept.connect(lambda trial: self.study.leadOn(trial.trainee))
         self.trials.trialScored.connect(self._takeScored)
-        self.aborted.kept.connect(self._takeAborted)
+        self.aborted.kept.connect(self._showTrainees)
         self.link.stateChanged.connect(self._noticeNewTrial)
         self.replay.shown.connect(self.registration.reset)
         self.replay.procedureShown.connect(self.procedure.showOutcome)
@@ -197,7 +160,7 @@ class ModuleSession:
             self.trials.trialScored,
             self.trials.problemFound,
         ):
-            signal.connect(self._wake)
+            signal.connect(lambda *_values: self.woken.emit())
 
     def openStudy(self) -> Study:
         """Open the present study, or begin it; this thread draws the window and waits for no lock.
@@ -265,7 +228,6 @@ class ModuleSession:
         self.files.process()
         followPlacement(self._scene)
         self.slices.process()
-        self.layout.process()
         if self._watch.takeChange():
             self.sceneChanged.emit()
         if self._second != int(time.monotonic()):
@@ -279,60 +241,57 @@ class ModuleSession:
             self.work.process()
         return self.work.isBusy
 
-    def sceneWillBeCleared(self) -> None:
-        """Hold on to what would take the scene too long to delete at once."""
-        self.replay.keepStates()
-
     def sceneWasCleared(self) -> None:
         """Forget references into the old scene; a running trial is shown again."""
-        self.work.forgetScene()
-        self.layout.forgetScene()
-        self.plan.points.changes.clear()
+        # Not yet now, as Slicer shows its last layout again after a scene is closed.
+        self.work.later(self.layout.giveBack)
+        self.plan.points.forget()
         self.landmarks.points.forget()
-        self.replay.forgetScene()
-        self.slices.forgetScene()
-        self.scenario.forgetScene()
-        self.registration.forgetScene()
-        self.traces.forgetScene()
-        self.training.forgetScene()
+        for part in (
+            self.work,
+            self.replay,
+            self.slices,
+            self.scenario,
+            self.registration,
+            self.traces,
+            self.training,
+        ):
+            part.forgetScene()
 
     def close(self) -> None:
         """Disconnect, close the study, and end the simulator that was started from here."""
         self._watch.close()
         self.layout.giveBack()
-        self.study.close()
-        self.curriculum.close()
-        self.procedure.close()
-        self.traces.close()
-        self.training.close()
-        self.trials.close()
-        self.aborted.close()
-        self.work.close()
+        for part in (
+            self.study,
+            self.curriculum,
+            self.procedure,
+            self.traces,
+            self.training,
+            self.trials,
+            self.aborted,
+            self.work,
+        ):
+            part.close()
         self.link.disconnect()
         self.trainees.close()
         self.simulator.close()
 
-    def _wake(self, *_values: Any) -> None:
-        self.woken.emit()
-
     def _isTrialOpen(self) -> bool:
         return self.link.isOpen and self.training.status.isOpen
 
-    def _showTrainees(self) -> None:
-        """Let each panel show what is new in the study, in a separate turn."""
-        for listener in tuple(self.trainees.changed.listeners):
+    def _showTrainees(self, *_values: Any) -> None:
+        """Let each panel show the changed study in a separate turn."""
+        for listener in self.trainees.changed.listeners:
             self.work.later(listener)
 
     def _takeScored(self, analysis: TrialAnalysis) -> None:
         record, present = analysis.record, self.training.status
         self.plan.takeTruth(analysis)
         isOtherOpen = self._isTrialOpen() and present.trialId != record.trial_id
-        self.procedure.takeScored(analysis, isOtherOpen)
+        if analysis.procedure is not None and not isOtherOpen:
+            self.procedure.showOutcome(analysis.procedure)
         self.replay.takeFeedback(record.trial_id, analysis.feedback)
-        self._showTrainees()
-
-    def _takeAborted(self, trial: AbortedTrial) -> None:
-        self.study.countTrial(trial)
         self._showTrainees()
 
     def _noticeNewTrial(self, state: dict[str, Any]) -> None:

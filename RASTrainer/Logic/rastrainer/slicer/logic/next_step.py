@@ -16,7 +16,7 @@ from rastrainer.slicer.translation import _
 
 
 class NextAction(str, Enum):
-    """What the button does."""
+    """Actions of the button."""
 
     WAIT = "wait"
     START_SIMULATOR = "start simulator"
@@ -48,14 +48,7 @@ class Section(str, Enum):
 
 @dataclass(frozen=True)
 class NextStep:
-    """The one thing to do now.
-
-    Attributes:
-        action: what the button does.
-        title: what it says.
-        sentence: what to know about it.
-        section: where it belongs.
-    """
+    """The one thing to do now: what the button does and says, why, and where that belongs."""
 
     action: NextAction
     title: str
@@ -68,27 +61,20 @@ class WorkflowState:
     """State of a session.
 
     Attributes:
-        link: state of the link.
         program: state of the simulator's process, if Slicer has started it.
         programSentence: what happened to it last.
         needsSetup: the simulator has to be set up before it can be started here.
-        isBeingSetUp: that is in progress.
         isElsewhere: the simulator is to be on another computer.
         runningSentence: that a simulator runs already which was not started from here; empty where
             none does.
         trainee: pseudonym of the chosen trainee; empty if none is.
-        hasTrainees: the study has trainees to choose from.
         hasPracticed: the chosen trainee has played before, be it the trial run alone.
         isLearning: the chosen trainee does the tutorial before the trial run.
-        taskTitle: of the chosen task.
-        phase: of the simulator's trial.
-        touched: how many points of it are touched.
-        total: how many it has.
         isLoading: the simulator is loading a scenario, and starts no trial.
         isUnscored: the trial that was registered last could not be kept or scored.
         hasNewResult: a trial of the chosen trainee was scored and has not been viewed.
         isResultShown: the score was viewed last.
-        studyStep: what the study asks the chosen trainee for; None where it asks for nothing.
+        studyStep: next step of the chosen trainee in the study; None without one.
         studySentence: the same for people.
     """
 
@@ -122,14 +108,18 @@ def nextStep(now: WorkflowState) -> NextStep:
         return _untilConnected(now)
     isScoring = now.phase == Phase.REGISTERED.value and not now.isUnscored
     if now.phase in OPEN_PHASES or isScoring:
-        action, title, sentence, section = _DURING_TRIAL[now.phase]
-        text = sentence.format(touched=now.touched, total=now.total)
-        return NextStep(action, title, text, section)
+        step = _DURING_TRIAL[now.phase]
+        text = step.sentence.format(touched=now.touched, total=now.total)
+        return replace(step, sentence=text)
     if now.hasNewResult:
         text = _("The trial of {trainee} is scored.").format(trainee=now.trainee)
         return NextStep(NextAction.SHOW_RESULT, _("Show result"), text, Section.REGISTRATION)
+    if not now.trainee and now.hasTrainees:
+        text = _("Choose who is training, or create a new trainee.")
+        return NextStep(NextAction.CHOOSE_TRAINEE, _("Choose a trainee"), text, Section.TRAINEES)
     if not now.trainee:
-        return _trainee(now)
+        text = _("A pseudonym is assigned, unless you type one below.")
+        return NextStep(NextAction.CREATE_TRAINEE, _("New trainee"), text, Section.TRAINEES)
     step = _trial(now)
     if now.isLoading and step.action in _STARTS:
         return replace(step, action=NextAction.WAIT, sentence=LOADING)
@@ -138,40 +128,23 @@ def nextStep(now: WorkflowState) -> NextStep:
 
 _STARTS = (NextAction.START_TRIAL_RUN, NextAction.START_TASK, NextAction.START_STUDY_STEP)
 _TOUCHED = _("{touched} of {total} points are touched.")
+_PAUSE = NextStep(NextAction.PAUSE, _("Pause"), _TOUCHED, Section.TRAINING)
 _DURING_TRIAL = {
-    Phase.RUNNING.value: (NextAction.PAUSE, _("Pause"), _TOUCHED, Section.TRAINING),
-    Phase.PAUSED.value: (NextAction.RESUME, _("Resume"), _TOUCHED, Section.TRAINING),
-    Phase.COMPLETE.value: (
+    Phase.RUNNING.value: _PAUSE,
+    Phase.PAUSED.value: NextStep(NextAction.RESUME, _("Resume"), _TOUCHED, Section.TRAINING),
+    Phase.COMPLETE.value: NextStep(
         NextAction.WAIT,
         _("Waiting…"),
         _("All points are touched: the trainee registers them, or undoes some."),
         Section.REGISTRATION,
     ),
-    Phase.VERIFYING.value: (
-        NextAction.PAUSE,
-        _("Pause"),
-        _("The trainee verifies the registration."),
-        Section.TRAINING,
+    Phase.VERIFYING.value: replace(_PAUSE, sentence=_("The trainee verifies the registration.")),
+    Phase.ALIGNING.value: replace(
+        _PAUSE, sentence=_("The trainee aligns the guide with the planned trajectory.")
     ),
-    Phase.ALIGNING.value: (
-        NextAction.PAUSE,
-        _("Pause"),
-        _("The trainee aligns the guide with the planned trajectory."),
-        Section.TRAINING,
-    ),
-    Phase.DRILLING.value: (
-        NextAction.PAUSE,
-        _("Pause"),
-        _("The trainee drills through the skull."),
-        Section.TRAINING,
-    ),
-    Phase.INSERTING.value: (
-        NextAction.PAUSE,
-        _("Pause"),
-        _("The trainee inserts the instrument."),
-        Section.TRAINING,
-    ),
-    Phase.REGISTERED.value: (
+    Phase.DRILLING.value: replace(_PAUSE, sentence=_("The trainee drills through the skull.")),
+    Phase.INSERTING.value: replace(_PAUSE, sentence=_("The trainee inserts the instrument.")),
+    Phase.REGISTERED.value: NextStep(
         NextAction.WAIT,
         _("Scoring…"),
         _("The trial is registered, and is being scored."),
@@ -202,26 +175,13 @@ def _untilConnected(now: WorkflowState) -> NextStep:
     if isThere:
         text = _("Host and port are set under Advanced in the section Simulator.")
         return NextStep(NextAction.CONNECT, _("Connect"), text, here)
-    return _start(now)
-
-
-def _start(now: WorkflowState) -> NextStep:
     text = _("The simulator starts on this computer, and Slicer connects to it.")
-    here = Section.SIMULATOR
     if now.program is ProgramState.FAILED:
         text = now.programSentence
     elif now.needsSetup:
         text = _("The simulator is set up first, once, after you have agreed.")
         here = Section.SETUP
     return NextStep(NextAction.START_SIMULATOR, _("Start and connect"), text, here)
-
-
-def _trainee(now: WorkflowState) -> NextStep:
-    if now.hasTrainees:
-        text = _("Choose who is training, or create a new trainee.")
-        return NextStep(NextAction.CHOOSE_TRAINEE, _("Choose a trainee"), text, Section.TRAINEES)
-    text = _("A pseudonym is assigned, unless you type one below.")
-    return NextStep(NextAction.CREATE_TRAINEE, _("New trainee"), text, Section.TRAINEES)
 
 
 _STUDY_STEPS = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
@@ -47,7 +48,6 @@ class PracticeMonitor:
         link.stateChanged.connect(self._follow)
 
     def close(self) -> None:
-        """Stop listening, and store the last practice time."""
         self._link.stateChanged.disconnect(self._follow)
         self.keep()
 
@@ -89,43 +89,31 @@ class PracticeMonitor:
         practicing = (trial.trainee, trial.mode) if isPracticed else None
         isOther = practicing != self._practicing or trial.trialId != self._trialId
         if isOther or (practicing and trial.elapsedS < self._seen):
-            self._end()
+            self.keep()
+            ended, self._practicing = self._practicing, None
+            if ended is not None:
+                self._changed(ended[0])
             self._trialId = trial.trialId
-            self._begin(practicing, trial.elapsedS)
+            self._practicing, self._seen = practicing, trial.elapsedS
+            # A previous Slicer may have counted the practice before this one started.
+            self._kept = trial.elapsedS if self._isFirstSight else 0.0
+            requested = self._requestedStep()
+            self._left = KEPT_EVERY_S if requested is None else requested[0].practice_left_s
         elif practicing is not None:
             self._seen = trial.elapsedS
             if self._seen - self._kept >= min(KEPT_EVERY_S, self._left):
                 self.keep()
         self._isFirstSight = False
 
-    def _begin(self, practicing: tuple[str, str] | None, elapsedS: float) -> None:
-        self._practicing, self._seen = practicing, elapsedS
-        # What was played before this Slicer started may have been counted by the previous one.
-        self._kept = elapsedS if self._isFirstSight else 0.0
-        requested = self._requestedStep()
-        self._left = KEPT_EVERY_S if requested is None else requested[0].practice_left_s
-
-    def _end(self) -> None:
-        self.keep()
-        ended, self._practicing = self._practicing, None
-        if ended is not None:
-            self._changed(ended[0])
-
     def _requestedStep(self) -> tuple[StepProgress, StudyStep] | None:
         """Return the progress of the practicing trainee, and the trial run that the study requests.
 
         None if it requests no such run.
         """
-        if self._practicing is None:
-            return None
-        name, mode = self._practicing
-        try:
-            study = StudyProgress(self._trainees.study)
-            progress = study.progress(name) if name in study.enrolled() else None
-        except InputError:
-            return None
-        step = None if progress is None else progress.next_step
-        if progress is None or step is None:
-            return None
-        isRequested = (step.kind, step.mode) == (StepKind.TRIAL_RUN, mode)
-        return (progress, step) if isRequested else None
+        name, mode = self._practicing or ("", "")
+        with contextlib.suppress(InputError):
+            progress = StudyProgress(self._trainees.study).progress(name)
+            step = progress.next_step
+            if step is not None and (step.kind, step.mode) == (StepKind.TRIAL_RUN, mode):
+                return progress, step
+        return None

@@ -50,7 +50,6 @@ class PlanDescription:
     """The parts of a plan that are not nodes of the scene.
 
     Attributes:
-        title: for people.
         kind: a `ProcedureKind`.
         source: where the coordinates come from; empty says that they were placed in Slicer.
         name: of the procedure that is changed; empty for a new one, whose name its title gives.
@@ -88,38 +87,40 @@ class ProcedurePlanLogic:
         if not title:
             raise InputError(_("Enter a title for the procedure."))
         trajectories = self._trajectories()
-        meshes: dict[str, HeadMesh] = {}
-        structures: list[NoGoStructure] = []
-        for name, mesh in noGoMeshes(noGoNodes(self._scene)).items():
-            file = f"structure-{len(structures) + 1}.ply"
-            meshes[file] = mesh
-            structures.append(NoGoStructure(name[:60], Path(NO_GO_FOLDER, file)))
-        if len(structures) > MAX_NO_GO:
+        noGo = noGoMeshes(noGoNodes(self._scene))
+        files = [f"structure-{number}.ply" for number in range(1, len(noGo) + 1)]
+        if len(files) > MAX_NO_GO:
             text = _("The plan has {count} no-go structures; it may have {most}.")
-            raise InputError(text.format(count=len(structures), most=MAX_NO_GO))
+            raise InputError(text.format(count=len(files), most=MAX_NO_GO))
+        name = plan.name or identifier_of(title)
+        if not name:
+            text = _("{title} cannot be a procedure's title: it needs a Latin letter or digit.")
+            raise InputError(text.format(title=title))
+        points: list[tuple[str, np.ndarray]] = []
+        if plan.checkpoints is not None:
+            places = worldPoints(plan.checkpoints)
+            points = list(zip(labelsOf(plan.checkpoints), places, strict=True))
         procedure = Procedure(
-            name=plan.name or _nameOf(title),
+            name=name,
             title=title[:80],
             kind=ProcedureKind(plan.kind),
             source=plan.source.strip() or _("Planned in 3D Slicer."),
             trajectories=trajectories,
-            no_go=tuple(structures),
-            checkpoints=_checkpoints(plan.checkpoints),
+            no_go=tuple(
+                NoGoStructure(structure[:60], Path(NO_GO_FOLDER, file))
+                for structure, file in zip(noGo, files, strict=True)
+            ),
+            checkpoints=tuple(Checkpoint(label, np.array(place)) for label, place in points),
         )
-        return procedure, meshes
+        return procedure, dict(zip(files, noGo.values(), strict=True))
 
     def check(
         self, scenario: Scenario, plan: PlanDescription, progress: Progress = no_progress
     ) -> MeasuredProcedure:
-        """Measure the plan on the head of a scenario; nothing is changed.
-
-        Args:
-            plan: the parts that are not nodes.
-        """
+        """Measure the plan on the head of a scenario; nothing is changed."""
         with tempfile.TemporaryDirectory() as temporary:
-            folder = Path(temporary)
-            path = self._write(folder, plan)
-            measures = folder / "lines.json"
+            path = self._write(Path(temporary), plan)
+            measures = path.with_name("lines.json")
             words = ["lines", str(scenario.folder), "--procedure", str(path)]
             words += ["--json", str(measures)]
             refusal = self._files.run(words, progress, mayFail=True)
@@ -135,12 +136,7 @@ class ProcedurePlanLogic:
         plan: PlanDescription,
         progress: Progress = no_progress,
     ) -> Scenario:
-        """Copy a scenario with the plan, and return the copy.
-
-        Args:
-            scenario: which stays as it is.
-            plan: the parts that are not nodes.
-        """
+        """Copy a scenario with the plan, and return the copy."""
         with tempfile.TemporaryDirectory() as temporary:
             words = ["--procedure", str(self._write(Path(temporary), plan))]
             return self._files.saveWith(words, scenario.name, title, progress)
@@ -172,30 +168,11 @@ def _trajectory(line: Any) -> ProcedureTrajectory:
         text = _("{name} needs two points: its entry and its target.")
         raise InputError(text.format(name=name))
     entry, target = (np.array(point) for point in worldPoints(line))
-    diameter, safety = instrumentOf(line)
-    trajectory = ProcedureTrajectory(name[:60], entry, target, diameter, safety)
+    trajectory = ProcedureTrajectory(name[:60], entry, target, *instrumentOf(line))
     if trajectory.length_mm < MIN_LENGTH_MM:
         text = _("{name} is {length:.1f} mm long; it must be at least {least:g} mm.")
         raise InputError(text.format(name=name, length=trajectory.length_mm, least=MIN_LENGTH_MM))
     return trajectory
-
-
-def _checkpoints(node: Any | None) -> tuple[Checkpoint, ...]:
-    if node is None:
-        return ()
-    pairs = zip(labelsOf(node), worldPoints(node), strict=True)
-    return tuple(Checkpoint(label, np.array(place)) for label, place in pairs)
-
-
-def _nameOf(title: str) -> str:
-    name = identifier_of(title)
-    if not name:
-        raise InputError(
-            _("{title} cannot be a procedure's title: it needs a Latin letter or digit.").format(
-                title=title
-            )
-        )
-    return name
 
 
 def noGoMeshes(nodes: list[Any]) -> dict[str, HeadMesh]:

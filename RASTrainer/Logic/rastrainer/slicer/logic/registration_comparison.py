@@ -17,31 +17,11 @@ from rastrainer.slicer.scene.registration_input import Choices, Pairs, Remedy, S
 
 
 @dataclass(frozen=True, eq=False)
-class ComparisonRequest:
-    """What is to be registered.
-
-    Attributes:
-        choices: by which they were chosen.
-        kind: of the fit that is shown.
-        target: (3,) float, RAS mm, where errors are reported; None where there is no target.
-        skin: of the head; None where there is no head.
-        headPoints: (v, 3) float, RAS mm, the points of a head that is to be colored, else None.
-    """
-
-    pairs: Pairs
-    choices: Choices
-    kind: str
-    target: np.ndarray | None
-    skin: SkinNormals | None
-    headPoints: np.ndarray | None
-
-
-@dataclass(frozen=True, eq=False)
 class Comparison:
     """The fits of the same pairs side by side.
 
     Attributes:
-        pairs: what was registered.
+        shown: the fit of the wanted kind; the rigid one where the pairs do not allow that kind.
         fits: by kind; those that the pairs allow, rigid always.
         localizations: by kind, the error of the touches along and across the skin; None where
             nothing but an error that is alike in all directions is known.
@@ -54,6 +34,7 @@ class Comparison:
     """
 
     pairs: Pairs
+    shown: Registration
     fits: Mapping[str, Registration]
     localizations: Mapping[str, LocalizationError | None]
     errors: Mapping[str, TargetError]
@@ -61,38 +42,47 @@ class Comparison:
     remedies: tuple[Remedy, ...]
     headErrors: np.ndarray | None
 
-    def fitOf(self, kind: str) -> Registration:
-        """Return the fit of a kind; the rigid one where the pairs do not allow that kind."""
-        return self.fits.get(kind, self.fits[RIGID])
-
-    def targetError(self, fit: Registration, place: np.ndarray) -> TargetError:
-        """Return the error to expect with one of the fits at a place, (3,) float, RAS mm."""
-        return target_error(fit, place, self.localizations[fit.kind])
+    def targetError(self, place: np.ndarray) -> TargetError:
+        """Return the error to expect with the shown fit at a place, (3,) float, RAS mm."""
+        return target_error(self.shown, place, self.localizations[self.shown.kind])
 
 
-def compareFits(request: ComparisonRequest) -> Comparison:
-    """Register the pairs of a request in all ways."""
-    pairs, choices = request.pairs, request.choices
-    weights = choices.weights(pairs.labels)
-    fits = register_all_kinds(pairs.moving, pairs.fixed, pairs.labels, weights)
-    localizations = {kind: _localization(request.skin, fit) for kind, fit in fits.items()}
+def compareFits(
+    pairs: Pairs,
+    choices: Choices,
+    kind: str,
+    target: np.ndarray | None,
+    skin: SkinNormals | None,
+    headPoints: np.ndarray | None,
+) -> Comparison:
+    """Register pairs in all ways.
+
+    Args:
+        choices: by which they were chosen.
+        kind: of the fit that is shown.
+        target: (3,) float, RAS mm, where errors are reported; None where there is no target.
+        skin: of the head; None where there is no head.
+        headPoints: (v, 3) float, RAS mm, the points of a head that is to be colored, else None.
+    """
+    fits = register_all_kinds(
+        pairs.moving, pairs.fixed, pairs.labels, choices.weights(pairs.labels)
+    )
+    # Errors stated for single points replace those estimated from the skin.
+    localizations = {
+        kind: None if skin is None or fit.weights is not None else skin.localizationError(fit)
+        for kind, fit in fits.items()
+    }
     errors, leaveOneOut = {}, {}
-    for kind, fit in fits.items():
+    for each, fit in fits.items():
         with contextlib.suppress(InputError):
-            if request.target is not None:
-                errors[kind] = target_error(fit, request.target, localizations[kind])
+            if target is not None:
+                errors[each] = target_error(fit, target, localizations[each])
         with contextlib.suppress(InputError):
-            leaveOneOut[kind] = fit.leave_one_out_mm()
-    shown = fits.get(request.kind, fits[RIGID])
-    headErrors = None
-    if request.headPoints is not None:
+            leaveOneOut[each] = fit.leave_one_out_mm()
+    shown, headErrors = fits.get(kind, fits[RIGID]), None
+    if headPoints is not None:
         with contextlib.suppress(InputError):
-            headErrors = expected_tre(shown, request.headPoints, localizations[shown.kind])
+            headErrors = expected_tre(shown, headPoints, localizations[shown.kind])
     rigid = fits[RIGID]
     found = tuple(remedyOf(warning, rigid, choices) for warning in rigid.warnings)
-    return Comparison(pairs, fits, localizations, errors, leaveOneOut, found, headErrors)
-
-
-def _localization(skin: SkinNormals | None, fit: Registration) -> LocalizationError | None:
-    # Errors stated for single points replace those estimated from the skin.
-    return None if skin is None or fit.weights is not None else skin.localizationError(fit)
+    return Comparison(pairs, shown, fits, localizations, errors, leaveOneOut, found, headErrors)

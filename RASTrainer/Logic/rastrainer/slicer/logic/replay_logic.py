@@ -13,9 +13,8 @@ from rastrainer.errors import InputError
 from rastrainer.journal.recording import ReplayTrack
 from rastrainer.procedure.errors import true_lines
 from rastrainer.registration.fits import RIGID
-from rastrainer.scenario.scenario import Scenario
-from rastrainer.slicer.background_work import BackgroundWork, inBackground
-from rastrainer.slicer.program.child_process import Run, runHere
+from rastrainer.slicer.background_work import inBackground
+from rastrainer.slicer.logic.trial_services import TrialServices
 from rastrainer.slicer.scene.robot_description import URDF, readArmChain
 from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
 from rastrainer.slicer.scene.trial_replay import (
@@ -30,10 +29,8 @@ from rastrainer.slicer.scene.trial_replay import (
 from rastrainer.slicer.scene.trial_scene import setTouchesVisible, showTouches
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
-from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.delivered_trial import EXPLAIN, EXPLAIN_PROCEDURE, READ_TRACK, with_progress
-from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.trial_feedback import TrialFeedback
 from rastrainer.work_progress import Progress, no_progress
 
@@ -47,48 +44,33 @@ class ReplayLogic:
     Attributes:
         feedbackFound: emits nothing, whenever the feedback on another trial is known.
         shown: emits nothing, whenever another trial is shown, with its touches to be registered.
-        procedureShown: emits the `ProcedureOutcome` of that trial, None where it has none.
+        procedureShown: emits the `ProcedureOutcome` of that trial, None without one.
         isReleasing: whether states of a closed scene's replay are left, which `process` releases.
     """
 
     def __init__(
         self,
-        scene: Any,
-        openStudy: Callable[[], Study],
-        work: BackgroundWork,
-        findScenario: Callable[[str], Scenario],
-        records: Path,
+        services: TrialServices,
         robot: Path,
         isTrialOpen: Callable[[], bool] = lambda: False,
-        run: Run = runHere,
         isBeingScored: Callable[[str], bool] = lambda _trialId: False,
     ) -> None:
         """Show trials again.
 
         Args:
-            openStudy: opens the study, in any thread; it may wait for a lock there.
-            work: in which trials are judged.
-            findScenario: gives the scenario of a name, in any thread.
             robot: folder of the URDF.
             isTrialOpen: returns whether the scene shows a trial that is being played.
-            run: runs the functions that read journals.
             isBeingScored: returns whether a trial is being scored, which gives feedback, too.
         """
         self.feedbackFound = Signal()
         self.shown = Signal()
         self.procedureShown = Signal()
         self._isTrialOpen = isTrialOpen
-        self._scene = scene
-        self._openStudy = openStudy
-        self._work = work
-        self._findScenario = findScenario
-        self._records = records
+        self._services = services
         self._robot = robot
-        self._run = run
         self._isBeingScored = isBeingScored
-        self._awaitedId = ""
-        self._known: tuple[str, TrialFeedback | Exception] | None = None
-        self._requestedId = ""
+        self._awaitedId = self._requestedId = ""
+        self._known: tuple[str, TrialFeedback | Exception | None] = ("", None)
         self._until: float | None = None
         self._outdated: Iterator[None] = iter(())
         self.isReleasing = False
@@ -96,7 +78,7 @@ class ReplayLogic:
     def feedback(self, trial: StoredTrial) -> TrialFeedback | None:
         """Return the feedback on a trial; None while it is being prepared."""
         trialId = trial.record.trial_id
-        if self._known is not None and self._known[0] == trialId:
+        if self._known[0] == trialId:
             if isinstance(self._known[1], Exception):
                 raise self._known[1]
             return self._known[1]
@@ -109,7 +91,8 @@ class ReplayLogic:
                 if self._requestedId == trialId:
                     self.takeFeedback(trialId, found)
 
-            self._work.do(lambda: self._judge(trial, self._work.checkWanted), take, take)
+            work = self._services.work
+            work.do(lambda: self._judge(trial, work.checkWanted), take, take)
         return None
 
     def takeFeedback(self, trialId: str, feedback: TrialFeedback | Exception) -> None:
@@ -119,11 +102,12 @@ class ReplayLogic:
 
     def retryFeedback(self) -> None:
         """Forget why there was no feedback: the study or the scenarios may have changed."""
-        if self._known is not None and isinstance(self._known[1], Exception):
-            self._known = None
+        if isinstance(self._known[1], Exception):
+            self._known = ("", None)
 
     def keepStates(self) -> None:
-        self._outdated = itertools.chain(self._outdated, emptyReplay(self._scene))
+        """Have the states of the replay released slice by slice, before the scene is closed."""
+        self._outdated = itertools.chain(self._outdated, emptyReplay(self._services.scene))
 
     def forgetScene(self) -> None:
         """Forget where the replay is to stop: the scene was cleared."""
@@ -141,26 +125,21 @@ class ReplayLogic:
 
     def showWorstTouch(self, trial: StoredTrial, progress: Progress = no_progress) -> None:
         """Show again how the worst touch came about; otherwise as `show`."""
-        if self._known is None or self._known[0] != trial.record.trial_id:
+        trialId = trial.record.trial_id
+        if self._known[0] != trialId:
             judged = inBackground(lambda report: self._judge(trial, report), progress)
-            self.takeFeedback(trial.record.trial_id, judged)
+            self.takeFeedback(trialId, judged)
         feedback = self.feedback(trial)
         interval = None if feedback is None else feedback.worst.replay_s
         if interval is None:
-            trialId = trial.record.trial_id
-            inBackground(lambda report: self._track(trialId, report), progress)
+            inBackground(
+                lambda r: self._services.run(READ_TRACK, r, self._services.records, trialId),
+                progress,
+            )
             raise InputError(_("The journal does not say when the worst touch was made."))
         self._put(trial, progress)
-        goTo(self._scene, interval[0])
+        goTo(self._services.scene, interval[0])
         self._play(interval[1])
-
-    @property
-    def sentence(self) -> str:
-        """Time and clearance of the replay; empty if there is none."""
-        now = moment(self._scene)
-        if now is None:
-            return ""
-        return _("{time:.1f} s, clearance {clearance}").format(time=now[0], clearance=now[1])
 
     def process(self) -> None:
         """Stop where the worst touch was made; request feedback that no score has given."""
@@ -168,7 +147,7 @@ class ReplayLogic:
         if self._awaitedId and not self._isBeingScored(self._awaitedId):
             self._awaitedId = ""
             self.feedbackFound.emit()
-        now, browser = moment(self._scene), findReplay(self._scene)
+        now, browser = moment(self._services.scene), findReplay(self._services.scene)
         if self._until is None or now is None or browser is None:
             return
         if now[0] >= self._until:
@@ -176,63 +155,64 @@ class ReplayLogic:
             self._until = None
 
     def _judge(self, trial: StoredTrial, progress: Progress) -> TrialFeedback:
-        scenario = self._findScenario(trial.record.scenario)
-        analysis = self._run(EXPLAIN, progress, trial.record, scenario, self._records)
-        with self._openStudy() as study:
+        services, record = self._services, trial.record
+        scenario = services.findScenario(record.scenario)
+        analysis = services.run(EXPLAIN, progress, record, scenario, services.records)
+        with services.openStudy() as study:
             # A score keeps its version, however it would be computed today.
             scored = analysis.scored_as(trial.score, scenario, trial.truth)
             return with_progress(scored, study).feedback
 
     def _track(self, trialId: str, progress: Progress) -> ReplayTrack:
-        return self._run(READ_TRACK, progress, self._records, trialId)
-
-    def _procedure(self, trial: StoredTrial, progress: Progress) -> ProcedureOutcome | None:
-        """Return the errors of a trial's procedure; None where they are not known."""
-        if trial.record.procedure is None or trial.truth is None:
-            return None
-        scenario = self._findScenario(trial.record.scenario)
-        return self._run(EXPLAIN_PROCEDURE, progress, trial.record, scenario, trial.truth)
+        return self._services.run(READ_TRACK, progress, self._services.records, trialId)
 
     def _put(self, trial: StoredTrial, progress: Progress) -> None:
-        self._checkNoTrialIsOpen()
         record, rigid = trial.record, trial.registrations.get(RIGID)
+        services, scene = self._services, self._services.scene
+        self._checkNoTrialIsOpen()
         if rigid is None:
             raise InputError(_("It is not known where the head was: the trial was not registered."))
-        if (browser := findReplay(self._scene)) is not None:
+        if (browser := findReplay(scene)) is not None:
             browser.SetPlaybackActive(False)
-        isThere = isReplayOf(self._scene, record.trial_id)
-        track, chain, scenario, outcome = inBackground(
-            lambda report: (
-                None if isThere else self._track(record.trial_id, report),
-                readArmChain(self._robot / URDF),
-                self._findScenario(record.scenario),
-                self._procedure(trial, report),
-            ),
-            progress,
-        )
+        isThere = isReplayOf(scene, record.trial_id)
+
+        def read(report: Progress) -> tuple[Any, ...]:
+            track = None if isThere else self._track(record.trial_id, report)
+            scenario, outcome = services.findScenario(record.scenario), None
+            if record.procedure is not None and trial.truth is not None:
+                outcome = services.run(EXPLAIN_PROCEDURE, report, record, scenario, trial.truth)
+            return track, readArmChain(self._robot / URDF), scenario, outcome
+
+        track, chain, scenario, outcome = inBackground(read, progress)
         self._checkNoTrialIsOpen()
-        if isThere and not isReplayOf(self._scene, record.trial_id):
+        if isThere and not isReplayOf(scene, record.trial_id):
             raise InputError(_("The scene was changed before the trial could be shown."))
-        showScenario(self._scene, scenario)
-        showTask(self._scene, scenario, record.task, record.method)
-        showTouches(self._scene, record)
+
+        def inTurn(change: Callable[[], object]) -> None:
+            change()
+            progress(_("Showing"), 0.0)
+            self._checkNoTrialIsOpen()
+
+        showScenario(scene, scenario, inTurn)
+        inTurn(lambda: showTask(scene, scenario, record.task, record.method))
+        inTurn(lambda: showTouches(scene, record))
         self.shown.emit()
         lines = []
         if record.procedure is not None and trial.truth is not None and outcome is not None:
             lines = true_lines(record.procedure, trial.truth.matrix)
         self.procedureShown.emit(outcome, lines)
         if track is None:
-            goTo(self._scene, 0.0)
+            goTo(scene, 0.0)
         else:
             # What shows the scenario has its turn before the states go into the scene.
             progress(_("Showing"), 0.0)
             name, matrix = f"{record.trainee}, {record.task}", np.reshape(rigid.matrix, (4, 4))
             browser = showReplay(
-                self._scene, name, track, chain, matrix, lambda share: progress(_("Showing"), share)
+                scene, name, track, chain, matrix, lambda share: progress(_("Showing"), share)
             )
             browser.SetAttribute(TRIAL_ATTRIBUTE, record.trial_id)
         # The replay shows them one by one, as they were made.
-        setTouchesVisible(self._scene, False)
+        setTouchesVisible(scene, False)
 
     def _checkNoTrialIsOpen(self) -> None:
         if self._isTrialOpen():
@@ -240,7 +220,7 @@ class ReplayLogic:
 
     def _play(self, until: float | None) -> None:
         self._until = until
-        browser = findReplay(self._scene)
+        browser = findReplay(self._services.scene)
         if browser is not None:
             browser.SetPlaybackLooped(False)
             browser.SetPlaybackActive(True)

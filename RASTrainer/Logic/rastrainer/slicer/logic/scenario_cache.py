@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 from collections.abc import Callable, Iterable
 from itertools import count
@@ -37,7 +36,7 @@ class ScenarioCache:
         )
         self._lines: dict[Path, tuple[tuple, ListedScenario]] = {}
         self._listed: tuple[ListedScenario, ...] | None = None
-        self._scenarios: dict[str, tuple[int, Scenario]] = {}
+        self._scenarios: dict[str, tuple[tuple[int, int], Scenario]] = {}
 
     @classmethod
     def below(cls, *libraries: Path) -> ScenarioCache:
@@ -56,7 +55,7 @@ class ScenarioCache:
     def _listOne(self, folder: Path) -> ListedScenario:
         """List a scenario, which takes long, only where one of its files has changed since."""
         stamp, line = self._lines.get(folder, ((), None))
-        present = _fileStamps(folder)
+        present = tuple((str(path), _stamp(path)) for path in sorted(folder.rglob("*")))
         if line is None or stamp != present:
             line = list_folder(folder)
             self._lines[folder] = present, line
@@ -69,11 +68,18 @@ class ScenarioCache:
 
     def find(self, name: str) -> Scenario:
         """Return the scenario of that name, which may have been added since the last look."""
-        stamp, scenario = self._scenarios.get(name, (0, None))
-        if scenario is None or stamp != _stamp(scenario.folder):
+        stamp, scenario = self._scenarios.get(name, ((0, 0), None))
+        if scenario is None or stamp != _stamp(scenario.folder / FILE_NAME):
             self._listed = None
-            folder = self._folder(name)
-            stamp, scenario = _stamp(folder), load_scenario(folder)
+            folders = {entry.name: entry.folder for entry in self.listed()}
+            if name not in folders:
+                usable = [entry.name for entry in self.listed() if not entry.problem]
+                raise InputError(
+                    f"The scenario {json.dumps(name)} is not here; those that are: "
+                    f"{', '.join(usable) or 'none'}."
+                )
+            stamp = _stamp(folders[name] / FILE_NAME)
+            scenario = load_scenario(folders[name])
             self._scenarios[name] = stamp, scenario
         return scenario
 
@@ -96,27 +102,11 @@ class ScenarioCache:
             )
         raise InputError(sentence.format(name=name, free=free, folder=taken[name]))
 
-    def _folder(self, name: str) -> Path:
-        for entry in self.listed():
-            if entry.name == name:
-                return entry.folder
-        known = ", ".join(entry.name for entry in self.listed() if not entry.problem) or "none"
-        raise InputError(f"The scenario {json.dumps(name)} is not here; those that are: {known}.")
 
-
-def _stamp(folder: Path) -> int:
-    """Return when a scenario was written, ns; 0 if it does not exist."""
+def _stamp(path: Path) -> tuple[int, int]:
+    """Return a value that changes with a file."""
     try:
-        return (folder / FILE_NAME).stat().st_mtime_ns
+        status = path.stat()
     except OSError:
-        return 0
-
-
-def _fileStamps(folder: Path) -> tuple:
-    """Return a value that changes with any file of a scenario."""
-    stamps = []
-    for path in sorted(folder.rglob("*")):
-        with contextlib.suppress(OSError):
-            status = path.stat()
-            stamps.append((str(path), status.st_mtime_ns, status.st_size))
-    return tuple(stamps)
+        return 0, 0
+    return status.st_mtime_ns, status.st_size

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -12,7 +12,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
-from rastrainer.scenario.library import ListedScenario, unpack
+from rastrainer.scenario.library import unpack
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.slicer.background_work import BackgroundWork, inBackground
 from rastrainer.slicer.logic.head_preview import findSkin
@@ -48,7 +48,7 @@ from rastrainer.work_progress import Progress, no_progress
 
 
 class ScenarioLogic:
-    """What the Scenario panel does.
+    """Shows scenarios, other heads and the robot in the scene.
 
     Attributes:
         robotShown: emits nothing when the whole robot is in the scene.
@@ -69,21 +69,10 @@ class ScenarioLogic:
         self._links: tuple[LinkMesh, ...] = ()
         self._isRobotComing = False
 
-    def listed(self) -> tuple[ListedScenario, ...]:
-        """Return the scenarios that come with the module and those of the user."""
-        return self._cache.listed()
-
-    def find(self, scenarioName: str) -> Scenario:
-        """Return the scenario of that name; raise `InputError` if there is none."""
-        return self._cache.find(scenarioName)
-
     def show(
         self, scenarioName: str, taskName: str, then: Callable[[], None] = lambda: None
     ) -> None:
-        """Show a scenario's head and the fiducials of one of its tasks in the next turns.
-
-        `then` is called in the last of them.
-        """
+        """Show a scenario's head and a task's fiducials in the next turns; then call `then`."""
         scenario, later = self._cache.find(scenarioName), self._work.changeScene
         scenario.task(taskName)  # Raises before anything is shown.
         showScenario(self._scene, scenario, later)
@@ -100,20 +89,21 @@ class ScenarioLogic:
             showPlannedPlace(self._scene, scenario, capturedPointsNode(self._scene), fixed)
 
     def useHead(self, node: Any, progress: Progress = no_progress) -> tuple[Any, list[str]]:
-        """Make a model or a volume of the scene the displayed head.
+        """Make a model, or the skin of a volume, the displayed head.
 
         The head that was one before is hidden, and is no longer ours to fill.
-
-        Args:
-            node: a `vtkMRMLModelNode`, or a `vtkMRMLScalarVolumeNode` whose skin is extracted.
-            progress: called with each step and the share of the work done, ten times a second; it
-                may let the application draw, and may raise to cancel: then nothing is left behind.
 
         Returns:
             The head's model, and warnings about its volume, one sentence each.
         """
-        isVolume = node.IsA("vtkMRMLVolumeNode")
-        model, warnings = self._skinOf(node, progress) if isVolume else (node, [])
+        model, warnings = node, list[str]()
+        if node.IsA("vtkMRMLVolumeNode"):
+            _body, mesh, warnings = findSkin(self._run, node, None, progress)
+            name = f"Head of {node.GetName()}"
+            model = self._scene.AddNewNodeByClass("vtkMRMLModelNode", name)
+            model.SetAndObservePolyData(meshPolyData(mesh))
+            model.CreateDefaultDisplayNodes()
+            model.GetDisplayNode().SetColor(SKIN_COLOR)
         former = findNode(self._scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
         if former is not None and former is not model:
             former.RemoveAttribute(ROLE_ATTRIBUTE)
@@ -123,28 +113,20 @@ class ScenarioLogic:
         model.SetDisplayVisibility(True)
         return model, warnings
 
-    def _skinOf(self, volumeNode: Any, progress: Progress) -> tuple[Any, list[str]]:
-        _body, mesh, warnings = findSkin(self._run, volumeNode, None, progress)
-        name = f"Head of {volumeNode.GetName()}"
-        model = self._scene.AddNewNodeByClass("vtkMRMLModelNode", name)
-        model.SetAndObservePolyData(meshPolyData(mesh))
-        model.CreateDefaultDisplayNodes()
-        model.GetDisplayNode().SetColor(SKIN_COLOR)
-        return model, warnings
-
     def setRobotShown(self, shown: bool) -> None:
-        """Show the robot, which follows the link, or hide it.
+        """Show the robot, which follows the link, or hide it; its links come one by one."""
 
-        The first time its links are read in the background; they come one after the other.
-        """
+        def refuse(error: Exception) -> None:
+            self._isRobotComing = False
+            self.problemFound.emit(_("The robot cannot be shown. {problem}").format(problem=error))
+
         setRobotVisible(self._scene, shown)
         self._isRobotComing = shown
-        if not shown:
-            return
-        if self._links or not missingLinks(self._scene):
-            self._addLinks()
-        else:
-            self._work.do(self._readLinks, self._takeLinks, self._refuseRobot)
+        if shown and (self._links or not missingLinks(self._scene)):
+            self._addLinks(self._links)
+        elif shown:
+            check, folder = self._work.checkWanted, self._robotFolder
+            self._work.do(lambda: self._run(READ_LINKS, check, folder), self._addLinks, refuse)
 
     def forgetScene(self) -> None:
         """Stop showing the robot: the scene was cleared."""
@@ -155,49 +137,44 @@ class ScenarioLogic:
         node = robotNode(self._scene, 0)
         return self._isRobotComing or (node is not None and bool(node.GetDisplayVisibility()))
 
-    def _readLinks(self) -> tuple[LinkMesh, ...]:
-        """Return the links' meshes; called in the background."""
-        links: tuple[LinkMesh, ...] = self._run(
-            READ_LINKS, self._work.checkWanted, self._robotFolder
-        )
-        return links
-
-    def _takeLinks(self, links: tuple[LinkMesh, ...]) -> None:
+    def _addLinks(self, links: tuple[LinkMesh, ...]) -> None:
+        """Add the links that are missing, one in each turn."""
         self._links = links
-        self._addLinks()
 
-    def _refuseRobot(self, error: Exception) -> None:
-        self._isRobotComing = False
-        self.problemFound.emit(_("The robot cannot be shown. {problem}").format(problem=error))
+        def addMissing(number: int) -> None:
+            if self._isRobotComing and number in missingLinks(self._scene):
+                addLink(self._scene, number, links[number])
+                # At once, so that the views can be moved to it.
+                followPlacement(self._scene)
 
-    def _addLinks(self) -> None:
+        def finish() -> None:
+            if self._isRobotComing:
+                self._isRobotComing = False
+                self.robotShown.emit()
+
         for number in missingLinks(self._scene):
-            self._work.later(partial(self._addLink, number))
-        self._work.later(self._finishRobot)
-
-    def _addLink(self, number: int) -> None:
-        if self._isRobotComing and number in missingLinks(self._scene):
-            addLink(self._scene, number, self._links[number])
-            # At once, so that the views can be moved to it.
-            followPlacement(self._scene)
-
-    def _finishRobot(self) -> None:
-        if self._isRobotComing:
-            self._isRobotComing = False
-            self.robotShown.emit()
+            self._work.later(partial(addMissing, number))
+        self._work.later(finish)
 
 
 class ScenarioFiles:
-    """What the panels Scenario and Plan do with scenarios on disk.
+    """Scenarios on disk, which the simulator's program writes.
 
     `progress` is called while it works: it may let the application draw, and may raise to cancel.
     """
 
     def __init__(self, simulator: SimulatorLogic, cache: ScenarioCache, library: Path) -> None:
         """Scenarios come into the folder `library`, each into a separate folder."""
-        self._simulator = simulator
+        self.simulator = simulator
         self._cache = cache
         self._library = library
+
+    def add(self, title: str, make: Callable[[Path], object]) -> Scenario:
+        """Return the scenario that `make` makes in the folder it is given."""
+        folder = self._library / self._cache.newName(title)
+        make(folder)
+        self._cache.refresh()
+        return load_scenario(folder)
 
     def importScenario(self, package: Path, progress: Progress = no_progress) -> Scenario:
         """Unpack a scenario's zip file into the library."""
@@ -222,7 +199,6 @@ class ScenarioFiles:
         """Write a scenario as a zip file and return a sentence that says what was removed.
 
         Args:
-            package: the new file.
             keepsFace: whether the head keeps its face and skull; otherwise the user has seen what
                 `drawFaceRemoval` has drawn.
             keepsNames: whether title, name and source stay, which may be the patient's name.
@@ -232,53 +208,37 @@ class ScenarioFiles:
         words += ["--keep-names"] if keepsNames else []
         return self.run(words, progress)
 
-    def savePlan(
-        self, name: str, title: str, node: Any, progress: Progress = no_progress
-    ) -> Scenario:
-        """Copy a scenario with a list in place of its targets, or a line of its trajectory.
-
-        Args:
-            name: of the scenario, which stays as it is.
-            node: a `vtkMRMLMarkupsFiducialNode` or a `vtkMRMLMarkupsLineNode`.
-        """
-        isLine = node.IsA("vtkMRMLMarkupsLineNode")
-        plan = planArguments(None, node) if isLine else planArguments(node, None)
-        return self.saveWith(plan, name, title, progress)
-
     def saveWith(
         self, plan: list[str], name: str, title: str, progress: Progress = no_progress
     ) -> Scenario:
-        """Copy a scenario with a part replaced.
+        """Copy a scenario with a part replaced, and return the copy.
 
-        Args:
-            plan: arguments of `rastrainer scenario plan`, such as `--procedure` with a file of one
-                procedure and its meshes beside it, which replaces one of the same name, or
-                `--landmarks` with a markups file of landmarks in the order of touching, which
-                replaces all.
-            name: of the scenario, which stays as it is.
+        `plan` are arguments of `rastrainer scenario plan`, such as `--landmarks` with a file.
         """
-        folder = self._library / self._cache.newName(title)
-        source = str(self._cache.find(name).folder)
-        self.run(["plan", source, "-o", str(folder), f"--title={title}", *plan], progress)
-        self._cache.refresh()
-        return load_scenario(folder)
+        source, words = str(self._cache.find(name).folder), [f"--title={title}", *plan]
+        return self.add(
+            title, lambda folder: self.run(["plan", source, "-o", str(folder), *words], progress)
+        )
 
     def run(self, words: list[str], progress: Progress, mayFail: bool = False) -> str:
         """Run `rastrainer scenario`; see `SimulatorLogic.run`."""
-        return self._simulator.run(["scenario", *words], progress, mayFail)
+        return self.simulator.run(["scenario", *words], progress, mayFail)
 
 
-def planArguments(targets: Any | None, trajectory: Any | None) -> list[str]:
-    """Return the arguments of `rastrainer scenario` for a list of targets and a line."""
+def planArguments(*planned: Any | None) -> list[str]:
+    """Return the arguments of `rastrainer scenario` for lists of targets, and a line."""
     words = []
-    if targets is not None:
-        for name, place in zip(labelsOf(targets), worldPoints(targets), strict=True):
-            words += ["--target", name, *map(str, place.tolist())]
-    if trajectory is not None:
-        ends = worldPoints(trajectory)
-        if len(ends) != 2:
+    for node in planned:
+        if node is None:
+            continue
+        points = worldPoints(node)
+        if not node.IsA("vtkMRMLMarkupsLineNode"):
+            for name, place in zip(labelsOf(node), points, strict=True):
+                words += ["--target", name, *map(str, place.tolist())]
+        elif len(points) == 2:
+            words += ["--trajectory", node.GetName(), *map(str, points.ravel().tolist())]
+        else:
             raise InputError(_("The trajectory needs two points: its entry and its target."))
-        words += ["--trajectory", trajectory.GetName(), *map(str, ends.ravel().tolist())]
     return words
 
 
@@ -290,61 +250,45 @@ class ComparedMethod:
     """How a method has registered the trials; lengths in mm, root mean squares over trials.
 
     Attributes:
-        name: a `RegistrationMethod`.
+        low, high: medians of the ends of the 95 % interval of the target error.
         residual: of the points that count; it does not show the error.
-        expected: target error.
-        interval: medians of the ends of its 95 % interval.
-        true: target error.
         held: share of the intervals that hold the true error.
     """
 
     name: str
+    low: float
+    high: float
     residual: float
     expected: float
-    interval: tuple[float, float]
     true: float
     held: float
 
-    @classmethod
-    def of(cls, name: str, value: Mapping[str, Any]) -> ComparedMethod:
-        """Return what the program has written of a method.
 
-        Raises:
-            KeyError, TypeError, ValueError: it has not written that.
-        """
-        low, high = map(float, value["interval_mm"])
-        return cls(
-            name,
-            float(value["residual_mm"]),
-            float(value["expected_tre_mm"]),
-            (low, high),
-            float(value["true_tre_mm"]),
-            float(value["interval_holds_share"]),
-        )
+KEYS = ("residual_mm", "expected_tre_mm", "true_tre_mm", "interval_holds_share")
+"""Of a method in the program's output: the last four above."""
 
 
-class MethodComparisonLogic:
-    """What the group Methods of registration does."""
+def compareMethods(
+    simulator: SimulatorLogic,
+    scenario: Scenario,
+    trials: int,
+    skinShiftMm: float,
+    progress: Progress = no_progress,
+) -> list[ComparedMethod]:
+    """Return how each method for which a head has the points registers simulated trials.
 
-    def __init__(self, simulator: SimulatorLogic) -> None:
-        self._simulator = simulator
-
-    def compare(
-        self, scenario: Scenario, trials: int, skinShiftMm: float, progress: Progress = no_progress
-    ) -> tuple[ComparedMethod, ...]:
-        """Return how each method for which a head has the points registers simulated trials.
-
-        Args:
-            trials: how many.
-            skinShiftMm: between imaging and operation, RMS.
-        """
-        with tempfile.TemporaryDirectory() as temporary:
-            folder = Path(temporary) / "methods"
-            words = ["compare-methods", "--scenario", str(scenario.folder), "-o", str(folder)]
-            words += ["--trials", str(trials), "--skin-shift", str(skinShiftMm)]
-            self._simulator.run(words, progress)
-            compared = read_json(folder / "methods.json", LIMIT_BYTES)
-        try:
-            return tuple(ComparedMethod.of(*each) for each in compared["methods"].items())
-        except (KeyError, TypeError, ValueError, AttributeError):
-            raise InputError(_("The simulator's program has a different version.")) from None
+    `skinShiftMm` is the RMS shift between imaging and operation.
+    """
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary) / "methods"
+        words = ["compare-methods", "--scenario", str(scenario.folder), "-o", str(folder)]
+        words += ["--trials", str(trials), "--skin-shift", str(skinShiftMm)]
+        simulator.run(words, progress)
+        compared = read_json(folder / "methods.json", LIMIT_BYTES)
+    try:
+        return [
+            ComparedMethod(name, *map(float, [*values["interval_mm"], *map(values.get, KEYS)]))
+            for name, values in compared["methods"].items()
+        ]
+    except (KeyError, TypeError, ValueError, AttributeError):
+        raise InputError(_("The simulator's program has a different version.")) from None

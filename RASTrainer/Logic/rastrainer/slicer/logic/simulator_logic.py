@@ -19,7 +19,6 @@ from rastrainer.protocol import DEFAULT_HOST
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.program.child_process import KILL_AFTER_S, SLICER, runChild
 from rastrainer.slicer.program.process_group import endProcess
-from rastrainer.slicer.program.simulator_package import SetupSource
 from rastrainer.slicer.program.simulator_program import ProgramState, SimulatorProgram
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from rastrainer.slicer.settings import PROGRAM, Settings
@@ -32,7 +31,7 @@ _ANY_ADDRESS = ("0.0.0.0", "::", "localhost", "")
 
 
 class RunningSimulator:
-    """Finds who records in the folder; call `process` once a second, or more often.
+    """Finds who records in the folder of the journals.
 
     Attributes:
         holder: the simulator that does; None where there is none.
@@ -41,7 +40,6 @@ class RunningSimulator:
     """
 
     def __init__(self, records: Path, link: Link) -> None:
-        """`records` is the folder of the journals."""
         self.holder: FolderHolder | None = None
         self.isEnding = False
         self.changed = Signal()
@@ -58,10 +56,14 @@ class RunningSimulator:
             return ""
         if self.isEnding:
             return _("The simulator that was already running is ending.")
+        since = ""
+        with contextlib.suppress(ValueError):
+            moment = datetime.fromisoformat(self.holder.started).astimezone()
+            since = _(" since {moment}").format(moment=moment.strftime("%Y-%m-%d %H:%M"))
         return _(
             "A simulator that was not started from here is running on this computer{since}. "
             "Connect to it, or end it before another is started: recorded trials stay."
-        ).format(since=_since(self.holder.started))
+        ).format(since=since)
 
     @property
     def canConnect(self) -> bool:
@@ -78,13 +80,12 @@ class RunningSimulator:
         self._lookAt = time.monotonic() + LOOK_EVERY_S
         found = read_holder(self._records)
         if found != self.holder:
-            self.isEnding = self.isEnding and _isSame(found, self.holder)
+            self.isEnding = self.isEnding and _process(found) == _process(self.holder)
             self.holder = found
             self.changed.emit()
         return found is not None
 
     def connect(self) -> None:
-        """Connect to it."""
         self.look()
         holder = self.holder
         if holder is None or not self.canConnect:
@@ -95,13 +96,13 @@ class RunningSimulator:
 
     def end(self) -> None:
         """Ask it to end, with its window; `process` notices the end, and kills it if needed."""
-        shown = self.holder
+        shown = _process(self.holder)
         self.look()
         # Another that has started since is not the one to be ended.
-        if self.holder is None or not self.canEnd or not _isSame(self.holder, shown):
+        if not self.canEnd or _process(self.holder) != shown:
             return
-        _signal(self.holder, isAsked=True)
-        if _isSame(self._connected, self.holder):
+        self._signal(isAsked=True)
+        if _process(self._connected) == shown:
             self._link.disconnect()
         self.isEnding = True
         self._lookAt, self._killAt = 0.0, time.monotonic() + KILL_AFTER_S
@@ -116,42 +117,26 @@ class RunningSimulator:
             self._lookAt = 0.0
             if time.monotonic() > self._killAt:
                 with contextlib.suppress(InputError):
-                    _signal(self.holder, isAsked=False)
+                    self._signal(isAsked=False)
+
+    def _signal(self, isAsked: bool) -> None:
+        """Signal the process that holds the folder now: no other process can have its number."""
+        assert self.holder is not None
+        try:
+            endProcess(self.holder.pid, self.holder.started_by == SLICER, isAsked)
+        except PermissionError:
+            raise InputError(
+                _("This simulator was started by another user of this computer, who can end it.")
+            ) from None
 
 
-def _signal(holder: FolderHolder, isAsked: bool) -> None:
-    """Signal the process that holds the folder now: no other process can have its number."""
-    try:
-        endProcess(holder.pid, holder.started_by == SLICER, isAsked)
-    except PermissionError:
-        raise InputError(
-            _("This simulator was started by another user of this computer, who can end it.")
-        ) from None
-
-
-def _isSame(one: FolderHolder | None, other: FolderHolder | None) -> bool:
-    """Return whether they are the same process, wherever it listens now."""
-    if one is None or other is None:
-        return False
-    return (one.pid, one.started) == (other.pid, other.started)
-
-
-def _since(started: str) -> str:
-    """Return when it started, in local time."""
-    with contextlib.suppress(ValueError):
-        moment = datetime.fromisoformat(started).astimezone()
-        return _(" since {moment}").format(moment=moment.strftime("%Y-%m-%d %H:%M"))
-    return ""
+def _process(holder: FolderHolder | None) -> tuple[int, str] | None:
+    """Return what distinguishes a process from others, wherever it listens now."""
+    return None if holder is None else (holder.pid, holder.started)
 
 
 class SimulatorLogic:
-    """Sets up, starts and stops the simulator; call `process` once a second, or more often.
-
-    Attributes:
-        program: the simulator's process.
-        setup: the private folder and its pip.
-        running: a simulator that was not started from here.
-    """
+    """Sets up, starts and stops the simulator; call `process` once a second, or more often."""
 
     def __init__(
         self, link: Link, setup: SimulatorSetup, records: Path, settings: Settings
@@ -163,7 +148,7 @@ class SimulatorLogic:
         self._link = link
         self.running = RunningSimulator(records, link)
         self._records = records
-        self.program.ready.connect(self._connect)
+        self.program.ready.connect(lambda: link.connectTo(DEFAULT_HOST, self.program.port))
         self.program.changed.connect(self._followProgram)
 
     @property
@@ -185,10 +170,7 @@ class SimulatorLogic:
     def start(self, port: int, hasWindow: bool = False, hasNetwork: bool = False) -> None:
         """Start the simulator on this computer, or find one that runs already; see `running`.
 
-        Args:
-            port: to listen on; 0 takes any free one.
-            hasWindow: open the trainee's window on this computer, too.
-            hasNetwork: let headsets and browsers of the local network in, by https.
+        Port 0 takes any free one; by `hasNetwork` views of the local network come in, by https.
         """
         if not self.program.isRunning and self.running.look():
             return
@@ -211,11 +193,7 @@ class SimulatorLogic:
     def run(self, arguments: Sequence[str], progress: Progress, mayFail: bool = False) -> str:
         """Run `rastrainer` to its end and return the last line that it has written.
 
-        Args:
-            arguments: such as `scenario pack FOLDER FILE`.
-            progress: called while it works: it may let the application draw, and may raise to
-                cancel.
-            mayFail: whether the line is also returned where it has ended with an error.
+        By `mayFail` also where it has ended with an error; `progress` may raise to cancel.
         """
         ended = runChild(self.command(arguments), progress)
         sentence = ended.lastLine.removeprefix("rastrainer: ")
@@ -231,15 +209,10 @@ class SimulatorLogic:
             self.program.stop()
 
     def startSetup(self, index: str = "", wheels: str = "") -> None:
-        """Start setting the simulator up.
-
-        Args:
-            index: address of a package index; pip's own where empty.
-            wheels: a folder of wheels to install from without network; empty asks the index.
-        """
+        """Start setting the simulator up, from a source of `pipArguments`."""
         if self.program.isRunning or self.running.look():
             raise InputError(_("End the simulator that is running before setting it up again."))
-        self.setup.begin(SetupSource(index.strip(), Path(wheels) if wheels else None))
+        self.setup.begin(index.strip(), Path(wheels) if wheels else None)
 
     def removeSetup(self) -> None:
         """Remove what was set up; trials and settings stay."""
@@ -257,9 +230,6 @@ class SimulatorLogic:
         """End what was started from here: Slicer quits."""
         self.setup.close()
         self.program.close()
-
-    def _connect(self) -> None:
-        self._link.connectTo(DEFAULT_HOST, self.program.port)
 
     def _followProgram(self) -> None:
         if self.program.state is ProgramState.FAILED:

@@ -1,4 +1,4 @@
-"""Leads each trainee through the study's protocol: what comes next, and how it ended."""
+"""Leads each trainee through the steps of the study's protocol."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rastrainer.protocol import FREE, StepKind
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.practice_monitor import PracticeMonitor
 from rastrainer.slicer.logic.trainee_logic import TraineeLogic
-from rastrainer.slicer.logic.training_logic import TrainingLogic, TrialStatus
+from rastrainer.slicer.logic.training_logic import TrainingLogic
 from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
@@ -23,21 +23,19 @@ from rastrainer.study.database.values import moment
 from rastrainer.study.protocol.step_progress import StepProgress
 from rastrainer.study.protocol.steps import StepAnswers, instruction, objections_to
 from rastrainer.study.protocol.study_progress import StudyProgress
-from rastrainer.study.protocol.study_protocol import StudyProtocol, read_study_protocol
+from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer.study_messages import StudyStep
-from rastrainer.trial.aborted_trial import AbortedTrial
-from rastrainer.trial.record import TrialRecord
 
 TRIALS = (StepKind.TRIAL, StepKind.TRIAL_RUN)
 
 
-class StudyLogic:
+class StudyLogic(Listening):
     """What the Study panel does for the chosen trainee, and for all enrolled trainees.
 
     Everything done is in the study's file before anyone is informed, so that the trainee resumes
-    there when it is opened again. The simulator is sent what comes next for each trainee, also for
-    those not chosen here, so that its own menu starts nothing else. Trial runs and breaks end by
-    themselves; `process` is to be called once a second, or more often.
+    there when it is opened again. The simulator is sent the next step of each trainee, chosen
+    here or not, so that its menu starts nothing else. Trial runs and breaks end by themselves;
+    `process` is to be called once a second, or more often.
 
     Attributes:
         changed: emits nothing, whenever a step may have been done.
@@ -59,7 +57,7 @@ class StudyLogic:
         self._ledStudy: Study | None = None
         self._breaks: dict[str, datetime] = {}
         self._watch = PracticeMonitor(trainees, training, link, self._leadAgain)
-        self._listening = Listening(
+        super().__init__(
             (trainees.changed, self._followTrainees),
             (link.opened, self._sendAll),
             (link.stepAnswered, self._takeAnswers),
@@ -67,8 +65,12 @@ class StudyLogic:
 
     def close(self) -> None:
         """Stop listening, and store the last practice time."""
-        self._listening.close()
+        super().close()
         self._watch.close()
+
+    @property
+    def study(self) -> StudyProgress:
+        return StudyProgress(self._trainees.study)
 
     def leaveStudy(self) -> None:
         """Save what belongs to the study being left; the next may have the same pseudonyms."""
@@ -81,40 +83,30 @@ class StudyLogic:
         for name in [name for name, end in self._breaks.items() if now >= end]:
             del self._breaks[name]
             with contextlib.suppress(InputError):
-                study = StudyProgress(self._trainees.study)
-                progress = study.progress(name)
+                progress = self.study.progress(name)
                 step, end = progress.next_step, progress.break_end
                 # Another Slicer may have ended the break already: what follows is no break.
                 if step is not None and end is not None and now >= end:
-                    study.finish(name, step.name, {"minutes": progress.minutes_elapsed(now)})
-            self._leadOn(name)
+                    self.study.finish(name, step.name, {"minutes": progress.minutes_elapsed(now)})
+            self.leadOn(name)
 
-    def protocol(self) -> StudyProtocol | None:
-        """Return the study's protocol; None where trainees practice freely."""
-        return StudyProgress(self._trainees.study).protocol()
-
-    def begin(self, path: Path) -> StudyProtocol:
+    def begin(self, path: Path) -> None:
         """Make a file's protocol that of the study, permanently."""
-        protocol = read_study_protocol(path)
-        StudyProgress(self._trainees.study).set_protocol(protocol)
+        self.study.set_protocol(read_study_protocol(path))
         self.changed.emit()
-        return protocol
 
     def enroll(self) -> int:
         """Give the chosen trainee the first free number in the study's order, from 0."""
         if not self._trainees.chosen:
             raise InputError(_("Choose a trainee in the section Trainees first."))
-        place = StudyProgress(self._trainees.study).enroll(self._trainees.chosen)
-        self._leadOn(self._trainees.chosen)
+        place = self.study.enroll(self._trainees.chosen)
+        self.leadOn(self._trainees.chosen)
         return place
 
     def progress(self) -> StepProgress | None:
         """Return the chosen trainee's progress; None for one who practices freely."""
         name = self._trainees.chosen
-        study = StudyProgress(self._trainees.study)
-        if not name or study.protocol() is None or name not in study.enrolled():
-            return None
-        return study.progress(name)
+        return self.study.progress(name) if name in self.study.enrolled() else None
 
     def minutesElapsed(self, progress: StepProgress) -> float:
         """Return how much of the chosen trainee's trial run or break is over; min."""
@@ -137,7 +129,7 @@ class StudyLogic:
         trial is registered, how its skin shifts, and whether it continues with a procedure.
         """
         skin: Mapping[str, float] = {}
-        if self.protocol() is not None and self._trainees.chosen:
+        if self.study.protocol() is not None and self._trainees.chosen:
             step = self._progress().check_start(mode, task)
             isTutorialFirst, procedure, method, skin = True, step.procedure, step.method, step.skin
         trainee = self._trainees.chosen
@@ -146,26 +138,35 @@ class StudyLogic:
     def offProtocolSentence(self) -> str:
         """Return a sentence while an enrolled trainee plays what the study has not requested."""
         trial = self._training.status
-        if not trial.isOpen or trial.trainee not in StudyProgress(self._trainees.study).enrolled():
+        if not trial.isOpen or trial.trainee not in self.study.enrolled():
             return ""
-        try:
-            progress = StudyProgress(self._trainees.study).progress(trial.trainee)
+        text = _(
+            "{trainee} is doing {task} by {method} in the mode {mode}, which the study does not "
+            "ask for now: it will not count."
+        )
+        if trial.procedure:
+            text = _(
+                "{trainee} is doing {task} by {method} with the procedure {procedure} in the mode "
+                "{mode}, which the study does not ask for now: it will not count."
+            )
+        with contextlib.suppress(InputError):
+            progress = self.study.progress(trial.trainee)
             if progress.unexplained:
-                return _(
+                text = _(
                     "{trainee} is repeating an aborted trial: it will count once a reason is given."
-                ).format(trainee=trial.trainee)
-            step = progress.check_start(trial.mode, trial.task)
-        except InputError:
-            return self._notAsked(trial)
-        isAsked = (step.procedure, step.method) == (trial.procedure, trial.method)
-        return "" if isAsked else self._notAsked(trial)
+                )
+            else:
+                step = progress.check_start(trial.mode, trial.task)
+                if (step.procedure, step.method) == (trial.procedure, trial.method):
+                    return ""
+        return text.format(**vars(trial))
 
     def uncountedSentence(self) -> str:
         """Say why the last trial of the kind that comes next did not count; empty if none is so."""
         progress = self.progress()
-        step = None if progress is None else progress.next_step
-        if progress is None or step is None:
+        if progress is None or progress.next_step is None:
             return ""
+        step = progress.next_step
         for trial in reversed(self._trainees.history()):
             record = trial.record
             isBefore = moment(record.started_utc) < moment(progress.enrolled_utc)
@@ -184,24 +185,6 @@ class StudyLogic:
                 )
         return ""
 
-    def _notAsked(self, trial: TrialStatus) -> str:
-        text = _(
-            "{trainee} is doing {task} by {method} in the mode {mode}, which the study does not "
-            "ask for now: it will not count."
-        )
-        if trial.procedure:
-            text = _(
-                "{trainee} is doing {task} by {method} with the procedure {procedure} in the mode "
-                "{mode}, which the study does not ask for now: it will not count."
-            )
-        return text.format(
-            trainee=trial.trainee,
-            task=trial.task,
-            method=trial.method,
-            mode=trial.mode,
-            procedure=trial.procedure,
-        )
-
     def startStep(self) -> None:
         """Start the trial that comes next."""
         step = self._next()
@@ -211,30 +194,18 @@ class StudyLogic:
 
     def answer(self, answers: Sequence[int]) -> None:
         """Store the answers to the questionnaire that comes next."""
-        step = self._next()
-        details = {"answers": list(answers)}
-        StudyProgress(self._trainees.study).finish(self._trainees.chosen, step.name, details)
-        self._leadOn(self._trainees.chosen)
+        self.study.finish(self._trainees.chosen, self._next().name, {"answers": list(answers)})
+        self.leadOn(self._trainees.chosen)
 
     def skipStep(self, stepName: str, reason: str) -> None:
-        """Skip the next step, for a reason that goes into the report."""
         self._watch.keep()
-        self._next()
-        StudyProgress(self._trainees.study).skip(self._trainees.chosen, stepName, reason)
-        self._leadOn(self._trainees.chosen)
+        self.study.skip(self._trainees.chosen, stepName, reason)
+        self.leadOn(self._trainees.chosen)
 
     def explainRepeat(self, reason: str) -> None:
         """Say why the next step is played again after it was aborted; it goes into the report."""
-        self._progress()
-        StudyProgress(self._trainees.study).explain_repeat(self._trainees.chosen, reason)
-        self._leadOn(self._trainees.chosen)
-
-    def countTrial(self, trial: TrialRecord | AbortedTrial) -> None:
-        """Count a trial that has just been stored, if it is what the study asks its trainee for.
-
-        An aborted one may need a reason.
-        """
-        self._leadOn(trial.trainee)
+        self.study.explain_repeat(self._trainees.chosen, reason)
+        self.leadOn(self._trainees.chosen)
 
     def _progress(self) -> StepProgress:
         progress = self.progress()
@@ -252,36 +223,35 @@ class StudyLogic:
         """Store answers given at the simulator, which repeats them until another step is sent."""
         try:
             answers = StepAnswers.from_json(value)
-            study = StudyProgress(self._trainees.study)
-            if answers.trainee not in study.enrolled():
+            if answers.trainee not in self.study.enrolled():
                 return
-            progress = study.progress(answers.trainee)
+            progress = self.study.progress(answers.trainee)
             step = progress.next_step
             isAsked = answers.belong_to(progress.study_step(answers.trainee, self._now()))
             if isAsked and step is not None:
-                study.finish(answers.trainee, step.name, {"answers": answers.answers})
+                self.study.finish(answers.trainee, step.name, {"answers": answers.answers})
         except InputError as error:
             logging.error("Answers given at the simulator were not stored: %s", error)
         else:
             self._leadAgain(answers.trainee)
 
-    def _leadOn(self, name: str) -> None:
-        """Update one trainee who has something new, and notify all listeners."""
+    def leadOn(self, name: str) -> None:
+        """Update one trainee who has something new, such as a trial, and notify all listeners."""
         with contextlib.suppress(InputError):
-            if name in StudyProgress(self._trainees.study).enrolled():
+            if name in self.study.enrolled():
                 self._lead(name)
         self.changed.emit()
 
     def _leadAgain(self, name: str) -> None:
-        """Update one trainee, and send the simulator even what it already knows."""
+        """Update one trainee, and send the simulator the next step even if it knows it."""
         self._sentSteps.pop(name, None)
-        self._leadOn(name)
+        self.leadOn(name)
 
     def _followTrainees(self) -> None:
         """Update the chosen and any new trainee, or everybody if it is another study."""
-        # The section Trainees shows what is wrong with the study.
+        # The section Trainees shows the error.
         with contextlib.suppress(InputError):
-            enrolled = StudyProgress(self._trainees.study).enrolled()
+            enrolled = self.study.enrolled()
             for name in [name for name in self._sentSteps if name not in enrolled]:
                 self._send(StudyStep(name, FREE))
                 del self._sentSteps[name]
@@ -301,18 +271,14 @@ class StudyLogic:
 
     def _lead(self, name: str) -> None:
         """Count the trials of a trainee that have arrived, and send the next step if it is new."""
-        progress = StudyProgress(self._trainees.study).count_played(name)
-        self._noteBreak(name, progress)
+        progress = self.study.count_played(name)
+        self._breaks.pop(name, None)
+        if progress.break_end is not None:
+            self._breaks[name] = progress.break_end
         step = progress.study_step(name, self._now())
         if self._sentSteps.get(name) != step:
             self._sentSteps[name] = step
             self._send(step)
-
-    def _noteBreak(self, name: str, progress: StepProgress) -> None:
-        self._breaks.pop(name, None)
-        end = progress.break_end
-        if end is not None:
-            self._breaks[name] = end
 
     def _send(self, step: StudyStep) -> None:
         # Without a connection nothing is sent; a new connection is sent everything.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +15,7 @@ from rastrainer.igtl.client import Reply
 from rastrainer.registration.target_error import TargetError
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
-from rastrainer.slicer.scene.nodes import labelOf
+from rastrainer.slicer.scene.nodes import labelOf, worldPoints
 from rastrainer.slicer.scene.plan_points import LINE, PlanPoints, placedRows
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
@@ -25,34 +26,25 @@ SAME_PLACE_MM = 0.01
 """Touches come as single precision numbers first, and with all digits once a trial is stored."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PlanOnImages:
-    """What is planned, on the MRI and in the robot's World, mm.
+    """What is planned: a target, or the entry and the target of a trajectory.
 
     Attributes:
-        name: of the plan.
-        target: (3,) float, RAS.
-        entry: (3,) float, RAS, where a trajectory begins; None where only a point is planned.
-        targetWorld: (3,) float, where the registration puts the target.
-        entryWorld: (3,) float, or None.
-        expected: the error to expect there; None if the registration cannot predict it.
+        ends: (1, 3) or (2, 3) float, RAS mm; the target is the last.
+        endsWorld: of the same shape, where the registration puts them, World, mm.
+        expected: the error to expect at the target; None if the registration cannot predict it.
     """
 
     name: str
-    target: np.ndarray
-    entry: np.ndarray | None
-    targetWorld: np.ndarray
-    entryWorld: np.ndarray | None
+    ends: np.ndarray
+    endsWorld: np.ndarray
     expected: TargetError | None
 
     def isAsGood(self, other: PlanOnImages) -> bool:
         """Return whether both plans have the same points, so that an answer applies to both."""
-        if (self.entry is None) != (other.entry is None):
-            return False
-        mine = (self.target, self.targetWorld, self.entry, self.entryWorld)
-        theirs = (other.target, other.targetWorld, other.entry, other.entryWorld)
-        pairs = [(a, b) for a, b in zip(mine, theirs, strict=True) if a is not None]
-        return all(float(np.abs(a - b).max()) < SAME_PLACE_MM for a, b in pairs)
+        pairs = ((self.ends, other.ends), (self.endsWorld, other.endsWorld))
+        return all(a.shape == b.shape and np.abs(a - b).max() < SAME_PLACE_MM for a, b in pairs)
 
 
 class PlanLogic:
@@ -64,7 +56,6 @@ class PlanLogic:
         sentence: what was last said about the plan.
         trueErrorMm: how far the registration puts the target from where it is; None until
             the simulator has revealed it.
-        points: placed, removed and restored.
     """
 
     def __init__(self, scene: Any, link: Link, registration: RegistrationLogic) -> None:
@@ -82,44 +73,41 @@ class PlanLogic:
     def read(self, node: Any | None, row: int = -1) -> PlanOnImages:
         """Return the plan that a list of points or a line holds.
 
-        The first point of a line is the entry.
-
-        Args:
-            node: a markups node.
-            row: which of the placed points is the target; the last where left out.
+        The first point of a line is the entry; `row` says which placed point is the target.
         """
         if node is None:
             raise InputError(_("Place a target or a trajectory, or choose one."))
         rows = placedRows(node)
         if not rows:
             raise InputError(_("{name} has no point yet: place one.").format(name=node.GetName()))
-        points = np.array([node.GetNthControlPointPositionWorld(each) for each in rows])
-        shown = self._registration.shown
-        if shown is None:
+        points = worldPoints(node)[rows]
+        comparison = self._registration.comparison
+        if comparison is None:
             raise InputError(
                 _("There is no registration to map the plan with: {problem}").format(
                     problem=self._registration.problem or _("register the touches first.")
                 )
             )
-        toWorld = transforms.inverse(shown.matrix)
-        target = points[row]
-        isLine = node.IsA(LINE) and len(points) > 1
-        entry = points[0] if isLine else None
+        ends = points[[0, -1]] if node.IsA(LINE) and len(points) > 1 else points[[row]]
+        expected = None
+        with contextlib.suppress(InputError):
+            expected = comparison.targetError(ends[-1])
+        names = targetsOf(node)
+        name = names[row] if len(names) > 1 else node.GetName()
         return PlanOnImages(
-            name=(_nameOf(node, rows[row]) or _("target"))[:LONGEST_NAME],
-            target=target,
-            entry=entry,
-            targetWorld=transforms.apply(toWorld, target[None])[0],
-            entryWorld=None if entry is None else transforms.apply(toWorld, entry[None])[0],
-            expected=self._expected(target),
+            name=(name or _("target"))[:LONGEST_NAME],
+            ends=ends,
+            endsWorld=transforms.apply(transforms.inverse(comparison.shown.matrix), ends),
+            expected=expected,
         )
 
     def send(self, node: Any | None, row: int = -1) -> None:
         """Show the plan in the simulator and ask whether the robot can carry it out."""
         plan = self.read(node, row)
-        arguments: dict[str, Any] = {"positionMm": plan.targetWorld.tolist(), "name": plan.name}
-        if plan.entryWorld is not None:
-            arguments["entryMm"] = plan.entryWorld.tolist()
+        *entry, target = plan.endsWorld.tolist()
+        arguments: dict[str, Any] = {"positionMm": target, "name": plan.name}
+        if entry:
+            arguments["entryMm"] = entry[0]
         self.isReachable, self.sentence = None, _("Waiting for the simulator's answer.")
         self.trueErrorMm = None
         self._sent, self._isAnswered, self._isRefused = plan, False, False
@@ -163,22 +151,12 @@ class PlanLogic:
 
     def _updateTrueError(self) -> None:
         if self._isAnswered and self._sent is not None and self._headToWorld is not None:
-            there = transforms.apply(self._headToWorld, self._sent.target[None])[0]
-            self.trueErrorMm = float(np.linalg.norm(self._sent.targetWorld - there))
+            there = transforms.apply(self._headToWorld, self._sent.ends)
+            self.trueErrorMm = float(np.linalg.norm(self._sent.endsWorld[-1] - there[-1]))
         self.changed.emit()
-
-    def _expected(self, target: np.ndarray) -> TargetError | None:
-        try:
-            return self._registration.targetError(target)
-        except InputError:
-            return None
 
 
 def targetsOf(node: Any | None) -> tuple[str, ...]:
     if node is None or node.IsA(LINE):
         return ()
     return tuple(labelOf(node, row) for row in placedRows(node))
-
-
-def _nameOf(node: Any, row: int) -> str:
-    return labelOf(node, row) if len(targetsOf(node)) > 1 else node.GetName()

@@ -13,12 +13,10 @@ from typing import Any
 import numpy as np
 
 from rastrainer.commands import CommandName
-from rastrainer.igtl.client import Reply
 from rastrainer.protocol import Phase
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.training_logic import knownNumber
+from rastrainer.slicer.logic.trial_services import Question, Steps, TrialServices
 from rastrainer.slicer.scene.error_colors import colorSkin, removeHeadColors
 from rastrainer.slicer.scene.nodes import (
     Role,
@@ -51,7 +49,7 @@ class _Wanted:
     isGuided: bool
 
 
-class TraceLogic:
+class TraceLogic(Listening):
     """Asks for the trace as it grows, and shows it on the head while the trial is open.
 
     Guidance is shown in the scene where the simulator's setting, or the study, has it shown to the
@@ -59,15 +57,9 @@ class TraceLogic:
     """
 
     def __init__(
-        self,
-        scene: Any,
-        link: Link,
-        work: BackgroundWork,
-        clock: Callable[[], float] = time.monotonic,
+        self, services: TrialServices, clock: Callable[[], float] = time.monotonic
     ) -> None:
-        self._scene = scene
-        self._link = link
-        self._work = work
+        self._services = services
         self._clock = clock
         self._scenario: Scenario | None = None
         self._follower: TraceFollower | None = None
@@ -75,13 +67,9 @@ class TraceLogic:
         self._shown: _Wanted | None = None
         self._isAsking = False
         self._asked = -PERIOD_S
-        self._listening = Listening(
-            (link.stateChanged, self._follow), (link.opened, self._beginAgain)
+        super().__init__(
+            (services.link.stateChanged, self._follow), (services.link.opened, self._beginAgain)
         )
-
-    def close(self) -> None:
-        """Stop listening to the link."""
-        self._listening.close()
 
     def begin(self, scenario: Scenario) -> None:
         """Show traces on the head of a scenario, which is in the scene now."""
@@ -97,17 +85,13 @@ class TraceLogic:
         isDue = self._clock() - self._asked >= PERIOD_S
         if wanted is None or wanted == self._shown or self._isAsking or not isDue:
             return
-        if self._scenario is None or not self._link.isOpen:
+        if self._scenario is None or not self._services.link.isOpen:
             return
-        if requestedFile(findNode(self._scene, MODEL, Role.HEAD_MODEL)):
+        if requestedFile(findNode(self._services.scene, MODEL, Role.HEAD_MODEL)):
             # The head that is to be colored is still being read.
             return
         self._isAsking, self._asked = True, self._clock()
-        self._link.send(
-            CommandName.GET_TRIAL,
-            {"trialId": wanted.trialId},
-            lambda reply: self._take(reply, wanted),
-        )
+        self._services.converse(self._updating(self._scenario, wanted))
 
     def _follow(self, state: Mapping[str, Any]) -> None:
         trace, wasShown = state.get("trace"), self._wanted is not None
@@ -123,45 +107,38 @@ class TraceLogic:
             )
         if self._wanted is None and wasShown:
             self._shown = None
-            forgetTrace(self._scene)
+            forgetTrace(self._services.scene)
 
     def _beginAgain(self) -> None:
         self._isAsking, self._shown = False, None
 
-    def _take(self, reply: Reply, wanted: _Wanted) -> None:
-        scenario = self._scenario
-        if not reply.ok or scenario is None:
-            self._giveUp(wanted)
-            return
-        self._work.do(
-            lambda: self._followed(scenario, reply.data, wanted.isDrawing),
-            lambda trace: self._show(trace, wanted),
-            lambda _error: self._giveUp(wanted),
-        )
+    def _updating(self, scenario: Scenario, wanted: _Wanted) -> Steps:
+        try:
+            answer = yield Question(CommandName.GET_TRIAL, {"trialId": wanted.trialId})
 
-    def _followed(
-        self, scenario: Scenario, answer: Mapping[str, Any], isDrawing: bool
-    ) -> FollowedTrace:
-        """Return the trace on the head; called in the background."""
-        if self._follower is None:
-            self._follower = TraceFollower(scenario)
-        return self._follower.follow(GivenPoints.of_answer(answer, least_traced=0), isDrawing)
+            def follow() -> FollowedTrace:
+                if self._follower is None:
+                    self._follower = TraceFollower(scenario)
+                given = GivenPoints.of_answer(answer, least_traced=0)
+                return self._follower.follow(given, wanted.isDrawing)
 
-    def _show(self, trace: FollowedTrace, wanted: _Wanted) -> None:
-        self._isAsking = False
-        if self._wanted is not None and self._wanted.trialId == wanted.trialId:
+            trace = yield follow
+        except Exception:
+            # Wait for another state: what cannot be shown is reported at registration.
             self._shown = wanted
-            showTrace(self._scene, trace, wanted.isGuided)
-
-    def _giveUp(self, wanted: _Wanted) -> None:
-        """Wait for another state: what cannot be shown is reported at registration."""
-        self._isAsking, self._shown = False, wanted
+        else:
+            isSameTrial = self._wanted is not None and self._wanted.trialId == wanted.trialId
+            if isSameTrial and self._scenario is scenario:
+                self._shown = wanted
+                showTrace(self._services.scene, trace, wanted.isGuided)
+        finally:
+            self._isAsking = False
 
 
 MODEL, MARKUPS = "vtkMRMLModelNode", "vtkMRMLMarkupsFiducialNode"
 DISTANCE_SCALARS = "distance to the trace (mm)"
 FARTHEST_MM = 20.0
-"""What is farther from the trace has the color of this distance."""
+"""Skin farther from the trace has the color of this distance."""
 NEXT_COLOR = (0.75, 0.0, 0.5)
 """Far from the trace, the head is yellow."""
 
@@ -176,11 +153,25 @@ def showTrace(scene: Any, trace: FollowedTrace, isGuided: bool) -> None:
     drawAsPoints(node)
     node.SetAndObservePolyData(pointCloud(trace.places))
     head = findNode(scene, MODEL, Role.HEAD_MODEL)
-    if isGuided and len(trace.places):
-        _colorHead(head, trace.away_mm)
-    elif head is not None:
+    if head is None:
+        pass
+    elif not (isGuided and len(trace.places)):
         removeHeadColors(head, DISTANCE_SCALARS)
-    _showNext(scene, trace.next_place if isGuided else None)
+    # Another head may have been shown meanwhile.
+    elif surfaceOf(head) and head.GetPolyData().GetNumberOfPoints() == len(trace.away_mm):
+        near = np.minimum(trace.away_mm, FARTHEST_MM)
+        colorSkin(head, DISTANCE_SCALARS, near, (0.0, FARTHEST_MM), _("To trace (mm)"))
+    if trace.next_place is None or not isGuided:
+        removeNode(scene, MARKUPS, Role.NEXT_PLACE)
+        return
+    node = findOrAddNode(scene, MARKUPS, Role.NEXT_PLACE, _("Draw here next"))
+    setPoints(node, (_("Next"),), trace.next_place[None])
+    node.SetLocked(True)
+    display = node.GetDisplayNode()
+    display.SetSelectedColor(NEXT_COLOR)
+    display.SetGlyphScale(4.0)
+    display.SetTextScale(3.5)
+    display.SetOccludedVisibility(True)
 
 
 def forgetTrace(scene: Any) -> None:
@@ -191,28 +182,3 @@ def forgetTrace(scene: Any) -> None:
     if head is not None and surfaceOf(head):
         removeHeadColors(head, DISTANCE_SCALARS)
         head.GetPolyData().GetPointData().RemoveArray(DISTANCE_SCALARS)
-
-
-def _colorHead(head: Any | None, away_mm: np.ndarray) -> None:
-    # Between the trial's scene and this trace another head may have been shown.
-    if (
-        head is not None
-        and surfaceOf(head)
-        and head.GetPolyData().GetNumberOfPoints() == len(away_mm)
-    ):
-        near = np.minimum(away_mm, FARTHEST_MM)
-        colorSkin(head, DISTANCE_SCALARS, near, (0.0, FARTHEST_MM), _("To trace (mm)"))
-
-
-def _showNext(scene: Any, place: np.ndarray | None) -> None:
-    if place is None:
-        removeNode(scene, MARKUPS, Role.NEXT_PLACE)
-        return
-    node = findOrAddNode(scene, MARKUPS, Role.NEXT_PLACE, _("Draw here next"))
-    setPoints(node, (_("Next"),), place[None])
-    node.SetLocked(True)
-    display = node.GetDisplayNode()
-    display.SetSelectedColor(NEXT_COLOR)
-    display.SetGlyphScale(4.0)
-    display.SetTextScale(3.5)
-    display.SetOccludedVisibility(True)

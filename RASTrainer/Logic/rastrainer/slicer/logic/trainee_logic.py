@@ -6,7 +6,7 @@ import contextlib
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
@@ -14,12 +14,11 @@ from rastrainer.slicer.background_work import CancelableUntilBegun, inBackground
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
-from rastrainer.study.curriculum.curriculum import Curriculum, read_curriculum
+from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import CurriculumStanding
-from rastrainer.study.database.database import StudyBusyError
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import StoredAbortedTrial, StoredTrial, Trainee
+from rastrainer.study.database.values import StoredTrial, Trainee
 from rastrainer.study_messages import CurriculumMessage
 from rastrainer.work_progress import Progress, no_progress
 
@@ -27,11 +26,13 @@ if TYPE_CHECKING:
     from rastrainer.study.trainee_data import Erasure
     from rastrainer.study.tre_calibration import TreCalibration
 
+T = TypeVar("T")
+
 LOOK_EVERY_S = 1.0
 
 
 class TraineeLogic:
-    """What the Trainees panel does, on a study that is opened when it is first needed.
+    """Trainees of a study, which is opened when it is first needed.
 
     Attributes:
         changed: emits nothing, whenever trainees or their trials may have changed.
@@ -48,10 +49,9 @@ class TraineeLogic:
         """Keep the trainees of a study.
 
         Args:
-            openStudy: opens the study.
             records: folder of the simulator's journals, if it is on this computer.
-            openPatiently: opens it in any thread, which may wait for a lock; as `openStudy` when
-                left out.
+            openPatiently: opens the study in any thread, which may wait for a lock; as `openStudy`
+                when left out.
         """
         self._openPatiently = openPatiently or openStudy
         self.changed = Signal()
@@ -65,7 +65,6 @@ class TraineeLogic:
 
     @property
     def study(self) -> Study:
-        """The study."""
         if self._study is None:
             self._study = self._openStudy()
             self._version = self._study.database.version()
@@ -107,19 +106,9 @@ class TraineeLogic:
             self.changed.emit()
 
     def chosenTrainee(self) -> Trainee | None:
-        """Return the chosen trainee; None if none is chosen, or no longer exists.
-
-        Raises:
-            StudyBusyError: another program has the study locked.
-        """
-        if not self.chosen:
-            return None
-        try:
-            return self.study.trainee(self.chosen)
-        except StudyBusyError:
-            raise
-        except InputError:
-            return None
+        """Return the chosen trainee; None if none is chosen, or no longer exists."""
+        known = {trainee.pseudonym: trainee for trainee in self.trainees(archived=True)}
+        return known.get(self.chosen)
 
     def create(self, pseudonym: str, consent: bool) -> Trainee:
         """Add a trainee, under the next free pseudonym where none is given, and choose them."""
@@ -137,7 +126,7 @@ class TraineeLogic:
         self.changed.emit()
 
     def delete(self, progress: Progress = no_progress) -> Erasure:
-        """Delete the chosen trainee with all trials and journals, for good; return what was.
+        """Delete the chosen trainee with all trials and journals, for good; return their numbers.
 
         Args:
             progress: called many times a second meanwhile, with a step once something is deleted;
@@ -163,66 +152,34 @@ class TraineeLogic:
         self.changed.emit()
         return erased
 
-    def export(self, path: Path) -> int:
-        """Write everything about the chosen trainee into a JSON file; return the trials' number."""
-        from rastrainer.study.trainee_data import export_trainee
-
-        return export_trainee(self.study, self.chosen, path)
-
-    def exportHistory(self, path: Path) -> int:
-        """Write the trials of the chosen trainee as a CSV file; return their number.
-
-        Aborted ones go into a second file beside it, see `write_history`.
-        """
-        from rastrainer.study.tidy_csv import write_history
-
-        return write_history(self.study, [self.chosen], path)
-
-    def exportHistories(self, path: Path, progress: Progress = no_progress) -> tuple[int, int]:
-        """Write the trials of all who consented to research as a CSV file.
-
-        Args:
-            path: of the file.
-            progress: called many times a second meanwhile; it may let the application draw.
-
-        Returns:
-            The number of trials, and of the trainees who are left out.
-        """
-
-        def write(_report: Progress) -> tuple[int, int]:
-            from rastrainer.study.tidy_csv import write_histories
-
-            with self._openPatiently() as study:
-                return write_histories(study, path)
-
-        return inBackground(write, progress)
-
-    def calibration(self, progress: Progress = no_progress) -> TreCalibration:
-        """Return true and expected TRE of all trials of the study, of all trainees.
+    def inStudy(self, do: Callable[[Study], T], progress: Progress = no_progress) -> T:
+        """Return what `do` returns, in the background, where it may wait for a lock.
 
         Args:
             progress: called many times a second meanwhile; it may let the application draw.
         """
 
-        def read(_report: Progress) -> TreCalibration:
-            from rastrainer.study.tre_calibration import calibration_of
-
+        def work(_report: Progress) -> T:
             with self._openPatiently() as study:
-                everyone = (*study.trainees(), *study.trainees(archived=True))
-                histories = (study.history(trainee.pseudonym) for trainee in everyone)
-                return calibration_of(trial for history in histories for trial in history)
+                return do(study)
 
-        return inBackground(read, progress)
-
-    def aborted(self) -> tuple[StoredAbortedTrial, ...]:
-        return self.study.aborted(self.chosen) if self.chosenTrainee() else ()
+        return inBackground(work, progress)
 
     def history(self) -> tuple[StoredTrial, ...]:
         return self.study.history(self.chosen) if self.chosenTrainee() else ()
 
 
-class CurriculumLogic:
-    """What the Curriculum panel does.
+def calibration(study: Study) -> TreCalibration:
+    """Return true and expected TRE of all trials of the study, of all trainees."""
+    from rastrainer.study.tre_calibration import calibration_of
+
+    everyone = (*study.trainees(), *study.trainees(archived=True))
+    histories = (study.history(trainee.pseudonym) for trainee in everyone)
+    return calibration_of(trial for history in histories for trial in history)
+
+
+class CurriculumLogic(Listening):
+    """Sets curricula, and follows the trainees through them.
 
     The simulator is sent each trainee's progress, also of those not chosen here, whenever that is
     new; everything is computed from the study, so that nothing is lost when either side ends.
@@ -236,34 +193,21 @@ class CurriculumLogic:
         self._trainees = trainees
         self._link = link
         self._sent: dict[str, CurriculumMessage] = {}
-        self._standings: dict[str, CurriculumStanding] = {}
-        self._stamps: dict[str, tuple[int | None, ...]] = {}
-        self._followed: Study | None = None
-        self._listening = Listening(
+        self._standings: dict[str, CurriculumStanding | None] = {}
+        self._stamps: dict[str, tuple[Study, tuple[int | None, ...] | None]] = {}
+        super().__init__(
             (trainees.changed, self._followTrainees), (link.opened, self._sendEverybody)
         )
-
-    def close(self) -> None:
-        self._listening.close()
 
     def standing(self) -> CurriculumStanding | None:
         return self._standings.get(self._trainees.chosen)
 
     def standings(self) -> Mapping[str, CurriculumStanding]:
         """Return the standing of each active trainee with a curriculum, by pseudonym."""
-        return dict(sorted(self._standings.items()))
+        return {name: found for name, found in sorted(self._standings.items()) if found}
 
-    def choose(self, path: Path, isForEverybody: bool) -> Curriculum:
-        """Have the chosen trainee, or everybody, follow a file's curriculum from now on."""
-        curriculum = read_curriculum(path)
-        self._choose(curriculum, isForEverybody)
-        return curriculum
-
-    def end(self, isForEverybody: bool) -> None:
-        """Have the chosen trainee, or everybody, follow no curriculum from now on."""
-        self._choose(None, isForEverybody)
-
-    def _choose(self, curriculum: Curriculum | None, isForEverybody: bool) -> None:
+    def choose(self, curriculum: Curriculum | None, isForEverybody: bool) -> None:
+        """Have the chosen trainee, or everybody, follow a curriculum, or none, from now on."""
         name = "" if isForEverybody else self._trainees.chosen
         if not name and not isForEverybody:
             raise InputError(_("Choose a trainee in the section Trainees first."))
@@ -273,34 +217,24 @@ class CurriculumLogic:
     def _sendEverybody(self) -> None:
         """Send the simulator, which may know nothing yet, everybody's standing."""
         self._sent.clear()
-        self._stamps.clear()
         self._followTrainees()
 
     def _followTrainees(self) -> None:
         """Send the standings that have changed, or everybody's in another study."""
-        # The section Trainees shows what is wrong with the study.
+        # The section Trainees shows the error.
         with contextlib.suppress(InputError):
-            store = CurriculumStore(self._trainees.study)
+            study = self._trainees.study
+            store = CurriculumStore(study)
             stamps = store.stamps()
-            isSame = self._trainees.study is self._followed
-            known = self._sent.keys() | self._standings.keys()
-            for name in sorted(known - stamps.keys()):
-                self._tell(name, None)
-            for name, stamp in stamps.items():
-                if not isSame or self._stamps.get(name) != stamp:
-                    self._tell(name, store.standing(name))
-            self._stamps, self._followed = stamps, self._trainees.study
+            for name in sorted(self._stamps.keys() | stamps.keys()):
+                stamp = study, stamps.get(name)
+                if self._stamps.get(name) != stamp:
+                    self._standings[name] = store.standing(name) if name in stamps else None
+                    self._stamps[name] = stamp
+                standing, nothing = self._standings[name], CurriculumMessage(name)
+                message = nothing if standing is None else standing.message(name)
+                if self._sent.get(name, nothing) != message:
+                    self._sent[name] = message
+                    # Without a connection nothing is sent; a new connection gets everything.
+                    self._link.send(CommandName.CURRICULUM, message.arguments())
         self.changed.emit()
-
-    def _tell(self, name: str, standing: CurriculumStanding | None) -> None:
-        message = CurriculumMessage(name) if standing is None else standing.message(name)
-        self._standings.pop(name, None)
-        if standing is not None:
-            self._standings[name] = standing
-        if self._sent.get(name, CurriculumMessage(name)) == message:
-            return
-        self._sent[name] = message
-        if standing is None:
-            del self._sent[name]
-        # Without a connection nothing is sent; a new connection gets everything.
-        self._link.send(CommandName.CURRICULUM, message.arguments())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -34,22 +34,15 @@ LOADING_S = 30.0
 
 @dataclass(frozen=True)
 class TrialStatus:
-    """State of the simulator's trial.
+    """State of the simulator's trial; without one, its phase is `idle`.
 
     Attributes:
-        trialId: UUID of the trial, empty where there is none.
-        phase: of the trial, `idle` where there is none.
-        trainee: pseudonym.
-        task: name.
-        mode: `desktop` or `hmd`.
-        nextPoint: label of the fiducial to touch, empty where there is none.
+        nextPoint: label of the fiducial to touch, if any.
         touched: how many points are kept.
         total: how many there are to touch.
         elapsedS: the trial's time, pauses left out.
-        proximity: `free`, `proximity` or `contact`.
         instruction: what the trainee reads.
         procedure: that the trial continues with; empty for the touches alone.
-        method: by what it is registered, a `PLAYED_METHODS`.
     """
 
     trialId: str = ""
@@ -72,12 +65,12 @@ class TrialStatus:
         return self.phase in OPEN_PHASES
 
 
-class TrainingLogic:
+class TrainingLogic(Listening):
     """What the Training panel does; answers come by a later `process` of the link.
 
     Attributes:
-        changed: emits nothing, whenever `status` has changed.
-        answered: emits the sentence of a command that was refused, empty where it was accepted.
+        changed: emits nothing, whenever `status` has changed in more than its time.
+        answered: emits the error of each command, empty if it was accepted.
         sceneShown: emits the `Scenario` of an open trial whose head and fiducials are now shown.
         learner: pseudonym of the trainee doing the tutorial before the trial run; empty if none.
     """
@@ -105,13 +98,10 @@ class TrainingLogic:
         self._shownTrial = ""
         self._total = FIDUCIAL_COUNT
         self._loadings = 0
-        self._listening = Listening(
-            (link.stateChanged, self._follow), (link.pointsChanged, self._emitChange)
+        super().__init__(
+            (link.stateChanged, self._follow),
+            (link.pointsChanged, lambda _node: self.changed.emit()),
         )
-
-    def close(self) -> None:
-        """Stop listening to the link."""
-        self._listening.close()
 
     @property
     def status(self) -> TrialStatus:
@@ -121,20 +111,17 @@ class TrainingLogic:
         if state.get("phase") == Phase.RUNNING.value:
             elapsed += self._clock() - self._stateTime
         touches = findNode(self._scene, "vtkMRMLMarkupsFiducialNode", Role.CAPTURED_POINTS)
+        procedure = state.get("procedure")
+        texts = ("trialId", "trainee", "task", "mode", "proximity", "instruction")
         return TrialStatus(
-            trialId=str(state.get("trialId", "")),
             phase=str(state.get("phase", Phase.IDLE.value)),
-            trainee=str(state.get("trainee", "")),
-            task=str(state.get("task", "")),
-            mode=str(state.get("mode", "")),
             nextPoint=str(state.get("nextPoint") or ""),
             touched=touches.GetNumberOfControlPoints() if state and touches is not None else 0,
             total=self._total,
             elapsedS=elapsed,
-            proximity=str(state.get("proximity", "")),
-            instruction=str(state.get("instruction", "")),
-            procedure=procedureOf(state),
+            procedure=str(procedure.get("name", "")) if isinstance(procedure, Mapping) else "",
             method=str(state.get("method") or RegistrationMethod.FIDUCIALS.value),
+            **{name: str(state.get(name, "")) for name in texts},
         )
 
     def start(
@@ -169,21 +156,18 @@ class TrainingLogic:
             wanted = {"task": task, "trainee": trainee, "mode": mode}
             isMarked = method == RegistrationMethod.FIDUCIALS.value
             others = {"procedure": procedure, "method": "" if isMarked else method, "skin": skin}
-            self._send(
+            self.command(
                 CommandName.START_TASK, wanted | {key: each for key, each in others.items() if each}
             )
 
-    def pause(self) -> None:
-        self._send(CommandName.PAUSE)
-
-    def resume(self) -> None:
-        self._send(CommandName.RESUME)
+    def command(self, name: str, arguments: Mapping[str, Any] | None = None) -> None:
+        self._link.send(name, arguments, lambda reply: self.answered.emit(reply.error))
 
     def abort(self, trialId: str) -> None:
         """End the open trial without registering it."""
         if self.status.trialId != trialId:
             raise InputError(_("This trial is over. The trial that is open now was not aborted."))
-        self._send(CommandName.ABORT, {"trialId": trialId})
+        self.command(CommandName.ABORT, {"trialId": trialId})
 
     @property
     def isLoading(self) -> bool:
@@ -224,26 +208,29 @@ class TrainingLogic:
             self.answered.emit(tutorialSentence(self.learner))
             self.changed.emit()
         else:
-            self._send(CommandName.START_TASK, {"task": TRIAL_RUN, **who})
-
-    def _send(self, name: str, arguments: Mapping[str, Any] | None = None) -> None:
-        self._link.send(name, arguments, lambda reply: self.answered.emit(reply.error))
+            self.command(CommandName.START_TASK, {"task": TRIAL_RUN, **who})
 
     def _follow(self, state: Mapping[str, Any]) -> None:
+        before = replace(self.status, elapsedS=0.0)
         self._state, self._stateTime = state, self._clock()
-        if state.get("phase") in OPEN_PHASES:
-            self.learner = ""
-        self._prepareScene()
+        self._showScene()
+        if before != replace(self.status, elapsedS=0.0):
+            self.changed.emit()
+
+    def forgetScene(self) -> None:
+        self._shownTrial = ""
+        self._showScene()
         self.changed.emit()
 
-    def _prepareScene(self) -> None:
+    def _showScene(self) -> None:
         """Have the scene of the open trial shown, unless it is."""
-        state = self._state
-        trial = str(state.get("trialId", ""))
-        if state.get("phase") in OPEN_PHASES and trial != self._shownTrial:
-            self._shownTrial = trial
-            forgetStoredTouches(self._scene)
-            self._link.send(CommandName.LIST_TASKS, {}, self._showTrialScene)
+        trial = str(self._state.get("trialId", ""))
+        if self._state.get("phase") in OPEN_PHASES:
+            self.learner = ""
+            if trial != self._shownTrial:
+                self._shownTrial = trial
+                forgetStoredTouches(self._scene)
+                self._link.send(CommandName.LIST_TASKS, {}, self._showTrialScene)
 
     def _showTrialScene(self, reply: Reply) -> None:
         """Show head and fiducials of the trial that runs, so that touches appear on them."""
@@ -273,15 +260,6 @@ class TrainingLogic:
         self.sceneShown.emit(scenario)
         self.changed.emit()
 
-    def forgetScene(self) -> None:
-        """Show the running trial's scene again: the scene was cleared."""
-        self._shownTrial = ""
-        self._prepareScene()
-        self.changed.emit()
-
-    def _emitChange(self, _node: Any) -> None:
-        self.changed.emit()
-
 
 def tutorialSentence(trainee: str) -> str:
     """Return a sentence on a trainee who does the tutorial before the trial run."""
@@ -289,12 +267,6 @@ def tutorialSentence(trainee: str) -> str:
         "{trainee} does the tutorial first, at the simulator: about two minutes. Then start the "
         "trial run here, or let the trainee start it."
     ).format(trainee=trainee)
-
-
-def procedureOf(state: Mapping[str, Any]) -> str:
-    """Return the name of the procedure in the simulator's state; empty where there is none."""
-    procedure = state.get("procedure")
-    return str(procedure.get("name", "")) if isinstance(procedure, Mapping) else ""
 
 
 def knownNumber(value: Any) -> float | None:

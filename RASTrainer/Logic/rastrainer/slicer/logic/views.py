@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 import slicer
-import vtk
 from numpy.typing import ArrayLike
 
-from rastrainer.protocol import OPEN_PHASES, DeviceName, Phase
+from rastrainer import transforms
+from rastrainer.protocol import DeviceName, Phase
 from rastrainer.slicer.background_work import CallLater, callNow
-from rastrainer.slicer.logic.training_logic import TrainingLogic, TrialStatus
+from rastrainer.slicer.logic.training_logic import TrainingLogic
 from rastrainer.slicer.scene.nodes import (
     CONTENT_ATTRIBUTE,
     TASK_ATTRIBUTE,
@@ -50,16 +50,15 @@ LEAST_ACROSS = 0.3
 
 
 class AlongInstrument:
-    """Slice views that are temporarily aligned with an instrument, and then restored."""
+    """Slice views that are temporarily aligned with an instrument, and then restored.
+
+    Attributes:
+        former: how the aligned views were before, by the ID of their nodes.
+    """
 
     def __init__(self, scene: Any) -> None:
+        self.former: dict[str, np.ndarray] = {}
         self._scene = scene
-        self._former: dict[str, vtk.vtkMatrix4x4] = {}
-
-    @property
-    def isShown(self) -> bool:
-        """Whether the views are aligned with an instrument."""
-        return bool(self._former)
 
     def show(self, tip: np.ndarray, direction: np.ndarray) -> None:
         """Align the views with an instrument, through its tip.
@@ -73,28 +72,20 @@ class AlongInstrument:
         """
         axes = instrumentAxes(direction)
         for view in nodesOfClass(self._scene, "vtkMRMLSliceNode"):
-            if view.GetName() not in axes:
-                continue
-            matrix = view.GetSliceToRAS()
-            if view.GetID() not in self._former:
-                self._former[view.GetID()] = vtk.vtkMatrix4x4()
-                self._former[view.GetID()].DeepCopy(matrix)
-            for column, vector in enumerate((*axes[view.GetName()], tip)):
-                for row in range(3):
-                    matrix.SetElement(row, column, float(vector[row]))
-            view.UpdateMatrices()
+            if view.GetName() in axes:
+                matrix = view.GetSliceToRAS()
+                self.former.setdefault(view.GetID(), slicer.util.arrayFromVTKMatrix(matrix))
+                aligned = transforms.rigid(axes[view.GetName()].T, tip)
+                slicer.util.updateVTKMatrixFromArray(matrix, aligned)
+                view.UpdateMatrices()
 
     def giveBack(self) -> None:
-        """Restore the views."""
-        for viewId, former in self._former.items():
+        for viewId, former in self.former.items():
             view = self._scene.GetNodeByID(viewId)
             if view is not None:
-                view.GetSliceToRAS().DeepCopy(former)
+                slicer.util.updateVTKMatrixFromArray(view.GetSliceToRAS(), former)
                 view.UpdateMatrices()
-        self._former.clear()
-
-    def forgetScene(self) -> None:
-        self._former.clear()
+        self.former.clear()
 
 
 def instrumentAxes(direction: np.ndarray) -> dict[str, np.ndarray]:
@@ -128,7 +119,6 @@ class BorrowedLayout:
         self._scene = scene
         self._purpose = ""
         self._shown = self._former = 0
-        self._isOutdated = False
 
     @property
     def purpose(self) -> str:
@@ -144,7 +134,6 @@ class BorrowedLayout:
             return
         if not self.purpose:
             self._former = node.GetViewArrangement()
-        self._isOutdated = False
         self._purpose, self._shown = purpose, layout
         node.SetViewArrangement(layout)
 
@@ -157,19 +146,6 @@ class BorrowedLayout:
         if node is not None and self.purpose and purpose in ("", self._purpose):
             node.SetViewArrangement(self._former)
             self._purpose = ""
-
-    def forgetScene(self) -> None:
-        """Have the next `process` restore the layout: what it showed was cleared with the scene.
-
-        Not yet now, as Slicer shows its last layout again after a scene is closed.
-        """
-        self._isOutdated = True
-
-    def process(self) -> None:
-        """Restore the layout from before a scene that was cleared."""
-        if self._isOutdated:
-            self._isOutdated = False
-            self.giveBack()
 
     def _node(self) -> Any | None:
         return self._scene.GetSingletonNode(LAYOUT_TAG, LAYOUT_TAG)
@@ -238,60 +214,58 @@ class SliceFollower:
 
     def forgetScene(self) -> None:
         self._shownPoint, self._place, self._pose = (), None, None
-        self._along.forgetScene()
+        self._along.former.clear()
 
     @property
     def needsPoses(self) -> bool:
         return self.followsTool or self._device is not None
-
-    def process(self) -> None:
-        """Follow what has moved."""
-        device = self._device
-        if device is not None:
-            self._shownPoint = ()
-            self._lieAlong(device)
-            return
-        if self._along.isShown:
-            if self._training.status.phase == Phase.PAUSED.value:
-                return
-            self._along.giveBack()
-            self._pose = None
-            self.showAgain()
-        if self.followsTool:
-            self._shownPoint = ()
-            self._followTool()
-        elif self.showsNextPoint:
-            self._showNextPoint()
 
     @property
     def _device(self) -> str | None:
         """Whose pose the views along the instrument follow; None where they do not."""
         return DEVICES.get(self._training.status.phase) if self.liesAlong else None
 
-    def _lieAlong(self, device: str) -> None:
-        pose = poseOnHead(self._scene, device)
-        if pose is None or self._clock() < self._lastJump + PERIOD_S:
+    def process(self) -> None:
+        """Follow what has moved."""
+        device = self._device
+        if device is None and self._along.former:
+            if self._training.status.phase == Phase.PAUSED.value:
+                return
+            self._along.giveBack()
+            self._pose = None
+            self.showAgain()
+        if device is not None or self.followsTool:
+            self._shownPoint = ()
+            pose = poseOnHead(self._scene, device or DeviceName.TOOL_TIP_TO_WORLD)
+            if pose is not None and self._clock() >= self._lastJump + PERIOD_S:
+                self._follow(pose, isAlong=device is not None)
+        elif self.showsNextPoint:
+            self._showNextPoint()
+
+    def _follow(self, pose: np.ndarray, isAlong: bool) -> None:
+        tip, axis = pose[:3, 3], pose[:3, 2]
+        if not isAlong:
+            if self._place is None or np.linalg.norm(tip - self._place) >= LEAST_MOVE_MM:
+                self._jump(tip)
             return
-        if self._pose is not None and self._along.isShown:
-            moved = float(np.linalg.norm(pose[:3, 3] - self._pose[:3, 3]))
-            turned = float(np.linalg.norm(pose[:3, 2] - self._pose[:3, 2]))
+        if self._pose is not None:
+            moved = float(np.linalg.norm(tip - self._pose[:3, 3]))
+            turned = float(np.linalg.norm(axis - self._pose[:3, 2]))
             if moved < LEAST_MOVE_MM and turned < LEAST_TURN:
                 return
         self._pose, self._lastJump = pose, self._clock()
-        self._along.show(pose[:3, 3], pose[:3, 2])
-
-    def _followTool(self) -> None:
-        pose = poseOnHead(self._scene, DeviceName.TOOL_TIP_TO_WORLD)
-        if pose is None or self._clock() < self._lastJump + PERIOD_S:
-            return
-        tip = pose[:3, 3]
-        if self._place is None or np.linalg.norm(tip - self._place) >= LEAST_MOVE_MM:
-            self._jump(tip)
+        self._along.show(tip, axis)
 
     def _showNextPoint(self) -> None:
-        status = self._training.status
-        fixed = findNode(self._scene, FIDUCIALS, Role.FIXED_FIDUCIALS)
-        point = _nextPoint(status, fixed)
+        status, fixed = (
+            self._training.status,
+            findNode(self._scene, FIDUCIALS, Role.FIXED_FIDUCIALS),
+        )
+        point: tuple[str, ...] = ()
+        task = "" if fixed is None else fixed.GetAttribute(TASK_ATTRIBUTE) or ""
+        # The fiducials of a trial that has just started come a moment later than its first point.
+        if fixed and status.isOpen and status.nextPoint and task.endswith(f"/{status.task}"):
+            point = (task, fixed.GetAttribute(CONTENT_ATTRIBUTE) or "", status.nextPoint)
         if point == self._shownPoint:
             return
         self._shownPoint = point
@@ -312,16 +286,3 @@ def poseOnHead(scene: Any, device: str) -> np.ndarray | None:
     if np.array_equal(toWorld, np.eye(4)):
         return None  # No pose has come yet.
     return slicer.util.arrayFromTransformMatrix(toHead) @ toWorld
-
-
-def _nextPoint(status: TrialStatus, fixed: Any | None) -> tuple[str, ...]:
-    """Return a key of the next point of a running trial; empty if none is shown.
-
-    The fiducials of a trial that has just started come a moment later than its first point.
-    """
-    if fixed is None or status.phase not in OPEN_PHASES or not status.nextPoint:
-        return ()
-    task = fixed.GetAttribute(TASK_ATTRIBUTE) or ""
-    if not task.endswith(f"/{status.task}"):
-        return ()
-    return (task, fixed.GetAttribute(CONTENT_ATTRIBUTE) or "", status.nextPoint)

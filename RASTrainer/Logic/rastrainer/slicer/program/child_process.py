@@ -24,7 +24,7 @@ import time
 import traceback
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -50,11 +50,7 @@ class NotStartedError(InputError):
 
 
 class ChildProcess:
-    """A program with its output; only `close` waits, and briefly.
-
-    Attributes:
-        arguments: what was started.
-    """
+    """A program with its output; only `close` waits, and briefly."""
 
     def __init__(
         self, arguments: Sequence[str | Path], environment: Mapping[str, str] | None = None
@@ -64,12 +60,11 @@ class ChildProcess:
         Raises:
             NotStartedError: it cannot be started.
         """
-        self.arguments = [str(argument) for argument in arguments]
         self._lines: deque[str] = deque(maxlen=LINES_KEPT)
         self._killAt: float | None = None
         try:
             self._process = subprocess.Popen(
-                self.arguments,
+                [str(argument) for argument in arguments],
                 env=childEnvironment() if environment is None else dict(environment),
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
@@ -82,7 +77,7 @@ class ChildProcess:
             self._group = ProcessGroup(self._process)
         except OSError as error:
             raise NotStartedError(
-                f"{self.arguments[0]} cannot be started: {error.strerror or error}."
+                f"{arguments[0]} cannot be started: {error.strerror or error}."
             ) from None
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
@@ -93,10 +88,10 @@ class ChildProcess:
         return self._process.poll()
 
     def poll(self) -> bool:
-        """Return whether it is over: it has ended, and so has all that it started.
+        """Return whether it has ended, and so has all that it started.
 
-        To be called again and again, as it ends what the program has left behind, and kills what
-        does not end within seconds.
+        Called again and again, this ends what the program has left behind, and kills what does not
+        end within seconds.
         """
         hasEnded = self._process.poll() is not None
         # What it has started holds the other end of its output.
@@ -112,11 +107,7 @@ class ChildProcess:
 
     def takeLines(self) -> list[str]:
         """Return the lines that it has written since the last call."""
-        lines = []
-        with contextlib.suppress(IndexError):
-            while True:
-                lines.append(self._lines.popleft())
-        return lines
+        return [self._lines.popleft() for _ in range(len(self._lines))]
 
     def end(self) -> None:
         """Ask the program and all that it has started to end, once; see `poll`."""
@@ -135,12 +126,13 @@ class ChildProcess:
 
     def abandon(self) -> None:
         """Ask it to end, and make sure that it does, in the background."""
-        self.end()
-        threading.Thread(target=self._finish, daemon=True).start()
 
-    def _finish(self) -> None:
-        while not self.poll():
-            time.sleep(PERIOD_S)
+        def finish() -> None:
+            while not self.poll():
+                time.sleep(PERIOD_S)
+
+        self.end()
+        threading.Thread(target=finish, daemon=True).start()
 
     def _read(self) -> None:
         assert self._process.stdout is not None
@@ -156,56 +148,41 @@ def childEnvironment() -> dict[str, str]:
     return {**clean_environment(os.environ), **added}
 
 
-@dataclass(frozen=True)
+@dataclass
 class ChildResult:
-    """The outcome of a program that was run to its end.
+    """What a program has returned, its last line that is not empty, and what it has warned of."""
 
-    Attributes:
-        exitStatus: its exit status; None where it could not be ended.
-        lastLine: the last line it has written that is not empty; empty where it wrote nothing.
-        warnings: sentences it has printed by `print_warning`.
-    """
-
-    exitStatus: int | None
-    lastLine: str
-    warnings: tuple[str, ...]
+    exitStatus: int | None = None
+    lastLine: str = ""
+    warnings: list[str] = field(default_factory=list)
 
 
 def runChild(command: Sequence[str | Path], progress: Progress, firstStep: str = "") -> ChildResult:
     """Run a program to its end.
 
     Args:
-        command: its words.
         progress: called many times a second with the step and share that the program has printed
             last (see `print_progress`); it may let the application draw, and may raise to break
             the program off, which then ends soon.
         firstStep: passed to `progress` until the program prints a step.
-
-    Raises:
-        NotStartedError: it cannot be started.
     """
-    child = ChildProcess(command)
-    step, lastLine = (firstStep, 0.0), ""
-    warnings: list[str] = []
-
-    def noteStep(name: str, share: float) -> None:
-        nonlocal step
-        step = name, share
-
+    child, result = ChildProcess(command), ChildResult()
+    steps = [(firstStep, 0.0)]
     try:
         isOver = False
         while not isOver:
             isOver = child.poll()
             for line in child.takeLines():
-                report_line(line, noteStep, warnings.append)
-                lastLine = line or lastLine
-            progress(*step)
+                report_line(line, lambda *step: steps.append(step), result.warnings.append)
+                result.lastLine = line or result.lastLine
+            progress(*steps[-1])
             if not isOver:
                 time.sleep(PERIOD_S)
     except BaseException:
         child.abandon()
         raise
-    return ChildResult(child.exitStatus, lastLine, tuple(warnings))
+    result.exitStatus = child.exitStatus
+    return result
 
 
 Run = Callable[..., Any]
@@ -233,13 +210,10 @@ class OwnProcess:
         """Return what `function(*arguments, **named, progress=…)` returns in a separate process.
 
         Where there is no such process, or it lacks a package, the function runs in this thread.
+        `progress` may raise to end the process.
 
         Args:
             function: `module:name`; what it takes and returns can be pickled.
-            progress: called many times a second with what the function has reported last; may raise
-                to end the process.
-            arguments: of the function, besides its `progress`.
-            named: further ones.
         """
         with tempfile.TemporaryDirectory(prefix="RASTrainer-") as temporary:
             folder = Path(temporary)
@@ -264,7 +238,8 @@ class OwnProcess:
 
 def runHere(function: str, progress: Progress, *arguments: Any, **named: Any) -> Any:
     """Return what the function returns in this thread; otherwise as `OwnProcess`."""
-    return _find(function)(*arguments, **named, progress=progress)
+    module, _, name = function.partition(":")
+    return getattr(importlib.import_module(module), name)(*arguments, **named, progress=progress)
 
 
 def main(folder: str) -> None:
@@ -303,8 +278,3 @@ def _read(path: Path) -> Any:
         for buffer in (head, *buffers):
             file.readinto(buffer)
     return pickle.loads(head, buffers=buffers)
-
-
-def _find(function: str) -> Callable[..., Any]:
-    module, _, name = function.partition(":")
-    return getattr(importlib.import_module(module), name)

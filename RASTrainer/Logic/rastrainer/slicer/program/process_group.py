@@ -56,34 +56,22 @@ _SIGNATURES: dict[str, tuple[Any, ...]] = {
 }
 
 
-def _withSignatures(library: Any) -> Any:
-    """Return a library after declaring its functions: a handle has 64 bits, an int only 32."""
-    for name, (result, *arguments) in _SIGNATURES.items():
-        function = getattr(library, name)
-        function.restype, function.argtypes = result, arguments
-    return library
-
-
-def _kernel32() -> Any:
-    if sys.platform == "win32":
-        return ctypes.WinDLL("kernel32", use_last_error=True)
-    raise OSError("There are job objects on Windows only.")
-
-
 class WindowsJob:
     """A process started with `WINDOWS_OPTIONS`, and all that it starts."""
 
-    def __init__(self, process: subprocess.Popen[str], kernel: Any | None = None) -> None:
-        """Put the process into a job, and resume it.
-
-        Args:
-            process: started with `WINDOWS_OPTIONS`.
-            kernel: kernel32; loaded where it is left out.
+    def __init__(self, process: subprocess.Popen[str], kernel: Any = None) -> None:
+        """Put the process into a job, and resume it; `kernel` stands in for kernel32.
 
         Raises:
             OSError: it could not be resumed; it has been ended.
         """
-        self._kernel = _withSignatures(kernel or _kernel32())
+        if kernel is None and sys.platform == "win32":
+            kernel = ctypes.WinDLL("kernel32", use_last_error=True)
+        for name, (result, *arguments) in _SIGNATURES.items():
+            # A handle has 64 bits, an int only 32.
+            function = getattr(kernel, name)
+            function.restype, function.argtypes = result, arguments
+        self._kernel = kernel
         self._pid = process.pid
         self._job = self._kernel.CreateJobObjectW(None, None)
         if self._job:
@@ -95,10 +83,6 @@ class WindowsJob:
             process.kill()
             raise OSError("Windows has started it, but does not let it run")
 
-    def end(self) -> None:
-        """End them at once: nothing on Windows can ask a program without a window."""
-        self.kill()
-
     def kill(self) -> None:
         """End them at once."""
         if self._isInJob:
@@ -106,28 +90,28 @@ class WindowsJob:
         else:
             endTree(self._pid)
 
+    end = kill
+    """Nothing on Windows can ask a program without a window."""
+
     def _resume(self) -> bool:
         """Resume each thread of the process; return whether one was resumed."""
-        snapshot = self._kernel.CreateToolhelp32Snapshot(_SNAP_THREADS, 0)
+        kernel = self._kernel
+        snapshot = kernel.CreateToolhelp32Snapshot(_SNAP_THREADS, 0)
         if snapshot in (None, _INVALID_HANDLE):
             return False
         entry = _ThreadEntry(dwSize=ctypes.sizeof(_ThreadEntry))
-        resumed = []
-        isThere = self._kernel.Thread32First(snapshot, ctypes.byref(entry))
+        wasResumed = False
+        isThere = kernel.Thread32First(snapshot, ctypes.byref(entry))
         while isThere:
+            thread = None
             if entry.th32OwnerProcessID == self._pid:
-                resumed.append(self._resumeThread(entry.th32ThreadID))
-            isThere = self._kernel.Thread32Next(snapshot, ctypes.byref(entry))
-        self._kernel.CloseHandle(snapshot)
-        return any(resumed)
-
-    def _resumeThread(self, number: int) -> bool:
-        thread = self._kernel.OpenThread(_SUSPEND_RESUME, False, number)
-        if not thread:
-            return False
-        former = self._kernel.ResumeThread(thread)
-        self._kernel.CloseHandle(thread)
-        return former != _FAILED
+                thread = kernel.OpenThread(_SUSPEND_RESUME, False, entry.th32ThreadID)
+            if thread:
+                wasResumed = kernel.ResumeThread(thread) != _FAILED or wasResumed
+                kernel.CloseHandle(thread)
+            isThere = kernel.Thread32Next(snapshot, ctypes.byref(entry))
+        kernel.CloseHandle(snapshot)
+        return wasResumed
 
 
 def endTree(pid: int) -> None:
@@ -149,15 +133,11 @@ else:
     """Of `subprocess.Popen`."""
 
     def endProcess(pid: int, hasOwnGroup: bool, isAsked: bool) -> None:
-        """End a process that this one has not started.
+        """End a process that this one has not started, or raise PermissionError.
 
         Args:
-            pid: its number.
             hasOwnGroup: whether `OPTIONS` have started it; then all that it has started ends, too.
             isAsked: whether it is asked to end; otherwise it is killed.
-
-        Raises:
-            PermissionError: it is another user's.
         """
         number = signal.SIGTERM if isAsked else signal.SIGKILL
         with contextlib.suppress(ProcessLookupError):

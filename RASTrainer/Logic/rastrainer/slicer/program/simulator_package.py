@@ -7,6 +7,7 @@ run as they are. What others have made is fixed by the hashes of the lock.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 import platform
@@ -26,18 +27,8 @@ RESOURCES = Path("Resources", "RASTrainerSimulator")
 """Below the module's folder."""
 LOCK, SIZES = "requirements.lock", "sizes.json"
 WHEEL = f"rastrainer-{__version__}-py3-none-any.whl"
-SOURCES = (Path("RASTrainer", "Logic"), Path("RASTrainerSimulatorServer"))
-"""In a checkout."""
 LIMIT_BYTES = 200 * 2**20
 DIGEST = re.compile(r"([0-9a-f]{64})  (\S+)\n")
-
-
-@dataclass(frozen=True)
-class PackageSizes:
-    """About what a set-up takes on this platform, in 10⁶ bytes: downloaded, and kept."""
-
-    downloadMB: int
-    keptMB: int
 
 
 @dataclass(frozen=True)
@@ -60,59 +51,44 @@ class SimulatorPackage:
 
     def requirements(self) -> str:
         """Return everything that pip should install, with hashes."""
-        ours = ""
-        if self.checkout is None:
-            digest = self.digest()
-            ours = f"rastrainer @ {self._wheelAddress(digest)} \\\n    --hash=sha256:{digest}\n"
-        return read_text(self.folder / LOCK, LIMIT_BYTES) + ours
-
-    def sourceFolders(self) -> list[Path]:
-        """Return the folders whose sources are run in place, none where there is a wheel."""
-        return [] if self.checkout is None else [self.checkout / part for part in SOURCES]
-
-    def digest(self) -> str:
-        """Return the SHA-256 that the wheel must have."""
-        try:
-            found = DIGEST.fullmatch(read_text(self.folder / f"{WHEEL}.sha256", LIMIT_BYTES))
-        except InputError:
-            found = None
-        if found is None or found.group(2) != WHEEL:
-            raise InputError(
-                _(
-                    "The simulator is missing in {folder}: reinstall the extension RASTrainer."
-                ).format(folder=self.folder)
-            )
-        return found.group(1)
-
-    def origin(self) -> str:
-        """Return what distinguishes this package from another of the same version.
-
-        Empty where it is not known.
-        """
-        try:
-            if self.checkout is None:
-                return self.digest()
-            lock = read_bytes(self.folder / LOCK, LIMIT_BYTES)
-            return f"{self.checkout} {hashlib.sha256(lock).hexdigest()}"
-        except InputError:
-            return ""
-
-    def sizes(self) -> PackageSizes | None:
-        """Return about what a set-up takes on this platform; None where it was not measured."""
-        try:
-            measured = read_json(self.folder / SIZES, LIMIT_BYTES)
-            entry = measured[f"{sys.platform}-{platform.machine()}"]
-            return PackageSizes(int(entry["downloadMB"]), int(entry["keptMB"]))
-        except (InputError, KeyError, TypeError, ValueError):
-            return None
-
-    def _wheelAddress(self, digest: str) -> str:
-        path = self.folder / WHEEL
+        if self.checkout is not None:
+            return read_text(self.folder / LOCK, LIMIT_BYTES)
+        path, digest = self.folder / WHEEL, self.digest()
         if hashlib.sha256(read_bytes(path, LIMIT_BYTES)).hexdigest() != digest:
             raise InputError(
                 _("{path} is damaged: reinstall the extension RASTrainer.").format(path=path)
             )
-        return path.resolve().as_uri()
+        lock = read_text(self.folder / LOCK, LIMIT_BYTES)
+        return f"{lock}rastrainer @ {path.resolve().as_uri()} \\\n    --hash=sha256:{digest}\n"
+
+    def digest(self) -> str:
+        """Return the SHA-256 that the wheel must have."""
+        with contextlib.suppress(InputError):
+            found = DIGEST.fullmatch(read_text(self.folder / f"{WHEEL}.sha256", LIMIT_BYTES))
+            if found is not None and found.group(2) == WHEEL:
+                return found.group(1)
+        raise InputError(
+            _("The simulator is missing in {folder}: reinstall the extension RASTrainer.").format(
+                folder=self.folder
+            )
+        )
+
+    def origin(self) -> str:
+        """Return what distinguishes this package from others of its version; empty if unknown."""
+        with contextlib.suppress(InputError):
+            if self.checkout is None:
+                return self.digest()
+            lock = read_bytes(self.folder / LOCK, LIMIT_BYTES)
+            return f"{self.checkout} {hashlib.sha256(lock).hexdigest()}"
+        return ""
+
+    def sizesMB(self) -> tuple[int, int] | None:
+        """Return about what is downloaded and kept on this platform; None if not measured."""
+        with contextlib.suppress(InputError, KeyError, TypeError, ValueError):
+            measured = read_json(self.folder / SIZES, LIMIT_BYTES)
+            entry = measured[f"{sys.platform}-{platform.machine()}"]
+            return int(entry["downloadMB"]), int(entry["keptMB"])
+        return None
 
 
 PYTHON_SLICER = "PythonSlicer"
@@ -143,36 +119,27 @@ OPTIONS = (
 )
 
 
-@dataclass(frozen=True)
-class SetupSource:
-    """Where the packages of others come from; the hashes of the lock hold anywhere.
+def pipArguments(index: str, wheels: Path | None) -> list[str]:
+    """Return the options of `pip install`; the hashes of the lock hold for every source.
 
-    Attributes:
+    Args:
         index: address of a package index; pip's own where empty.
         wheels: a folder of wheels to install from without network; None asks the index.
     """
-
-    index: str = ""
-    wheels: Path | None = None
-
-    def pipArguments(self) -> list[str]:
-        """Return the options of `pip install`."""
-        if self.wheels is not None:
-            if not any(self.wheels.glob("*.whl")):
-                raise InputError(
-                    _("There are no wheels (*.whl) in {path}.").format(path=self.wheels)
-                )
-            return [*OPTIONS, "--no-index", "--find-links", str(self.wheels)]
-        if not self.index:
-            return list(OPTIONS)
-        if not ADDRESS.fullmatch(self.index):
-            raise InputError(
-                _(
-                    "“{address}” is not the address of a package index: start it with https://, "
-                    "or leave it empty."
-                ).format(address=self.index)
-            )
-        return [*OPTIONS, "--index-url", self.index]
+    if wheels is not None:
+        if not any(wheels.glob("*.whl")):
+            raise InputError(_("There are no wheels (*.whl) in {path}.").format(path=wheels))
+        return [*OPTIONS, "--no-index", "--find-links", str(wheels)]
+    if not index:
+        return list(OPTIONS)
+    if not ADDRESS.fullmatch(index):
+        raise InputError(
+            _(
+                "“{address}” is not the address of a package index: start it with https://, "
+                "or leave it empty."
+            ).format(address=index)
+        )
+    return [*OPTIONS, "--index-url", index]
 
 
 def pipEnvironment(environment: Mapping[str, str]) -> dict[str, str]:
@@ -180,35 +147,3 @@ def pipEnvironment(environment: Mapping[str, str]) -> dict[str, str]:
     kept = {name: value for name, value in environment.items() if not name.startswith("PIP_")}
     # Alone, `--isolated` still reads the settings for all users of the computer.
     return {**kept, "PIP_CONFIG_FILE": os.devnull, "PYTHONNOUSERSITE": "1"}
-
-
-ENTRY = re.compile(r"^[a-z0-9][A-Za-z0-9._-]* ?(?:==|@)", re.MULTILINE)
-BEGUN = re.compile(r"(?:Collecting|Processing) \S")
-LEFT_OUT = "Ignoring "
-INSTALLING = "Installing collected packages"
-
-
-class SetupProgress:
-    """Counts packages.
-
-    Attributes:
-        done: packages that pip has fetched, or is fetching.
-        count: packages that it is to fetch on this computer.
-        isInstalling: whether all are there and are being put into the folder.
-    """
-
-    def __init__(self, requirements: str) -> None:
-        """Begin with all entries of what pip is to install."""
-        self.done = 0
-        self.count = len(ENTRY.findall(requirements))
-        self.isInstalling = False
-
-    def follow(self, line: str) -> None:
-        """Process a line of pip's output."""
-        if BEGUN.match(line):
-            self.done = min(self.done + 1, self.count)
-        elif line.startswith(LEFT_OUT):
-            # Entries for other platforms and other versions of Python.
-            self.count -= 1
-        elif line.startswith(INSTALLING):
-            self.isInstalling = True

@@ -24,7 +24,7 @@ _NEW_CODE = re.compile(r"RASTrainer simulator has a new pairing code for views: 
 
 
 class ProgramState(str, Enum):
-    """State of the simulator's process."""
+    """Of the simulator's process."""
 
     STOPPED = "stopped"
     STARTING = "starting"
@@ -37,7 +37,6 @@ class SimulatorProgram:
     """Starts and stops `rastrainer simulator`; call `process` now and then.
 
     Attributes:
-        state: state of the process.
         port: on which it listens when it is ready.
         sentence: what happened last, for people.
         pageAddresses: where a browser or a headset finds the simulator's page.
@@ -45,8 +44,7 @@ class SimulatorProgram:
         kinematics: what computes the robot's, such as "Pinocchio 3.9.0"; empty while not known.
         pairingCode: that admits a browser or a headset; known only to the program that started it.
         ready: emits nothing when it is ready.
-        changed: emits nothing, whenever `state` or `sentence` has changed.
-        pairingChanged: emits nothing, whenever an address or the code has.
+        changed: emits nothing, whenever a state, a sentence, an address or the code has changed.
         wroteLine: emits each line of its output.
     """
 
@@ -60,7 +58,6 @@ class SimulatorProgram:
         self.kinematics = ""
         self.ready = Signal()
         self.changed = Signal()
-        self.pairingChanged = Signal()
         self.wroteLine = Signal()
         self._child: ChildProcess | None = None
         self._lastLine = ""
@@ -100,7 +97,6 @@ class SimulatorProgram:
         self._child = ChildProcess(command)
         self._lastLine = ""
         self._isAskedToEnd = False
-        self._pair([], "")
         self._change(ProgramState.STARTING, _("The simulator is starting."))
 
     def stop(self) -> None:
@@ -113,7 +109,7 @@ class SimulatorProgram:
             return
         self._isAskedToEnd = True
         self._child.end()
-        self._showEnding()
+        self._change(ProgramState.STOPPING, _("The simulator is ending."))
 
     def process(self) -> None:
         """Forward its output, and notice that it is ready, is ending or has ended."""
@@ -123,11 +119,16 @@ class SimulatorProgram:
         self._forwardLines(child)
         if isOver:
             self._child = None
-            self._noteEnd(child.exitStatus)
-            self._startNext()
+            self._change(*self._ended(child.exitStatus))
+            command, self._next = self._next, None
+            if command is not None:
+                try:
+                    self.start(command)
+                except InputError as error:
+                    self._change(ProgramState.FAILED, str(error))
         elif child.exitStatus is not None and self.state is not ProgramState.STOPPING:
             # Its window, or the real Python of a launcher that was killed.
-            self._showEnding()
+            self._change(ProgramState.STOPPING, _("The simulator is ending."))
 
     def close(self) -> None:
         """End the process and all that it has started, at once if need be: Slicer quits."""
@@ -136,47 +137,24 @@ class SimulatorProgram:
             self._child.close()
             self._forwardLines(self._child)
             self._child = None
-            self._pair([], "")
             self._change(ProgramState.STOPPED, _("The simulator was stopped."))
 
-    def _showEnding(self) -> None:
-        self._pair([], "")
-        self._change(ProgramState.STOPPING, _("The simulator is ending."))
-
-    def _noteEnd(self, status: int | None) -> None:
-        self._pair([], "")
+    def _ended(self, status: int | None) -> tuple[ProgramState, str]:
+        """Return state and sentence after an end with an exit status."""
         if self._isAskedToEnd:
-            self._change(ProgramState.STOPPED, _("The simulator was stopped."))
-        elif status == 0:
+            return ProgramState.STOPPED, _("The simulator was stopped.")
+        if status == 0:
             # For example because the trainee's window was closed.
-            self._change(ProgramState.STOPPED, _("The simulator has ended."))
-        elif status is None or status < 0 or _LAUNCHER_CRASH.match(self._lastLine):
-            self._change(
-                ProgramState.FAILED,
-                _(
-                    "The simulator stopped unexpectedly: it crashed, or was ended from outside, "
-                    "for example by the task manager or for lack of memory. What it has recorded "
-                    "is kept: start it again to continue."
-                ),
+            return ProgramState.STOPPED, _("The simulator has ended.")
+        if status is None or status < 0 or _LAUNCHER_CRASH.match(self._lastLine):
+            return ProgramState.FAILED, _(
+                "The simulator stopped unexpectedly: it crashed, or was ended from outside, "
+                "for example by the task manager or for lack of memory. What it has recorded "
+                "is kept: start it again to continue."
             )
-        else:
-            reason = self._lastLine or _("it wrote nothing")
-            self._change(
-                ProgramState.FAILED,
-                _("The simulator ended by itself (status {status}): {reason}").format(
-                    status=status, reason=reason
-                ),
-            )
-
-    def _startNext(self) -> None:
-        """Start what was requested while the former process was ending."""
-        command, self._next = self._next, None
-        if command is None:
-            return
-        try:
-            self.start(command)
-        except InputError as error:
-            self._change(ProgramState.FAILED, str(error))
+        reason = self._lastLine or _("it wrote nothing")
+        sentence = _("The simulator ended by itself (status {status}): {reason}")
+        return ProgramState.FAILED, sentence.format(status=status, reason=reason)
 
     def _forwardLines(self, child: ChildProcess) -> None:
         for line in child.takeLines():
@@ -185,7 +163,6 @@ class SimulatorProgram:
             # A program that is ending may still report that it is ready.
             if self.state is not ProgramState.STOPPING:
                 self._read(line)
-                self._readPairing(line)
 
     def _read(self, line: str) -> None:
         if ready := _READY.match(line):
@@ -199,9 +176,7 @@ class SimulatorProgram:
                 "The simulator runs on port {port}. {name} computes the robot's kinematics."
             ).format(port=self.port, name=self.kinematics)
             self._change(ProgramState.READY, sentence)
-
-    def _readPairing(self, line: str) -> None:
-        if views := _VIEWS.match(line):
+        elif views := _VIEWS.match(line):
             self.fingerprint = ""
             self._pair([views.group(1)], views.group(2))
         elif network := _NETWORK.match(line):
@@ -212,8 +187,10 @@ class SimulatorProgram:
 
     def _pair(self, addresses: list[str], code: str) -> None:
         self.pageAddresses, self.pairingCode = addresses, code
-        self.pairingChanged.emit()
+        self.changed.emit()
 
     def _change(self, state: ProgramState, sentence: str) -> None:
         self.state, self.sentence = state, sentence
+        if state is not ProgramState.READY:
+            self.pageAddresses, self.pairingCode = [], ""
         self.changed.emit()

@@ -10,11 +10,13 @@ from __future__ import annotations
 
 import contextlib
 import json
+import re
 import shutil
 import threading
 import uuid
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from rastrainer import __version__
 from rastrainer.errors import InputError
@@ -23,9 +25,8 @@ from rastrainer.files.writing import write_text
 from rastrainer.python_environment import private_command
 from rastrainer.slicer.program.child_process import ChildProcess, childEnvironment
 from rastrainer.slicer.program.simulator_package import (
-    SetupProgress,
-    SetupSource,
     SimulatorPackage,
+    pipArguments,
     pipEnvironment,
 )
 from rastrainer.slicer.program.trim_packages import SIZES
@@ -35,8 +36,15 @@ from rastrainer.slicer.translation import _
 MARK = "rastrainer-setup.json"
 REQUIREMENTS = "rastrainer-requirements.txt"
 CHECKOUT = "rastrainer-checkout.pth"
+SOURCES = ("RASTrainer/Logic", "RASTrainerSimulatorServer")
+"""Of a checkout, run in place."""
 MARK_LIMIT_BYTES = 4096
 PROGRAM, TRIMMER = "rastrainer_simulator.cli.main", "rastrainer.slicer.program.trim_packages"
+REMOVED = ".removed-"
+"""In the name of a folder that is being removed."""
+ENTRY = re.compile(r"^[a-z0-9][A-Za-z0-9._-]* ?(?:==|@)", re.MULTILINE)
+BEGUN = re.compile(r"(?:Collecting|Processing) \S")
+LEFT_OUT, INSTALLING = "Ignoring ", "Installing collected packages"
 
 
 class SimulatorSetup:
@@ -45,7 +53,10 @@ class SimulatorSetup:
     Attributes:
         folder: of the installed simulator.
         package: what the module brings along for it.
-        progress: how far the set-up is that runs, or ran last.
+        fetched: packages that pip has fetched, or is fetching.
+        count: packages that it is to fetch on this computer.
+        isInstalling: whether all are there and are being put into the folder.
+        isCanceled: whether the set-up that runs, or ran last, was canceled.
         progressed: emits each line that pip writes.
         changed: emits nothing, whenever a set-up begins or ends, or the simulator is removed.
         finished: emits an error's sentence, empty where the simulator is set up.
@@ -54,7 +65,8 @@ class SimulatorSetup:
     def __init__(self, python: Path, folder: Path, package: SimulatorPackage) -> None:
         self.folder = folder
         self.package = package
-        self.progress = SetupProgress("")
+        self.fetched = self.count = 0
+        self.isInstalling = self.isCanceled = False
         self.progressed = Signal()
         self.changed = Signal()
         self.finished = Signal()
@@ -62,7 +74,6 @@ class SimulatorSetup:
         self._partial = folder.with_name(folder.name + ".partial")
         self._child: ChildProcess | None = None
         self._isTrimming = False
-        self._isCanceled = False
 
     @property
     def isRunning(self) -> bool:
@@ -70,56 +81,54 @@ class SimulatorSetup:
         return self._child is not None
 
     @property
-    def isEnding(self) -> bool:
-        """Whether a set-up is still running, but was canceled."""
-        return self.isRunning and self._isCanceled
-
-    @property
-    def isInstalled(self) -> bool:
-        """Whether there is anything to remove."""
-        return self.folder.is_dir()
-
-    @property
     def installedVersion(self) -> str:
         """The version that is set up, empty where none is."""
-        return self._mark().get("version", "")
+        return str(self._read(MARK).get("version", ""))
 
     @property
     def isCurrent(self) -> bool:
         """Whether the simulator that came with this module is set up."""
-        mark = self._mark()
+        mark = self._read(MARK)
         return (mark.get("version"), mark.get("origin")) == (__version__, self.package.origin())
 
     @property
     def installedMB(self) -> int | None:
         """How much the private folder holds, in 10⁶ bytes; None where that is not known."""
-        try:
-            return int(read_json(self.folder / SIZES, MARK_LIMIT_BYTES)["keptBytes"]) // 10**6
-        except (InputError, KeyError, TypeError, ValueError):
-            return None
+        kept = self._read(SIZES).get("keptBytes")
+        return kept // 10**6 if isinstance(kept, int) else None
 
-    def begin(self, source: SetupSource) -> None:
-        """Start the set-up, replacing what is there."""
+    def begin(self, index: str = "", wheels: Path | None = None) -> None:
+        """Start the set-up, replacing what is there; the source is that of `pipArguments`."""
         if self.isRunning:
             raise InputError(_("The simulator is already being set up."))
-        words = source.pipArguments()
+        words = ["-m", "pip", "install", *pipArguments(index, wheels)]
         requirements = self.package.requirements()
-        self._makeFolder(requirements)
+        discard(self._partial)
+        try:
+            self._partial.mkdir(parents=True)
+        except OSError as error:
+            raise InputError(
+                _("The folder {path} cannot be made: {reason}.").format(
+                    path=self._partial, reason=error.strerror
+                )
+            ) from None
+        write_text(self._partial / REQUIREMENTS, requirements)
+        checkout = self.package.checkout
+        if checkout is not None:
+            sources = "".join(f"{checkout / part}\n" for part in SOURCES)
+            write_text(self._partial / CHECKOUT, sources)
         words += ["--target", str(self._partial), "-r", str(self._partial / REQUIREMENTS)]
-        self.progress = SetupProgress(requirements)
-        self._isTrimming = self._isCanceled = False
-        self._child = ChildProcess(
-            [self._python, "-m", "pip", "install", *words], pipEnvironment(childEnvironment())
-        )
+        self.fetched, self.count = 0, len(ENTRY.findall(requirements))
+        self.isInstalling = self.isCanceled = self._isTrimming = False
+        self._child = ChildProcess([self._python, *words], pipEnvironment(childEnvironment()))
         self.changed.emit()
 
     def cancel(self) -> None:
         """Cancel the set-up, which ends soon; what was set up before stays."""
-        if self._child is None:
-            return
-        self._isCanceled = True
-        self._child.end()
-        self.changed.emit()
+        if self._child is not None:
+            self.isCanceled = True
+            self._child.end()
+            self.changed.emit()
 
     def remove(self) -> None:
         """Remove the private folder with all that was set up."""
@@ -134,12 +143,12 @@ class SimulatorSetup:
             return
         isOver, child = self._child.poll(), self._child
         for line in child.takeLines():
-            self.progress.follow(line)
+            self._follow(line)
             self.progressed.emit(line)
         if not isOver:
             return
         self._child = None
-        if child.exitStatus == 0 and not self._isTrimming and not self._isCanceled:
+        if child.exitStatus == 0 and not self._isTrimming and not self.isCanceled:
             self._isTrimming = True
             self._child = ChildProcess(
                 private_command(self._python, self._partial, TRIMMER, str(self._partial))
@@ -160,30 +169,23 @@ class SimulatorSetup:
         """Return what starts the installed `rastrainer` with these arguments."""
         return private_command(self._python, self.folder, PROGRAM, *arguments)
 
-    def _mark(self) -> dict[str, str]:
-        try:
-            mark = read_json(self.folder / MARK, MARK_LIMIT_BYTES)
-        except InputError:
-            return {}
-        return (
-            {str(key): str(value) for key, value in mark.items()} if isinstance(mark, dict) else {}
-        )
+    def _read(self, name: str) -> dict[str, Any]:
+        """Return what a JSON file of the private folder holds, nothing where it is damaged."""
+        with contextlib.suppress(InputError):
+            values = read_json(self.folder / name, MARK_LIMIT_BYTES)
+            if isinstance(values, dict):
+                return values
+        return {}
 
-    def _makeFolder(self, requirements: str) -> None:
-        discardLeftovers(self.folder)
-        discard(self._partial)
-        try:
-            self._partial.mkdir(parents=True)
-        except OSError as error:
-            raise InputError(
-                _("The folder {path} cannot be made: {reason}.").format(
-                    path=self._partial, reason=error.strerror
-                )
-            ) from None
-        write_text(self._partial / REQUIREMENTS, requirements)
-        sources = self.package.sourceFolders()
-        if sources:
-            write_text(self._partial / CHECKOUT, "".join(f"{path}\n" for path in sources))
+    def _follow(self, line: str) -> None:
+        """Count the packages in a line of pip's output."""
+        if BEGUN.match(line):
+            self.fetched = min(self.fetched + 1, self.count)
+        elif line.startswith(LEFT_OUT):
+            # Entries for other platforms and other versions of Python.
+            self.count -= 1
+        elif line.startswith(INSTALLING):
+            self.isInstalling = True
 
     def _dropPartial(self) -> None:
         # What cannot be removed now is, before the next set-up.
@@ -192,9 +194,9 @@ class SimulatorSetup:
 
     def _finish(self, status: int | None) -> str:
         """Put the new folder in place, and return an error message, empty on success."""
-        if self._isCanceled or status != 0:
+        if self.isCanceled or status != 0:
             self._dropPartial()
-        if self._isCanceled:
+        if self.isCanceled:
             return _("The set-up was canceled.")
         if self._isTrimming and status != 0:
             return _(
@@ -217,34 +219,24 @@ class SimulatorSetup:
         return ""
 
 
-REMOVED = ".removed-"
-"""In the name of a folder that is being removed."""
-
-
 def discard(folder: Path) -> None:
-    """Remove a folder: at once from its place, and soon from the disk; none is no error."""
-    if not folder.exists():
-        return
-    aside = folder.with_name(f"{folder.name}{REMOVED}{uuid.uuid4().hex}")
-    try:
-        folder.rename(aside)
-    except OSError as error:
-        raise InputError(
-            _("The folder {path} cannot be removed: {reason}.").format(
-                path=folder, reason=error.strerror
-            )
-        ) from None
-    _remove([aside])
+    """Remove a folder: at once from its place, and soon from the disk; none is no error.
 
+    What an earlier removal has left goes, too: Slicer may have quit meanwhile.
+    """
+    if folder.exists():
+        try:
+            folder.rename(folder.with_name(f"{folder.name}{REMOVED}{uuid.uuid4().hex}"))
+        except OSError as error:
+            raise InputError(
+                _("The folder {path} cannot be removed: {reason}.").format(
+                    path=folder, reason=error.strerror
+                )
+            ) from None
+    aside = list(folder.parent.glob(f"{folder.name}*{REMOVED}*"))
 
-def discardLeftovers(folder: Path) -> None:
-    """Remove what an earlier removal of this folder has left, as Slicer had quit meanwhile."""
-    _remove(list(folder.parent.glob(f"{folder.name}*{REMOVED}*")))
-
-
-def _remove(folders: list[Path]) -> None:
-    def work() -> None:
-        for path in folders:
+    def remove() -> None:
+        for path in aside:
             shutil.rmtree(path, ignore_errors=True)
 
-    threading.Thread(target=work, daemon=True).start()
+    threading.Thread(target=remove, daemon=True).start()

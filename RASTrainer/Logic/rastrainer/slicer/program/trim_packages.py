@@ -59,11 +59,11 @@ def trim(folder: Path) -> tuple[int, int]:
         for path in list(folder.rglob(pattern)):
             path.unlink()
     loaded = loaded_libraries(folder)
-    if loaded:
-        for path in _libraries(folder):
+    for name in MANY_LIBRARIES if loaded else ():
+        for path in _libraries(folder / name):
             if path.name not in loaded:
                 path.unlink()
-    for path in [path for path in folder.rglob("*") if _is_library(path)]:
+    for path in _libraries(folder):
         drop_symbols(path)
     after = size(folder)
     return after, before - after
@@ -94,7 +94,13 @@ def loaded_libraries(folder: Path) -> set[str]:
 
 def third_party_imports(folder: Path) -> set[str]:
     """Return the installed modules that the simulator's sources import, wherever they do."""
-    names = {name for path in _sources(folder) for name in _imported(path)}
+    names: set[str] = set()
+    for path in _sources(folder):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                names.update(alias.name for alias in node.names)
+            elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+                names.add(node.module)
     own = {*sys.stdlib_module_names, *SOURCES}
     foreign = {name for name in names if name.partition(".")[0] not in own}
     return {name for name in foreign if importlib.util.find_spec(name.partition(".")[0])}
@@ -109,23 +115,9 @@ def _sources(folder: Path) -> Iterator[Path]:
                 yield path
 
 
-def _imported(path: Path) -> Iterator[str]:
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            yield node.module
-
-
-def _libraries(folder: Path) -> Iterator[Path]:
-    for name in MANY_LIBRARIES:
-        for path in list((folder / name).rglob("*")):
-            if _is_library(path):
-                yield path
-
-
-def _is_library(path: Path) -> bool:
-    return (path.suffix == ".so" or ".so." in path.name) and path.is_file()
+def _libraries(folder: Path) -> list[Path]:
+    found = (path for path in folder.rglob("*.so*") if path.suffix == ".so" or ".so." in path.name)
+    return [path for path in found if path.is_file()]
 
 
 ELF_64_LITTLE = b"\x7fELF\x02\x01"

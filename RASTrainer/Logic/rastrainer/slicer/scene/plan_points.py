@@ -1,14 +1,23 @@
-"""The points of a plan as the user places, removes and restores them."""
+"""The points of plans and landmarks as the user places, removes and restores them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
-import vtk
+import numpy as np
+import slicer
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, Role, findOrAddNode, nodesOf
+from rastrainer.slicer.scene.nodes import (
+    ROLE_ATTRIBUTE,
+    Role,
+    changedOnce,
+    findOrAddNode,
+    labelOf,
+    nodesOf,
+    setPoints,
+)
 from rastrainer.slicer.translation import _
 
 SELECTION = "vtkMRMLSelectionNodeSingleton"
@@ -35,19 +44,84 @@ LIST, LINE = "vtkMRMLMarkupsFiducialNode", "vtkMRMLMarkupsLineNode"
 ENDS = 2
 
 
-class PlanPoints:
-    """Adds points to plans and removes them; each change can be undone, the last one first.
+@dataclass(frozen=True, eq=False)
+class PlacedPoints:
+    """Labels, positions (n, 3) float, mm, and which points are selected, of a list or a line."""
 
-    Placing more points never erases placed ones.
+    labels: tuple[str, ...]
+    points: np.ndarray
+    selected: tuple[bool, ...]
 
-    Attributes:
-        changes: the changes that can be undone: the node's ID, and a function that undoes the
-            change of the node, and returns whether there was anything to undo.
-    """
+    @classmethod
+    def of(cls, node: Any) -> PlacedPoints:
+        rows = placedRows(node)
+        return cls(
+            tuple(labelOf(node, row) for row in rows),
+            slicer.util.arrayFromMarkupsControlPoints(node)[rows],
+            tuple(bool(node.GetNthControlPointSelected(row)) for row in rows),
+        )
+
+    def isLike(self, other: PlacedPoints) -> bool:
+        isSame = (self.labels, self.selected) == (other.labels, other.selected)
+        return isSame and np.array_equal(self.points, other.points)
+
+    def without(self, row: int) -> PlacedPoints:
+        kept = [each for each in range(len(self.labels)) if each != row % len(self.labels)]
+        return PlacedPoints(
+            tuple(self.labels[each] for each in kept),
+            self.points[kept],
+            tuple(self.selected[each] for each in kept),
+        )
+
+    def put(self, node: Any) -> None:
+        """Replace the points of a list or a line by these."""
+        with changedOnce(node):
+            setPoints(node, self.labels, self.points)
+            for row, isSelected in enumerate(self.selected):
+                node.SetNthControlPointSelected(row, isSelected)
+
+
+class UndoablePoints:
+    """Places and removes points; each change can be undone, the last one first."""
 
     def __init__(self, scene: Any) -> None:
         self._scene = scene
-        self.changes: list[tuple[str, Callable[[Any], bool]]] = []
+        self._before: list[tuple[str, PlacedPoints]] = []
+
+    def remember(self, node: Any) -> PlacedPoints:
+        """Return the points that are placed, for `undo` to restore; the next click places none."""
+        stopPlacing(self._scene)
+        present = PlacedPoints.of(node)
+        self._before.append((node.GetID(), present))
+        return present
+
+    @property
+    def canUndo(self) -> bool:
+        """Whether a change can be undone."""
+        return any(self._changed(*before) is not None for before in self._before)
+
+    def undo(self) -> None:
+        """Undo the last change whose list or line still exists."""
+        stopPlacing(self._scene)
+        while self._before:
+            nodeId, before = self._before.pop()
+            node = self._changed(nodeId, before)
+            if node is not None:
+                before.put(node)
+                return
+
+    def forget(self) -> None:
+        """Forget what could be undone: the scene was closed."""
+        self._before.clear()
+
+    def _changed(self, nodeId: str, before: PlacedPoints) -> Any | None:
+        """Return a node whose points are different now."""
+        node = self._scene.GetNodeByID(nodeId)
+        return None if node is None or before.isLike(PlacedPoints.of(node)) else node
+
+
+class PlanPoints(UndoablePoints):
+    """The points of targets and trajectories; placing more never erases placed ones."""
 
     def newTarget(self) -> Any:
         node = findOrAddNode(self._scene, LIST, Role.PLAN_TARGET, _("Planned target"))
@@ -69,44 +143,16 @@ class PlanPoints:
         problem = whyNotRemoved(node)
         if node is None or problem:
             raise InputError(problem)
-        stopPlacing(self._scene)
-        index = placedRows(node)[row]
-        label = node.GetNthControlPointLabel(index)
-        position = vtk.vtkVector3d(*node.GetNthControlPointPosition(index))
-        node.RemoveNthControlPoint(index)
-
-        def insert(node: Any) -> bool:
-            node.InsertControlPoint(min(index, node.GetNumberOfControlPoints()), position, label)
-            return True
-
-        self.changes.append((node.GetID(), insert))
-
-    def undo(self) -> None:
-        """Undo the last placing or removal whose node still exists."""
-        stopPlacing(self._scene)
-        while self.changes:
-            nodeId, undoChange = self.changes.pop()
-            node = self._scene.GetNodeByID(nodeId)
-            if node is not None and undoChange(node):
-                return
+        self.remember(node).without(row).put(node)
 
     def _readyToPlace(self, node: Any) -> Any:
-        display = node.GetDisplayNode()
-        display.SetSelectedColor(TARGET_COLOR)
-        display.SetOccludedVisibility(True)
-        count = node.GetNumberOfDefinedControlPoints()
-
-        def removeNew(node: Any) -> bool:
-            added = placedRows(node)[count:]
-            for index in reversed(added):
-                node.RemoveNthControlPoint(index)
-            return bool(added)
-
-        self.changes.append((node.GetID(), removeNew))
+        node.GetDisplayNode().SetSelectedColor(TARGET_COLOR)
+        node.GetDisplayNode().SetOccludedVisibility(True)
+        self.remember(node)
         return node
 
 
-def placedRows(node: Any | None) -> Sequence[int]:
+def placedRows(node: Any | None) -> list[int]:
     """Return which points of a node are placed, and not only under the mouse."""
     if node is None:
         return []

@@ -7,7 +7,7 @@ it is saved with the scene.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import vtk
@@ -72,37 +72,19 @@ def newPlanLine(scene: Any) -> Any:
     )
 
 
-class RemovedLine(NamedTuple):
-    """A line that was removed from the plan.
-
-    Attributes:
-        ends: (n, 3) float, RAS mm; n is 2 unless it was not placed completely.
-        instrument: diameter and safety distance, mm.
-        place: position among the lines of the plan, from 0.
-    """
-
-    name: str
-    ends: np.ndarray
-    instrument: tuple[float, float]
-    place: int
-
-
-def removeLine(scene: Any, line: Any) -> RemovedLine:
-    """Remove a line from the plan; return what `restoreLine` needs to restore it."""
+def removeLine(scene: Any, line: Any) -> int:
+    """Remove a line from the plan; return its place among the lines, for `restoreLine`."""
     place = planLines(scene).index(line)
-    removed = RemovedLine(line.GetName(), worldPoints(line), instrumentOf(line), place)
     scene.RemoveNode(line)
-    return removed
+    return place
 
 
-def restoreLine(scene: Any, removed: RemovedLine) -> None:
-    """Restore a removed line at its position among the others."""
+def restoreLine(scene: Any, line: Any, place: int) -> None:
+    """Restore a removed line at its place among the others."""
     lines = planLines(scene)
-    line = _newLine(scene, Role.PLAN_LINE, removed.name)
-    setInstrument(line, *removed.instrument)
-    setPoints(line, (_("Entry"), _("Target"))[: len(removed.ends)], removed.ends)
-    lines.insert(removed.place, line)
-    _noteOrder(lines)
+    scene.AddNode(line)
+    line.CreateDefaultDisplayNodes()
+    _noteOrder([*lines[:place], line, *lines[place:]])
 
 
 def instrumentOf(line: Any) -> tuple[float, float]:
