@@ -39,7 +39,7 @@ def found(peer):
             "Looking for a simulator",
             "",
         ),
-        (found(Peer.NOBODY), LinkState.ABSENT, "No simulator answers", "Start the simulator"),
+        (found(Peer.UNREACHABLE), LinkState.ABSENT, "No simulator answers", "Start the simulator"),
         (found(Peer.UNKNOWN_HOST), LinkState.ABSENT, "no computer by that name", "IPv4"),
         (found(Peer.WITHOUT_IPV4), LinkState.ABSENT, "is an IPv6 address", "127.0.0.1"),
         (found(Peer.WEB_PAGE), LinkState.OTHER_PROGRAM, "is a web page (HTTP), not", "18944"),

@@ -99,7 +99,7 @@ def test_the_probe_does_not_wait_forever_for_a_silent_network(behavior, heard, p
 
 
 def test_an_unused_port_is_reported():
-    assert ask("127.0.0.1", free_port()) == ProbeResult(Peer.NOBODY, "127.0.0.1")
+    assert ask("127.0.0.1", free_port()) == ProbeResult(Peer.UNREACHABLE, "127.0.0.1")
 
 
 def test_a_name_is_resolved_off_the_main_thread_and_only_once_at_a_time(monkeypatch):
@@ -156,7 +156,7 @@ def test_a_name_that_has_only_an_address_of_ipv6_is_reported_so(monkeypatch):
 
 
 def test_an_ipv4_address_in_the_notation_of_ipv6_is_used():
-    assert ask("::ffff:127.0.0.1", free_port()) == ProbeResult(Peer.NOBODY, "127.0.0.1")
+    assert ask("::ffff:127.0.0.1", free_port()) == ProbeResult(Peer.UNREACHABLE, "127.0.0.1")
 
 
 def test_probing_leaves_no_socket_open():

@@ -86,7 +86,7 @@ class Simulation:
 
     @property
     def truth(self) -> Truth:
-        """Where the head is: secret until the trial is scored."""
+        """True pose of the head. Hidden from clients until the trial is scored."""
         return self._training.truth
 
     @property

@@ -122,10 +122,10 @@ class SceneFiles:
         path = (await self._paths_of(setup))[task]
         if path not in self._ready:
             async with self._one_at_a_time:
-                if path not in self._ready and not await self._take_up(path):
+                if path not in self._ready and not await self._use_built(path):
                     await self._build(setup, task, path)
                     await asyncio.to_thread(forget_oldest, self._folder)
-                    if not await self._take_up(path):
+                    if not await self._use_built(path):
                         raise InputError(f"The scene {path} has been deleted or changed by others.")
         return self._ready[path]
 
@@ -142,7 +142,7 @@ class SceneFiles:
             self._paths = (setup, paths)
         return self._paths[1]
 
-    async def _take_up(self, path: Path) -> bool:
+    async def _use_built(self, path: Path) -> bool:
         """Use the scene if it is already in the folder."""
         sha256 = await asyncio.to_thread(_sha256_of_glb, path)
         if sha256 is None:

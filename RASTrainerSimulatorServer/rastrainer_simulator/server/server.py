@@ -117,8 +117,8 @@ class SimulatorServer:
         self._records = RecordsFolder(options.records)
         with contextlib.ExitStack() as unless_ready:
             unless_ready.callback(self._records.close)
-            taken_up = self._take_up() if options.resumes else None
-            simulation, reading = taken_up or (self._make_simulation(options.scenario), None)
+            interrupted = self._load_interrupted_trial() if options.resumes else None
+            simulation, reading = interrupted or (self._make_simulation(options.scenario), None)
             self._has_resumed = reading is not None
             self._control_loop = ControlLoop(
                 simulation,
@@ -209,7 +209,7 @@ class SimulatorServer:
                 self._records.close()
                 _log.info("The simulator has ended.", extra={"data": self._health()})
 
-    def _take_up(self) -> tuple[Simulation, JournalReading] | None:
+    def _load_interrupted_trial(self) -> tuple[Simulation, JournalReading] | None:
         """Return a simulation with the trial that was interrupted, and its journal."""
         try:
             found = find_interrupted(self._options.records)

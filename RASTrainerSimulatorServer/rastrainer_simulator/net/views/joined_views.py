@@ -163,7 +163,7 @@ class JoinedViews:
         whole, text = "", message_text(news)
         for view in views:
             if view.is_spectator and not whole:
-                whole = message_text(dataclasses.replace(news, headset=self._worn()))
+                whole = message_text(dataclasses.replace(news, headset=self._headset_pose()))
             view.outbox.put_latest(StateNews.type, whole if view.is_spectator else text)
 
     def _put_pairing(self, view: ViewSocket) -> None:
@@ -171,20 +171,20 @@ class JoinedViews:
         if view.is_local and self._pairing and not view.is_spectator:
             view.outbox.put_latest(PairingNews.type, self._pairing)
 
-    def _worn(self) -> HeadsetPose | None:
+    def _headset_pose(self) -> HeadsetPose | None:
         """Return what the newest headset has sent; one that reconnects is another view."""
         headsets = [view for view in self._views.values() if view.hello.kind == "headset"]
-        return headsets[-1].worn if headsets else None
+        return headsets[-1].headset_pose if headsets else None
 
     def _covering(self, now: SimulationState, pictures: Pictures) -> CoveringBodies:
         setup = self._source.setup
         if self._cover is None or self._cover.setup is not setup:
             self._cover = ArmCover(setup)
-        worn = self._worn()
+        pose = self._headset_pose()
         eyes = {
             "view": pictures.main.position,
             "inset": None if pictures.inset is None else pictures.inset.position,
-            "headset": vector(worn.eyes[:3]) if worn and worn.eyes else None,
+            "headset": vector(pose.eyes[:3]) if pose and pose.eyes else None,
         }
         guided = self._presenter.trace_guidance(now).next_place
         places = places_to_see(now, setup.scenario, None if guided is None else guided.position_mm)

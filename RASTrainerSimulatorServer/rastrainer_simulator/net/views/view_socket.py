@@ -64,7 +64,7 @@ class ViewSocket:
         is_local: whether it is on this computer, as far as the network can tell.
         outbox: what waits to be sent to it.
         held: what it holds down.
-        worn: what a headset has sent last; None while nobody wears it.
+        headset_pose: what a headset has sent last; None while nobody wears it.
     """
 
     def __init__(
@@ -80,7 +80,7 @@ class ViewSocket:
         self.is_local = is_local
         self.outbox = Outbox()
         self.held = HeldInput(number, presenter)
-        self.worn: HeadsetPose | None = None
+        self.headset_pose: HeadsetPose | None = None
         self._socket = socket
         self._presenter = presenter
         self._rate = RateLimit(MESSAGES_PER_S, at_once=MESSAGES_PER_S)
@@ -146,7 +146,7 @@ class ViewSocket:
         if isinstance(message, (KeyInput, PadInput, SticksInput)):
             getattr(self.held, message.type)(*values)
         elif isinstance(message, HeadsetInput) and self.hello.kind == "headset":
-            self.worn = message if message.eyes is not None else None
+            self.headset_pose = message if message.eyes is not None else None
         elif isinstance(message, (HeadsetInput, Hello)):
             raise InputError(f"A {self.hello.kind} sends no {message.type} after its hello.")
         elif isinstance(message, Frames):

@@ -79,7 +79,7 @@ export class Hands {
   /** Where the eyes look, counterclockwise from World's x: the sticks' forward is there. */
   yawDeg = 0;
   /** Whether sticks step, as through a menu. */
-  isStepped = false;
+  sticksNavigate = false;
   /** Whether a guide is aligned: with its trigger held, the right stick turns and tilts it. */
   isAligning = false;
 
@@ -122,7 +122,7 @@ export class Hands {
     }
     this.grab.steer(this.message.translation, passed);
     this.tellSticks();
-    this.repeat(this.isStepped ? step : "", Math.min(LONGEST_STEP_S, passed));
+    this.repeat(this.sticksNavigate ? step : "", Math.min(LONGEST_STEP_S, passed));
   }
 
   /** Return the controller of that hand, null where there is none. */

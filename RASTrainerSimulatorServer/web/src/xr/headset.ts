@@ -110,7 +110,7 @@ export class Headset {
     this.isWorking = screen.menu === null;
     this.hasArrow = this.isWorking && screen.hasArrow;
     this.panels.show(screen);
-    this.hands.isStepped = this.panels.isStepped;
+    this.hands.sticksNavigate = this.panels.sticksNavigate;
   }
 
   showControl(control: ControlNews): void {

@@ -99,7 +99,7 @@ export class RoomPanels {
   }
 
   /** Whether sticks step: through a menu, or through a trial that is shown again. */
-  get isStepped(): boolean {
+  get sticksNavigate(): boolean {
     return this.screen !== null && (this.screen.menu !== null || this.screen.sticksNavigate);
   }
 

@@ -183,7 +183,7 @@ class SimulatorConnection:
             return None
         self._probe = None
         self.seen.finding = finding
-        isSoon = finding.peer in (Peer.NOBODY, Peer.SILENT, Peer.SIMULATOR)
+        isSoon = finding.peer in (Peer.UNREACHABLE, Peer.SILENT, Peer.SIMULATOR)
         self._nextProbe = self._clock() + (RETRY_S if isSoon else RETRY_OTHER_S)
         isOurs = finding.peer is Peer.SIMULATOR and finding.version == PROTOCOL_VERSION
         return finding if isOurs else None

@@ -17,7 +17,7 @@ class Peer(str, Enum):
     """Who may answer at a port."""
 
     SIMULATOR = "simulator"
-    NOBODY = "nobody"
+    UNREACHABLE = "unreachable"
     UNKNOWN_HOST = "unknown host"
     WITHOUT_IPV4 = "host without IPv4 address"
     SILENT = "silent"
@@ -43,7 +43,7 @@ _NAMES = {
     Peer.OTHER_PROGRAM: _("another program"),
 }
 _ABSENT = {
-    Peer.NOBODY: (
+    Peer.UNREACHABLE: (
         _("No simulator answers at {address}."),
         _("Start the simulator, or correct the host and port."),
     ),

@@ -139,7 +139,7 @@ class Probe:
         if self._job.isDone:
             peer = self._job.result()
         elif self._clock() > self._deadline:
-            peer = Peer.NOBODY if self._ip else Peer.UNKNOWN_HOST
+            peer = Peer.UNREACHABLE if self._ip else Peer.UNKNOWN_HOST
             if self._isAsked:
                 peer = self._recognition.giveUp()
             self.close()
@@ -169,7 +169,7 @@ class Probe:
             try:
                 self._socket.connect((found, port))
             except OSError:
-                return Peer.NOBODY
+                return Peer.UNREACHABLE
             self._isAsked = True
             with contextlib.suppress(OSError):  # What the peer has sent before may still be read.
                 self._socket.send(question)
