@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -59,12 +59,34 @@ def write_film(
     encoder = cv2.VideoWriter(str(partial), cv2.VideoWriter.fourcc(*"VP90"), RATE_HZ, SIZE)
     if not encoder.isOpened():
         raise InputError(f"The film {path} cannot be written: is its folder there and writable?")
-    scene = _FilmedScene(trial, setup)
     count = max(1, round(trial.duration_s / speed * RATE_HZ))
-    states = [trial.state_at(number * speed / RATE_HZ) for number in range(count)]
+    shown = filmed(trial, setup, [number * speed / RATE_HZ for number in range(count)])
+    try:
+        for number, pixels in enumerate(shown, start=1):
+            encoder.write(pixels[..., ::-1])
+            progress(number / count)
+        encoder.release()
+        partial.replace(path)
+    finally:
+        shown.close()
+        encoder.release()
+        partial.unlink(missing_ok=True)
+
+
+def filmed(
+    trial: RecordedTrial, setup: SimulationSetup, times_s: Sequence[float]
+) -> Generator[np.ndarray]:
+    """Yield pictures of a trial with touches and clock, (height, width, 3) uint8.
+
+    Each picture is `1 / RATE_HZ` s after the one before for the view, which moves gently.
+    """
+    import cv2
+
+    scene = _FilmedScene(trial, setup)
+    states = [trial.state_at(time_s) for time_s in times_s]
     shown = frames(scene.renderer, scene.shots(states))
     try:
-        for number, state in enumerate(states):
+        for state in states:
             pixels = next(shown)
             lay_in_corner(pixels, next(shown))
             text = f"{len(state.training.touches)}/{scene.count}   {_clock(state.completion_time)}"
@@ -72,14 +94,9 @@ def write_film(
                 cv2.putText(
                     pixels, text, (32, 58), cv2.FONT_HERSHEY_DUPLEX, 1.2, color, width, cv2.LINE_AA
                 )
-            encoder.write(pixels[..., ::-1])
-            progress((number + 1) / count)
-        encoder.release()
-        partial.replace(path)
+            yield pixels
     finally:
         shown.close()
-        encoder.release()
-        partial.unlink(missing_ok=True)
 
 
 def _clock(seconds: float) -> str:
