@@ -63,7 +63,7 @@ def _started_rows(data: StudyData, aborted: list[StoredAbortedTrial]) -> list[li
 
 @dataclass(frozen=True)
 class ModePassing:
-    """Who has passed in a mode.
+    """The trials and trainees of a mode that passed.
 
     Attributes:
         passed: Of all trials that count, those aborted after a touch included.
