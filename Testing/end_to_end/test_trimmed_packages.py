@@ -70,3 +70,11 @@ def test_a_trial_is_played_with_the_trimmed_packages(simulator):
 def test_a_scenario_is_checked_with_the_trimmed_packages(trimmed):
     done = run(trimmed[0], "scenario", "check", str(asset_path("scenarios", "colin27")))
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_a_report_is_written_with_the_trimmed_packages(trimmed, tmp_path):
+    study = asset_path("studies", "published.csv")
+    done = run(trimmed[0], "report", str(study), "-o", str(tmp_path))
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "40 trials" in done.stdout
+    assert (tmp_path / "report.html").read_text(encoding="utf-8").count("<svg") > 10

@@ -104,7 +104,7 @@ def _report(browser: Browser, study: Path, folder: Path, scale: float) -> Page:
     """Return the page of the report of a study."""
     written = write_report(read_study_data(study), folder / "report")
     page = browser.new_page(viewport=SIZE, device_scale_factor=scale)
-    page.goto(written.page.as_uri())
+    page.goto(written.as_uri())
     return page
 
 

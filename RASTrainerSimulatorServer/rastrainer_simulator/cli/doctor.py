@@ -49,7 +49,10 @@ def run(arguments: argparse.Namespace) -> int:
     return 1 if any(each["verdict"] == PROBLEM for each in findings) else 0
 
 
-NEEDED = ("aiohttp", "numpy", "psycopg", "pygame-ce", "python-fcl", "trustme", "vtk", "yourdfpy")
+NEEDED = (
+    *("aiohttp", "jinja2", "matplotlib", "numpy", "psycopg", "pygame-ce", "python-fcl", "scipy"),
+    *("trustme", "vtk", "yourdfpy"),
+)
 FASTER = () if sys.platform == "win32" else ("fastcrc", "pin")
 MODULES = {"pin": "pinocchio", "pygame-ce": "pygame", "python-fcl": "fcl"}
 MODULES |= {"vtk": "vtkmodules.vtkCommonCore"}

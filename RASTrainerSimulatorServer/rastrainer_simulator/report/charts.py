@@ -6,6 +6,7 @@ Lengths are in px of the chart's own size, which the page scales.
 from __future__ import annotations
 
 import io
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -25,16 +26,17 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 INK, FAINT, GRID, OFF = "#1f2933", "#6b7785", "#e3e7ec", "#b3261e"
-"""`OFF` rims what lies outside its interval."""
+"""`OFF` is the rim of points outside their intervals."""
 MODE_COLORS = {"desktop": "#0b6fa4", "hmd": "#d1661b"}
 """The paper's two, distinguishable for the color-blind."""
 OTHER_COLORS = ("#3d7f5f", "#8a4f9e", "#b3972c", "#5a6672")
 FONT, MEASURED_FONT = "'Helvetica Neue', Helvetica, Arial, sans-serif", "'DejaVu Sans'"
-"""What pages show, and what Matplotlib brings along and lays the texts out with."""
+"""The font of pages, and the one that Matplotlib contains and measures texts with."""
 STYLE: Any = {
     "font.family": "DejaVu Sans",
     "font.size": 10.0,
     "text.color": INK,
+    "text.parse_math": False,
     "axes.edgecolor": GRID,
     "axes.labelcolor": FAINT,
     "axes.grid": True,
@@ -68,7 +70,7 @@ LINK = "{http://www.w3.org/1999/xlink}href"
 PX_PER_INCH = 72
 """As Matplotlib counts in SVG files."""
 HALF_WIDTH, WIDTH = 330, 680
-"""Of charts side by side, and of one alone."""
+"""Width of charts side by side, and of a chart alone."""
 
 
 def mode_color(mode: str, index: int = 0) -> str:
@@ -114,7 +116,7 @@ class Chart:
         )
 
     def legend(self, x: float) -> None:
-        """Name what has a label in a row below the title; `x` is a share of the width."""
+        """Write the legend in a row below the title; `x` is a share of the width."""
         height = self.figure.get_figheight() * PX_PER_INCH
         self.figure.legend(
             loc="upper left", bbox_to_anchor=(x, 1 - 24 / height), ncols=8, fontsize=11
@@ -123,7 +125,10 @@ class Chart:
     def svg(self) -> Markup:
         """Return the drawing without what differs from run to run, or holds for a whole page."""
         written = io.BytesIO()
-        self.figure.savefig(written, format="svg", transparent=True)
+        with warnings.catch_warnings():
+            # Readers have fonts for letters that this one lacks.
+            warnings.filterwarnings("ignore", "Glyph .* missing from font")
+            self.figure.savefig(written, format="svg", transparent=True)
         root = ElementTree.fromstring(written.getvalue())
         for name, titles in self.titles.items():
             if titles:
@@ -132,7 +137,7 @@ class Chart:
             for child in [each for each in parent if each.tag in LEFT_OUT]:
                 parent.remove(child)
         for each in root.iter():
-            # Another chart of the page has them, too; shapes are named by what they are.
+            # Groups have the same names in every chart; shapes have names of their content.
             if each.tag == f"{SVG}g":
                 each.attrib.pop("id", None)
             if LINK in each.attrib:
@@ -200,7 +205,7 @@ class Series:
 
 
 MAX_DOTS = 40
-"""Of a bar; more are thinned out to as many quantiles."""
+"""A bar with more trials shows as many quantiles of them."""
 
 
 def grouped_bars(
@@ -351,7 +356,7 @@ def paired_lines(comparison: ModeComparison) -> Markup:
 
 
 def _difference(chart: Chart, difference: float, interval: tuple[float, float]) -> None:
-    """Draw a difference with its interval on an axis of its own, right of the others."""
+    """Draw a difference with its interval on a second axis, to the right of the others."""
     low, high = interval
     box = chart.axes.get_position()
     place = ((DIFFERENCE - 24) / HALF_WIDTH, box.y0, 48 / HALF_WIDTH, box.height)

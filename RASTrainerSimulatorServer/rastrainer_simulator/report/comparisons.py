@@ -6,7 +6,7 @@ If the orders allow it, the effects of the modes are separated from the effect o
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -76,9 +76,20 @@ def compare_modes(
     delays = mode_delays(data, first, second) if data.has_order else None
     for outcome in outcomes:
         means = paired_means(data, outcome.name, first, second)
-        if means:
-            order = None if delays is None else np.array([delays[trainee] for trainee in means])
-            found.append(_compared(outcome, first, second, means, order))
+        if not means:
+            continue
+        order = None if delays is None else np.array([delays[trainee] for trainee in means])
+        one, other = np.array(list(means.values())).T
+        result, reason = None, UNTESTED.get(outcome.name, "")
+        if not reason:
+            try:
+                result = compare_paired(one, other, order)
+            except InputError as error:
+                reason = str(error)
+        names = tuple(means)
+        found.append(
+            ModeComparison(outcome, first, second, names, one, other, order, result, None, reason)
+        )
     return with_adjusted_p(found, confirmatory)
 
 
@@ -152,23 +163,3 @@ def _task_means(trials: Sequence[TrialRow], name: str) -> dict[str, dict[str, fl
         trainee: {task: float(np.mean(found)) for task, found in tasks.items()}
         for trainee, tasks in values.items()
     }
-
-
-def _compared(
-    outcome: Outcome,
-    first: str,
-    second: str,
-    means: Mapping[str, tuple[float, float]],
-    order: np.ndarray | None,
-) -> ModeComparison:
-    both = np.array(list(means.values()))
-    result, reason = None, UNTESTED.get(outcome.name, "")
-    if not reason:
-        try:
-            result = compare_paired(both[:, 0], both[:, 1], order)
-        except InputError as error:
-            reason = str(error)
-    columns = both[:, 0], both[:, 1]
-    return ModeComparison(
-        outcome, first, second, tuple(means), *columns, order, result, None, reason
-    )

@@ -1,4 +1,4 @@
-"""The templates of a report, and what they write numbers and names with."""
+"""The templates of a report, and the functions with which they write numbers and names."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ WRITERS = (
     *(counted, fixed, p_phrase, p_text, percent, significant),
     *(mode_name, mode_title, short_mode_title, task_title),
 )
-"""What templates call."""
+"""The functions that templates call."""
 
 
 def _templates() -> Environment:

@@ -20,6 +20,8 @@ from rastrainer_simulator.report import charts
 from rastrainer_simulator.report.comparisons import SCORE, compared_method
 from rastrainer_simulator.report.page import render
 
+MAX_NAMED_TRIALS = 5
+
 
 def started_trials(data: StudyData) -> Markup:
     """Return the section; "" if only finished trials are known, as in a CSV file."""
@@ -33,6 +35,7 @@ def started_trials(data: StudyData) -> Markup:
         trial_runs=len(data.aborted) - len(scored),
         rows=_started_rows(data, scored),
         unscored=sorted(trial.trial_id for trial in data.trials if SCORE not in trial.values),
+        most_named=MAX_NAMED_TRIALS,
         repeats=[stored for stored in scored if stored.repeat_reason],
     )
 
@@ -59,7 +62,7 @@ def _started_rows(data: StudyData, aborted: list[StoredAbortedTrial]) -> list[li
 
 @dataclass(frozen=True)
 class ModePassing:
-    """Who has passed in a mode.
+    """The trials and trainees of a mode that passed.
 
     Attributes:
         passed: Of all trials that count, those aborted after a touch included.

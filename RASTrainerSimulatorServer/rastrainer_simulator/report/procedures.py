@@ -55,7 +55,7 @@ class ProcedureGroup:
     def of(
         cls, done: Sequence[tuple[TrialRow, ProcedureOutcome]], name: str = "", kind: str = ""
     ) -> ProcedureGroup:
-        """Return the group of all procedures, of a trainee's, or of those of one kind."""
+        """Return the group of all procedures, or only those of one trainee or kind."""
         own = tuple(
             (trial, found)
             for trial, found in done

@@ -130,7 +130,7 @@ def answers(
     passed: Sequence[ModePassing],
     left_out: str,
 ) -> Markup:
-    """Return who passed, what differs, and what is not known."""
+    """Return the first screen: who passed, the differences shown, and the limits."""
     results = tested(comparisons)
     n = max((len(comparison.trainees) for comparison in comparisons), default=0)
     with_period = any(result.sequences is not None for _one, result in results)

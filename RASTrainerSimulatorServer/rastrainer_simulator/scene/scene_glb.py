@@ -15,6 +15,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+
+if __name__ == "__main__":
+    # Views wait for this process: trimesh would import scipy, a third of a second, for nothing.
+    sys.modules["scipy"] = None  # type: ignore[assignment]
 import trimesh
 from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial

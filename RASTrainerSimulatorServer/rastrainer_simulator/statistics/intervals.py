@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import bisect
 import functools
 import math
 from dataclasses import dataclass
@@ -37,7 +38,10 @@ def noncentrality_interval(t: float, dof: float) -> tuple[float, float]:
 
 
 def _noncentrality(t: float, dof: float, probability: float) -> float:
-    """Return the noncentrality at which so much of the distribution lies below t."""
+    """Return the noncentrality at which so much of the distribution lies below t.
+
+    `scipy.special.nctdtrinc` is right to 10⁻⁶ only.
+    """
     below = scipy.stats.nct.cdf
 
     def excess(noncentrality: float) -> float:
@@ -81,22 +85,16 @@ def paired_power(effect_dz: float, n: int, with_period: bool = False) -> float:
 
 def subjects_needed(effect_dz: float, with_period: bool = False) -> int:
     """Return the least number of subjects with `TARGET_POWER`; arguments as of `paired_power`."""
-    low = 1 + with_period
-    high = low + 1
-    while paired_power(effect_dz, high, with_period) < TARGET_POWER:
-        low, high = high, 2 * high
-        if high > MAX_SUBJECTS:
-            raise InputError(
-                f"An effect of {effect_dz:g} standard deviations would need more than "
-                f"{MAX_SUBJECTS} subjects."
-            )
-    while high - low > 1:
-        middle = (low + high) // 2
-        if paired_power(effect_dz, middle, with_period) < TARGET_POWER:
-            low = middle
-        else:
-            high = middle
-    return high
+    sizes = range(2 + with_period, MAX_SUBJECTS + 1)
+    place = bisect.bisect_left(
+        sizes, TARGET_POWER, key=lambda n: paired_power(effect_dz, n, with_period)
+    )
+    if place == len(sizes):
+        raise InputError(
+            f"An effect of {effect_dz:g} standard deviations would need more than "
+            f"{MAX_SUBJECTS} subjects."
+        )
+    return sizes[place]
 
 
 def detectable_effect(n: int, with_period: bool = False) -> float:
@@ -181,19 +179,12 @@ def difference(first: MeanSquare, second: MeanSquare) -> Estimate:
     (1992). They may be below 0.
     """
     one, other = first.value, second.value
-    difference_ = one - other
     products = np.array([one**2, other**2, one * other])
-    low, high = (
-        products @ factors
-        for factors in (
-            _factors(TAIL, first.dof, second.dof),
-            _factors(1 - TAIL, first.dof, second.dof),
-        )
+    below, above = (
+        math.sqrt(max(float(products @ _factors(tail, first.dof, second.dof)), 0.0))
+        for tail in (TAIL, 1 - TAIL)
     )
-    return Estimate(
-        difference_,
-        (difference_ - math.sqrt(max(low, 0.0)), difference_ + math.sqrt(max(high, 0.0))),
-    )
+    return Estimate(one - other, (one - other - below, one - other + above))
 
 
 @functools.lru_cache(maxsize=256)

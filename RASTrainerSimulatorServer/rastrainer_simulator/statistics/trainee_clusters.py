@@ -197,24 +197,28 @@ def k_means(
     points: np.ndarray, count: int, random: np.random.Generator, starts: int = STARTS
 ) -> np.ndarray:
     """Return the cluster of each of (n, m) points, (n,) int: the best of several starts (scipy)."""
-    found = [_once(points, count, random) for _ in range(starts)]
+    found = []
+    with warnings.catch_warnings():
+        # A start that loses a cluster is not the best one.
+        warnings.simplefilter("ignore", UserWarning)
+        for _ in range(starts):
+            centers, labels = scipy.cluster.vq.kmeans2(
+                points, count, iter=MAX_ROUNDS, minit="++", seed=random
+            )
+            found.append((float(((points - centers[labels]) ** 2).sum()), labels))
     return min(found, key=lambda one: one[0])[1]
 
 
 def silhouettes(points: np.ndarray, labels: np.ndarray) -> np.ndarray:
     """Return how well each point sits in its cluster, (n,) float, -1 to 1 (Rousseeuw 1987)."""
-    distances = np.linalg.norm(points[:, None] - points[None], axis=2)
-    clusters = np.unique(labels)
-    sizes = np.array([(labels == c).sum() for c in clusters])
-    sums = np.stack([distances[:, labels == c].sum(axis=1) for c in clusters], axis=1)
-    own = np.searchsorted(clusters, labels)
-    rows = np.arange(len(points))
-    within = sums[rows, own] / np.maximum(sizes[own] - 1, 1)
-    means = sums / sizes
-    means[rows, own] = np.inf
-    nearest = means.min(axis=1)
+    members = labels[:, None] == np.unique(labels)
+    sizes = members.sum(axis=0)
+    sums = scipy.spatial.distance.cdist(points, points) @ members
+    own = (members * sizes).sum(axis=1)
+    within = (members * sums).sum(axis=1) / np.maximum(own - 1, 1)
+    nearest = np.where(members, np.inf, sums / sizes).min(axis=1)
     values = (nearest - within) / np.maximum(within, nearest)
-    return np.where(sizes[own] == 1, 0.0, values)
+    return np.where(own == 1, 0.0, values)
 
 
 def stability(
@@ -238,14 +242,3 @@ def stability(
                 for new in np.unique(again)
             )
     return found.mean(axis=0)
-
-
-def _once(points: np.ndarray, count: int, random: np.random.Generator) -> tuple[float, np.ndarray]:
-    """Return the sum of squares and the labels of one start (k-means++)."""
-    with warnings.catch_warnings():
-        # A start that loses a cluster is not the best one.
-        warnings.simplefilter("ignore", UserWarning)
-        centers, labels = scipy.cluster.vq.kmeans2(
-            points, count, iter=MAX_ROUNDS, minit="++", seed=random
-        )
-    return float(((points - centers[labels]) ** 2).sum()), labels

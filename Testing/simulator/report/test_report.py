@@ -414,6 +414,24 @@ def test_a_pass_mark_without_protocol_is_called_the_default(has_protocol):
     assert "70 of 100 points (the default, since the study sets no mark; no data" in words
 
 
+def test_names_are_texts_in_charts_whatever_they_contain(recwarn):
+    odd = "任务 $\\frac{1}$ & <b>"
+    rows = [
+        TrialRow(odd, mode, odd, number, {"completion_time_s": 10.0 + number, "rmse_mm": 1.0})
+        for mode in ("desktop", odd)
+        for number in range(1, 4)
+    ]
+    page = report_html(StudyData(odd, tuple(rows), has_order=True), "today")
+    shown = [
+        "".join(text.itertext())
+        for chart in re.findall(r"<svg.*?</svg>", page, re.DOTALL)
+        for text in ElementTree.fromstring(chart).iter("{http://www.w3.org/2000/svg}text")
+    ]
+    assert any(odd in text for text in shown)
+    assert "<b>" not in page
+    assert [str(each.message) for each in recwarn if "Glyph" in str(each.message)] == []
+
+
 def test_hostile_pseudonyms_and_titles_are_escaped():
     evil = '<script>alert("x")</script>'
     rows = [
