@@ -64,7 +64,7 @@ def rate(arguments: argparse.Namespace) -> int:
     if arguments.replays < 1:
         raise InputError("--replays must be at least 1.")
     # Only here: the robot and the scenario take time to import.
-    from rastrainer_simulator.rating.rating_pages import RatingWork
+    from rastrainer_simulator.rating.rating_work import RatingWork
     from rastrainer_simulator.server.replay_server import serve_rating, trials_to_show
 
     tell = partial(announce, "rating")
