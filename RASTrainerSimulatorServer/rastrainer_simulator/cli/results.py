@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from typing import Any
 
 from rastrainer.errors import InputError
@@ -83,7 +84,8 @@ def report(arguments: argparse.Namespace) -> int:
 
     data = read_known_study(arguments)
     means = _mean_times(arguments.mean_ct, list(data.modes))
-    written = write_report(data.with_mean_times(means), arguments.output)
+    data = replace(data, mean_ct_s={**data.mean_ct_s, **means})
+    written = write_report(data, arguments.output)
     aborted = f", {len(data.aborted)} aborted ones" if data.has_order else ""
     print(f"{written.page}: {len(data.trainees)} trainees, {len(data.trials)} trials{aborted}")
     return 0

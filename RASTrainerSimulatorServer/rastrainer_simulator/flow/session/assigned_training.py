@@ -64,10 +64,8 @@ class StudySteps:
         """Keep the answers to the questionnaire that comes next, until Slicer has received them."""
         step = self._steps.get(trainee)
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
-            step_data = {"number": step.number, "questionnaire": step.questionnaire}
-            self._answers[trainee] = StepAnswers.from_json(
-                {"trainee": trainee, "answers": list(answers), **step_data}
-            )
+            given = StepAnswers(trainee, step.number, step.questionnaire, tuple(answers))
+            self._answers[trainee] = given
             self._steps[trainee] = replace(step, kind=ANSWERED)
 
     def unacknowledged_answers(self) -> tuple[StepAnswers, ...]:

@@ -259,7 +259,9 @@ class SimulatorLink:
 
     def _send_answers(self) -> None:
         for number, answers in enumerate(self._answers(), start=1):
-            command = Command(number, CommandName.STEP_ANSWERED, json.dumps(answers.to_json()))
+            command = Command(
+                number, CommandName.STEP_ANSWERED, json.dumps(record_to_json(answers))
+            )
             for connection in self.server.clients:
                 connection.send(Outgoing(Message(DeviceName.COMMAND, command)))
 
