@@ -24,7 +24,7 @@ from rastrainer.errors import InputError
 from rastrainer.json_checks import decode_finite_json
 from rastrainer.json_records import RecordField, record_fields, record_from_json, record_to_json
 
-READ = re.compile(r"record_from_json(?:\(|,)\s*\(?([A-Z]\w+)")
+READ = re.compile(r"(?:record_from_json|decoded_record)(?:\(|,)\s*\(?([A-Z]\w+)")
 EYE = [float(row == column) for row in range(4) for column in range(4)]
 LIKELY = [
     *(0, 1, 0.5, True, "a", "a-b", "", [], {}, None),

@@ -14,6 +14,7 @@ from typing import Annotated, Any
 from rastrainer.errors import InputError
 from rastrainer.json_checks import (
     identifier,
+    list_of,
     number,
     one_of,
     text,
@@ -222,12 +223,6 @@ class AssignmentStanding(Assignment):
         return self.state is AssignmentState.REACHED
 
 
-def _some_assignments(value: Any) -> Any:
-    if not isinstance(value, (list, tuple)) or len(value) > MAX_ASSIGNMENTS:
-        raise ValueError(f"a list of up to {MAX_ASSIGNMENTS} assignments")
-    return value
-
-
 @dataclass(frozen=True)
 class CurriculumMessage:
     """A trainee's standing in a curriculum, as the menu shows it.
@@ -242,7 +237,9 @@ class CurriculumMessage:
     trainee: str
     title: Annotated[str, text(80)] = ""
     next: Annotated[str, text(40)] = ""
-    assignments: Annotated[tuple[AssignmentStanding, ...], _some_assignments] = ()
+    assignments: Annotated[
+        tuple[AssignmentStanding, ...], list_of(0, MAX_ASSIGNMENTS, "assignments")
+    ] = ()
 
     @classmethod
     def from_arguments(cls, arguments: Mapping[str, Any]) -> CurriculumMessage:

@@ -84,7 +84,7 @@ def _summary(sentence: str, report) -> str:
 
 def rate(arguments: argparse.Namespace) -> int:
     # Only here: the robot and the scenario take time to import.
-    from rastrainer_simulator.rating.rating_pages import RatingWork
+    from rastrainer_simulator.rating.rating_work import RatingWork
     from rastrainer_simulator.server.replay_server import serve_rating, trials_to_show
 
     tell = partial(announce, "rating")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from typing import Any
 
 from rastrainer.errors import InputError
@@ -84,7 +85,8 @@ def report(arguments: argparse.Namespace) -> int:
 
     data = read_known_study(arguments)
     means = _mean_times(arguments.mean_ct, list(data.modes))
-    page = write_report(data.with_mean_times(means), arguments.output, progress=print_progress)
+    data = replace(data, mean_ct_s={**data.mean_ct_s, **means})
+    page = write_report(data, arguments.output, progress=print_progress)
     aborted = f", {len(data.aborted)} aborted ones" if data.has_order else ""
     print(f"{page}: {len(data.trainees)} trainees, {len(data.trials)} trials{aborted}")
     return 0

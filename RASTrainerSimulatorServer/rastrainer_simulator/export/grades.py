@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.study.tidy_csv import csv_text, plain_cell
+from rastrainer.study.tidy_csv import csv_text
 from rastrainer.trial.trial_feedback import PastTrial
 
 PLATFORMS = ("moodle", "canvas")
@@ -48,7 +48,7 @@ def grade(
 
 def grades_csv(grades: Mapping[str, float], platform: str) -> str:
     """Return grades by pseudonym as a file for one of `PLATFORMS`."""
-    rows = [(plain_cell(name), f"{score:.2f}") for name, score in sorted(grades.items())]
+    rows = [(name, f"{score:.2f}") for name, score in sorted(grades.items())]
     if platform == "moodle":
         return csv_text(("ID number", GRADE_COLUMN), rows)
     points = ("Points Possible", "", "", "", "", FULL_GRADE)

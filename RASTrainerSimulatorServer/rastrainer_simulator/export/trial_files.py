@@ -216,10 +216,8 @@ def write_slicer_files(trial: StoredTrial, folder: Path) -> list[Path]:
     moved = transforms.apply(matrix, record.positions_mm)
     write_markups(ras, PointList(record.labels, moved))
     write_text(transform, transform_text(matrix))
-    rows = [
-        [label, repr(value)] for label, value in zip(rigid.labels, rigid.residuals_mm, strict=True)
-    ]
-    write_text(table, csv_text(["fiducial", "residual_mm"], rows))
+    residuals = zip(rigid.labels, rigid.residuals_mm, strict=True)
+    write_text(table, csv_text(["fiducial", "residual_mm"], residuals))
     traced = _write_trace(trial, folder, matrix)
     return [world, ras, transform, table, *traced, *_write_lines(trial, folder)]
 

@@ -106,51 +106,41 @@ def _trial_statement(
     context: dict[str, Any],
     home_page: str,
 ) -> dict[str, Any]:
+    place = f"RASTrainer, {mode_title(trial.mode)}"
+    return _statement(
+        *(home_page, trial.trial_id, trial.trainee, verb, timestamp),
+        object=_activity(f"{home_page}/tasks/{trial.task}", task_title(trial.task), SIMULATION),
+        result=result,
+        context={"platform": place, "extensions": context},
+    )
+
+
+def _answers(answered: QuestionnaireAnswers, home_page: str) -> dict[str, Any]:
+    step, trainee, utc = answered.step, answered.trainee, answered.stored_utc
+    identity = str(uuid.uuid5(NAMESPACE, f"{home_page} {trainee} {step.name} {utc}"))
+    name = step.questionnaire
+    scores = {f"{home_page}/xapi/values/{each}": score for each, score in answered.scores.items()}
+    return _statement(
+        *(home_page, identity, trainee, "answered", utc),
+        object=_activity(f"{home_page}/questionnaires/{name}", name, SURVEY),
+        result={"completion": True, "extensions": scores},
+        context={"extensions": {f"{home_page}/xapi/step": step.name}},
+    )
+
+
+def _statement(
+    home_page: str, identity: str, trainee: str, verb: str, timestamp: str, **content: Any
+) -> dict[str, Any]:
     return {
-        "id": trial.trial_id,
+        "id": identity,
         "version": VERSION,
-        "actor": _actor(trial.trainee, home_page),
-        "verb": _verb(verb),
-        "object": _activity(f"{home_page}/tasks/{trial.task}", task_title(trial.task), SIMULATION),
-        "result": result,
-        "context": {"platform": f"RASTrainer, {mode_title(trial.mode)}", "extensions": context},
+        "actor": {"objectType": "Agent", "account": {"homePage": home_page, "name": trainee}},
+        "verb": {"id": VERBS[verb], "display": {"en-US": verb}},
+        **content,
         "timestamp": timestamp,
     }
 
 
-def _answers(answered: QuestionnaireAnswers, home_page: str) -> dict[str, Any]:
-    step = answered.step
-    identity = f"{home_page} {answered.trainee} {step.name} {answered.stored_utc}"
-    name = step.questionnaire
-    return {
-        "id": str(uuid.uuid5(NAMESPACE, identity)),
-        "version": VERSION,
-        "actor": _actor(answered.trainee, home_page),
-        "verb": _verb("answered"),
-        "object": _activity(f"{home_page}/questionnaires/{name}", name, SURVEY),
-        "result": {
-            "completion": True,
-            "extensions": {
-                f"{home_page}/xapi/values/{scale}": score
-                for scale, score in answered.scores.items()
-            },
-        },
-        "context": {"extensions": {f"{home_page}/xapi/step": step.name}},
-        "timestamp": answered.stored_utc,
-    }
-
-
-def _actor(trainee: str, home_page: str) -> dict[str, Any]:
-    return {"objectType": "Agent", "account": {"homePage": home_page, "name": trainee}}
-
-
-def _verb(name: str) -> dict[str, Any]:
-    return {"id": VERBS[name], "display": {"en-US": name}}
-
-
 def _activity(iri: str, name: str, kind: str) -> dict[str, Any]:
-    return {
-        "objectType": "Activity",
-        "id": iri,
-        "definition": {"type": kind, "name": {"en-US": name}},
-    }
+    definition = {"type": kind, "name": {"en-US": name}}
+    return {"objectType": "Activity", "id": iri, "definition": definition}

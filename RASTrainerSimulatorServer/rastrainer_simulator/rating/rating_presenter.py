@@ -1,13 +1,15 @@
-"""What views show and accept while a rater watches replays and marks them."""
+"""What views show and accept while a rater watches replays and marks them: one domain a page."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
+from functools import partial
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.flow.session.open_pages import OpenPages
+from rastrainer.study.ratings import HIGHEST, LOWEST, MARKS, RatingDomain, RatingForm
+from rastrainer_simulator.flow.session.open_pages import OpenPages, Page, PageContent, PageRow
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.gamepads import w3c_gamepad_inputs
 from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice
@@ -17,8 +19,8 @@ from rastrainer_simulator.presentation.presenter import (
     Presenter,
     ViewUpdate,
 )
-from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage, Tone
-from rastrainer_simulator.rating.rating_pages import DomainPage, LoadingPage, RatedPage, RatingWork
+from rastrainer_simulator.presentation.screen import Fact, Hint, Screen, ScreenMessage, Tone
+from rastrainer_simulator.rating.rating_work import RatingWork
 from rastrainer_simulator.replay.playback import Playback, ShownPlayback
 from rastrainer_simulator.replay.replay_presenter import RATE, ReplayPresenter
 from rastrainer_simulator.state import SimulationState
@@ -56,7 +58,8 @@ class RatingPresenter(Presenter):
         self.texts = Texts(LANGUAGES[language])
         self.pages = OpenPages(self._happened)
         self.shown = ShownPlayback(first)
-        self._language, self._load, self._end = language, load, end
+        self.leave = end
+        self._language, self._load = language, load
         self._loading: Future[Playback] | None = None
         self._held: dict[int, tuple[frozenset[int], frozenset[int]]] = {}
         self._keys: dict[int, set[str]] = {}
@@ -98,8 +101,17 @@ class RatingPresenter(Presenter):
         self.pages.show(RatedPage(self) if open_ is None else DomainPage(self, *open_))
         self._refresh()
 
-    def leave(self) -> None:
-        self._end()
+    def undo(self) -> None:
+        self.work.undo()
+        self.rate()
+
+    def go_back(self) -> None:
+        self.work.go_back()
+        self.load()
+
+    def go_on(self) -> None:
+        self.work.go_to_next()
+        self.load()
 
     def pictures(self, now: SimulationState) -> Pictures:
         return self._replay.pictures(now)
@@ -144,7 +156,12 @@ class RatingPresenter(Presenter):
         if self.pages.top is not None:
             inputs = w3c_gamepad_inputs(moved, tapped)
             names = [name for name, value in inputs.items() if value > _DOWN]
-            self._do(lambda: self._pad_pressed(names))
+
+            def press() -> None:
+                for name in names:
+                    self._page_pressed(InputDevice.GAMEPAD, name)
+
+            self._do(press)
             return
         # Released at once: a button that has led from the form back here is not pressed again.
         self._replay.on_pad(view, axes, tapped)
@@ -193,10 +210,6 @@ class RatingPresenter(Presenter):
         else:
             self.publish(update)
 
-    def _pad_pressed(self, names: Sequence[str]) -> None:
-        for name in names:
-            self._page_pressed(InputDevice.GAMEPAD, name)
-
     def _page_pressed(self, device: InputDevice, name: str) -> None:
         page = self.pages.top
         if page is None or page.input_pressed(device, name):
@@ -242,3 +255,122 @@ class RatingPresenter(Presenter):
 def _pressed(values: Sequence[float]) -> frozenset[int]:
     """Return which axes or buttons are away from rest."""
     return frozenset(number for number, value in enumerate(values) if abs(value) > _DOWN)
+
+
+_KEYS = {f"{key}{mark}": mark for key in ("Digit", "Numpad") for mark in MARKS}
+_SENTENCES = {LOWEST: "low", (LOWEST + HIGHEST) // 2: "middle", HIGHEST: "high"}
+"""Marks that a sentence describes."""
+
+
+class RatingPage(Page):
+    """A page that a rater reads."""
+
+    def __init__(self, actions: RatingPresenter) -> None:
+        self.actions = actions
+
+    def say(self, key: str, **values: object) -> str:
+        """Return a sentence in the chosen language, with the replay's number among all."""
+        work = self.actions.work
+        place = {"number": work.place + 1, "count": len(work.trial_ids)}
+        return self.actions.texts.say(key, **place, **values)
+
+    def rows(self, *names: str) -> tuple[PageRow, ...]:
+        """Return buttons that several pages have; "watch" goes back."""
+        actions = self.actions
+        acts = {
+            "undo": actions.undo,
+            "next": actions.go_on,
+            "previous": actions.go_back,
+            "leave": actions.leave,
+        }
+        return tuple(
+            self.button(name, acts.get(name), self.say(f"rating.{name}")) for name in names
+        )
+
+    def back(self) -> None:
+        """Watch the replay again."""
+        self.actions.watch()
+
+
+class DomainPage(RatingPage):
+    """Accepts one mark, and leads to the next domain."""
+
+    name = "rating"
+
+    def __init__(self, actions: RatingPresenter, form: RatingForm, domain: RatingDomain) -> None:
+        super().__init__(actions)
+        self._form, self._domain = form, domain
+
+    def content(self) -> PageContent:
+        """Return the marks, three of them with what they mean."""
+        marks = (
+            self.button(f"mark {mark}", partial(self._give, mark), self._label(mark))
+            for mark in MARKS
+        )
+        others = self.rows(*(["undo"] if self.actions.work.marks else []), "watch", "leave")
+        domain = self.say(f"rate.{self._domain.name}")
+        title = self.say("rating.title", form=self._form.title, domain=domain)
+        # The focus is not on a mark, which would then be given more often than others.
+        said = (self.say("rating.text"),)
+        return PageContent(title, said, rows=(*marks, *others), first="watch")
+
+    def input_pressed(self, device: InputDevice, name: str) -> bool:
+        """Store a typed mark."""
+        if device is not InputDevice.KEYBOARD or name not in _KEYS:
+            return False
+        self._give(_KEYS[name])
+        return True
+
+    def _give(self, mark: int) -> None:
+        self.actions.work.give(mark)
+        self.actions.rate()
+
+    def _label(self, mark: int) -> str:
+        if mark not in _SENTENCES:
+            return str(mark)
+        sentence = self.say(f"rate.{self._domain.name}.{_SENTENCES[mark]}")
+        return self.say("rating.mark", mark=mark, sentence=sentence)
+
+
+class RatedPage(RatingPage):
+    """Shows the marks of a replay, and leads to the next one."""
+
+    name = "rated"
+
+    def content(self) -> PageContent:
+        work = self.actions.work
+        facts = [
+            Fact(self.say(f"rate.{domain.name}"), str(work.marks[domain.name]))
+            for form in work.forms
+            for domain in form.domains
+            if domain.name in work.marks
+        ]
+        is_last = work.rated == len(work.trial_ids)
+        title = self.say("rated.all" if is_last else "rated.title")
+        text = self.say("rated.all text" if is_last else "rated.text", rated=work.rated)
+        following = [] if is_last else ["next"]
+        previous = ["previous"] if work.place else []
+        rows = self.rows(*following, "undo", "watch", *previous, "leave")
+        return PageContent(title, (text,), facts, rows, first="next")
+
+
+class LoadingPage(RatingPage):
+    """Waits for a replay; says why where it cannot be shown."""
+
+    name = "rating-loading"
+
+    def __init__(self, actions: RatingPresenter, loading: Future[Playback]) -> None:
+        super().__init__(actions)
+        self._loading = loading
+
+    def content(self) -> PageContent:
+        problem = ""
+        if self._loading.done():
+            error = self._loading.exception()
+            problem = str(error) if isinstance(error, InputError) else ""
+        text = problem or self.say("rating-loading.text")
+        rows = self.rows(*(["previous"] if self.actions.work.place else []), "leave")
+        return PageContent(self.say("rating-loading.title"), (text,), rows=rows)
+
+    def back(self) -> None:
+        """There is nothing to go back to yet."""

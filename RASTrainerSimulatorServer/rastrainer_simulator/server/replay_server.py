@@ -26,8 +26,8 @@ from rastrainer_simulator.ops.application_window import ApplicationWindow
 from rastrainer_simulator.ops.processes import stop_on_signals
 from rastrainer_simulator.ops.system_paths import config_folder
 from rastrainer_simulator.presentation.presenter import Presenter
-from rastrainer_simulator.rating.rating_pages import RatingWork
 from rastrainer_simulator.rating.rating_presenter import RatingPresenter
+from rastrainer_simulator.rating.rating_work import RatingWork
 from rastrainer_simulator.record.trial_context import setup_of
 from rastrainer_simulator.replay.playback import Playback, play_on
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial

@@ -8,7 +8,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.study.database.study import Study
 from rastrainer.study.ratings import FORMS, GEARS, OSATS, RatingStore, find_form
-from rastrainer_simulator.rating.rating_pages import RatingWork
+from rastrainer_simulator.rating.rating_work import RatingWork
 from Testing.domain.trial.trial_records import make_record
 
 TRIALS = [str(uuid.UUID(int=number)) for number in range(1, 9)]

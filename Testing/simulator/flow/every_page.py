@@ -37,7 +37,7 @@ from rastrainer_simulator.flow.session.preferences import InstructorLock
 from rastrainer_simulator.flow.session.trainee_history import OwnTrial
 from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.presentation.screen import Screen, without_secrets
-from rastrainer_simulator.rating.rating_pages import DomainPage, LoadingPage, RatedPage
+from rastrainer_simulator.rating.rating_presenter import DomainPage, LoadingPage, RatedPage
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.state import TrainingState, TrialResult
 from rastrainer_simulator.trial_state import (
@@ -197,6 +197,7 @@ class _Desk:
     """A rater's desk, as far as pages show it."""
 
     work = _Rated()
+    undo = go_on = go_back = leave = None
 
     def __init__(self, texts):
         self.texts = texts

@@ -28,8 +28,8 @@ from rastrainer_simulator.presentation.messages import (
     message_text,
 )
 from rastrainer_simulator.presentation.screen import Screen
-from rastrainer_simulator.rating.rating_pages import RatingWork
 from rastrainer_simulator.rating.rating_presenter import RatingPresenter
+from rastrainer_simulator.rating.rating_work import RatingWork
 from rastrainer_simulator.server.replay_server import ReplayLoader, trials_to_show
 from rastrainer_simulator.virtual.cohort import RECORDS
 from Testing.simulator.net.views.served import ViewClient

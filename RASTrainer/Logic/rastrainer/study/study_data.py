@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from rastrainer.errors import InputError
@@ -106,9 +106,6 @@ class StudyData:
     def tasks(self) -> tuple[str, ...]:
         """Tasks by name, with numbers in numerical order."""
         return tuple(sorted({trial.task for trial in self.trials}, key=_by_number))
-
-    def with_mean_times(self, mean_ct_s: Mapping[str, float]) -> StudyData:
-        return replace(self, mean_ct_s={**self.mean_ct_s, **mean_ct_s})
 
     def of_mode(self, mode: str) -> list[TrialRow]:
         return [trial for trial in self.trials if trial.mode == mode]

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.files.writing import write_text
-from rastrainer.procedure.errors import TrajectoryErrors
+from rastrainer.procedure.errors import SplitError, TrajectoryErrors
 from rastrainer.registration.fits import RIGID
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredAbortedTrial, StoredTrial
@@ -17,6 +17,7 @@ from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers
 from rastrainer.study.study_data import StudyData, TrialRow, trial_rows
 from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.procedure_outcome import ProcedureOutcome
 
 FIRST_COLUMNS = (
     *("trainee", "mode", "task", "number", "trial_id", "started_utc"),
@@ -83,14 +84,8 @@ def trials_csv(trials: Sequence[TrialRow]) -> str:
     names = sorted({name for trial in trials for name in trial.values})
     rows = [
         [
-            *_who(trial),
-            trial.number,
-            trial.trial_id,
-            trial.started_utc,
-            plain_cell(trial.scenario),
-            trial.score_version,
-            trial.method,
-            *(_number(trial.values.get(name)) for name in names),
+            *(getattr(trial, name) for name in FIRST_COLUMNS),
+            *(float(trial.values[name]) if name in trial.values else None for name in names),
         ]
         for trial in trials
     ]
@@ -108,17 +103,17 @@ def aborted_csv(trials: Iterable[StoredAbortedTrial]) -> str:
                 record.trial_id,
                 record.started_utc,
                 record.aborted_utc,
-                plain_cell(record.scenario),
+                record.scenario,
                 int(record.is_trial_run),
                 record.phase,
-                plain_cell(record.reason),
-                _number(record.elapsed_s),
+                record.reason,
+                record.elapsed_s,
                 len(record.points),
                 record.rejected_touches,
                 record.undone_touches,
                 int(record.counts_as_failed),
                 stored.step,
-                plain_cell(stored.repeat_reason),
+                stored.repeat_reason,
                 record.method.value,
                 record.traced,
             ]
@@ -129,12 +124,7 @@ def aborted_csv(trials: Iterable[StoredAbortedTrial]) -> str:
 def aborted_touches_csv(trials: Iterable[StoredAbortedTrial]) -> str:
     """Return the kept touches of aborted trials, like `touches_csv`."""
     rows = [
-        [
-            *_who(trial),
-            trial.trial_id,
-            plain_cell(point.label),
-            *(_number(value) for value in (point.sim_time_s, *point.position_mm)),
-        ]
+        [*_who(trial), trial.trial_id, point.label, point.sim_time_s, *point.position_mm]
         for trial in (stored.record for stored in trials)
         for point in trial.points
     ]
@@ -152,17 +142,10 @@ def touches_csv(trials: Iterable[tuple[TrialRow, StoredTrial]]) -> str:
         rigid = stored.registrations.get(RIGID)
         fitted = () if rigid is None else zip(rigid.labels, rigid.residuals_mm, strict=True)
         residuals = dict(fitted)
-        rows += [
-            [
-                *_who(trial),
-                trial.number,
-                trial.trial_id,
-                plain_cell(point.label),
-                *(_number(value) for value in (point.sim_time_s, *point.position_mm)),
-                _number(residuals.get(point.label)),
-            ]
-            for point in stored.record.points
-        ]
+        for point in stored.record.points:
+            touch = point.label, point.sim_time_s, *point.position_mm
+            shared = *_who(trial), trial.number, trial.trial_id
+            rows.append([*shared, *touch, residuals.get(point.label)])
     return csv_text(TOUCH_COLUMNS, rows)
 
 
@@ -174,52 +157,54 @@ def procedures_csv(trials: Iterable[TrialRow]) -> str:
     error are lengths of vectors, which do not add up; depth errors do. A plunge depth is empty
     where the instrument missed the skull.
     """
-    rows: list[list[object]] = []
-    for trial in trials:
-        done = trial.procedure
-        for errors in () if done is None else done.analysis.trajectories:
-            assert done is not None
-            analysis, score = done.analysis, done.score
-            about = plain_cell(analysis.procedure), analysis.kind.value
-            shared = [*_who(trial), trial.number, trial.trial_id, *about]
-            rows.append([*shared, *_error_cells(errors), _number(score.score), score.version])
+    rows = [
+        _procedure_cells(trial, trial.procedure, errors)
+        for trial in trials
+        if trial.procedure is not None
+        for errors in trial.procedure.analysis.trajectories
+    ]
     return csv_text(PROCEDURE_COLUMNS, rows)
 
 
-def _error_cells(errors: TrajectoryErrors) -> list[str]:
-    entry, target = errors.entry_point_error, errors.target_point_error
+def _procedure_cells(
+    trial: TrialRow, done: ProcedureOutcome, errors: TrajectoryErrors
+) -> list[object]:
     nearest = min(errors.kept_mm, key=errors.kept_mm.__getitem__, default="")
 
-    def parts(whole: float, by_registration: float, others: float) -> list[str]:
-        by_hand, by_robot = (None, others) if errors.self_aligned else (others, None)
-        return [_number(value) for value in (whole, by_registration, by_hand, by_robot)]
+    def by_whom(others: float) -> list[float | None]:
+        """Return the cell of the hand, and that of the robot."""
+        return [None, others] if errors.self_aligned else [others, None]
+
+    def parts(error: SplitError) -> list[float | None]:
+        return [error.mm, error.by_registration_mm, *by_whom(error.by_hand_mm)]
 
     return [
-        plain_cell(errors.trajectory),
+        *(*_who(trial), trial.number, trial.trial_id),
+        *(done.analysis.procedure, done.analysis.kind.value, errors.trajectory),
         "robot" if errors.self_aligned else "hand",
-        *parts(entry.mm, entry.by_registration_mm, entry.by_hand_mm),
-        *parts(target.mm, target.by_registration_mm, target.by_hand_mm),
-        _number(errors.radial_error.mm),
-        _number(errors.depth_error_mm),
-        _number(errors.depth_error_by_registration_mm),
-        _number(errors.depth_error_by_hand_mm),
-        *parts(
-            errors.angular_deviation_deg,
-            errors.angular_deviation_by_registration_deg,
-            errors.angular_deviation_by_hand_deg,
-        ),
-        _number(errors.plunge_mm),
-        plain_cell(nearest),
-        _number(errors.kept_mm.get(nearest)),
-        str(errors.alignments),
-        *(_number(errors.times_s.get(phase)) for phase in ("aligning", "drilling", "inserting")),
+        *parts(errors.entry_point_error),
+        *parts(errors.target_point_error),
+        errors.radial_error.mm,
+        errors.depth_error_mm,
+        errors.depth_error_by_registration_mm,
+        errors.depth_error_by_hand_mm,
+        errors.angular_deviation_deg,
+        errors.angular_deviation_by_registration_deg,
+        *by_whom(errors.angular_deviation_by_hand_deg),
+        errors.plunge_mm,
+        nearest,
+        errors.kept_mm.get(nearest),
+        errors.alignments,
+        *(errors.times_s.get(phase) for phase in ("aligning", "drilling", "inserting")),
+        done.score.score,
+        done.score.version,
     ]
 
 
 def scores_csv(data: StudyData) -> str:
     """Return questionnaire scores as CSV, one per row."""
     rows = [
-        [*_step_cells(answered), scale, _number(score)]
+        [*_step_cells(answered), scale, score]
         for answered in data.answers
         for scale, score in answered.scores.items()
     ]
@@ -241,35 +226,30 @@ def answers_csv(data: StudyData) -> str:
 def ratings_csv(data: StudyData) -> str:
     """Return the marks of raters as CSV, one domain per row."""
     rows = [
-        [rating.trial_id, plain_cell(rating.rater), rating.form, domain, mark]
+        [rating.trial_id, rating.rater, rating.form, domain, mark]
         for rating in data.ratings
         for domain, mark in sorted(rating.marks.items())
     ]
     return csv_text(RATING_COLUMNS, rows)
 
 
-def _who(trial: TrialRow | AbortedTrial) -> list[str]:
-    return [plain_cell(text) for text in (trial.trainee, trial.mode, trial.task)]
+def _who(trial: TrialRow | AbortedTrial) -> tuple[str, str, str]:
+    return trial.trainee, trial.mode, trial.task
 
 
-def _step_cells(answered: QuestionnaireAnswers) -> list[str]:
+def _step_cells(answered: QuestionnaireAnswers) -> tuple[str, ...]:
     step = answered.step
-    return [plain_cell(answered.trainee), step.mode, step.name, step.questionnaire]
+    return answered.trainee, step.mode, step.name, step.questionnaire
 
 
-def csv_text(header: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
-    """Return rows as CSV text."""
+def csv_text(header: Sequence[str], rows: Iterable[Iterable[object]]) -> str:
+    """Return rows as CSV text; None is empty, and no text is a formula for a spreadsheet."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(header)
-    writer.writerows(rows)
+    for row in rows:
+        writer.writerow(
+            f"'{cell}" if isinstance(cell, str) and cell.startswith(("=", "+", "-", "@")) else cell
+            for cell in row
+        )
     return text.getvalue()
-
-
-def plain_cell(text: str) -> str:
-    """Return text that a spreadsheet does not interpret as a formula."""
-    return f"'{text}" if text.startswith(("=", "+", "-", "@")) else text
-
-
-def _number(value: float | None) -> str:
-    return "" if value is None else repr(float(value))

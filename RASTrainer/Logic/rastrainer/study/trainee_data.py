@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 
 from rastrainer.files.writing import write_json
 from rastrainer.journal.folder import SUFFIX, erase_journals
@@ -20,10 +19,15 @@ FORMAT = "RASTrainer trainee 4"
 def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
     """Write all data of a trainee as one JSON file and return the number of finished trials."""
     trainee, trials = study.trainee(pseudonym), study.history(pseudonym)
+    progress, protocol = StudyProgress(study), None
+    place = progress.enrolled().get(pseudonym)
+    if place is not None:
+        entries = progress.progress(pseudonym).entries
+        protocol = {"place": place, "steps": [asdict(entry) for entry in entries]}
     document = {
         "format": FORMAT,
         "trainee": asdict(trainee),
-        "protocol": _protocol_json(StudyProgress(study), pseudonym),
+        "protocol": protocol,
         "trials": [
             {
                 "record": record_to_json(trial.record),
@@ -66,13 +70,6 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
     }
     write_json(path, document)
     return len(trials)
-
-
-def _protocol_json(progress: StudyProgress, pseudonym: str) -> dict[str, Any] | None:
-    place = progress.enrolled().get(pseudonym)
-    if place is None:
-        return None
-    return {"place": place, "steps": [asdict(e) for e in progress.progress(pseudonym).entries]}
 
 
 @dataclass(frozen=True)

@@ -92,53 +92,45 @@ def touch_findings(
     touches = {touch.label: i for i, touch in enumerate(trajectory.touches)} if trajectory else {}
     findings = []
     for row, label in enumerate(registration.labels):
+        residual = float(registration.residuals_mm[row])
         share = float(squares[row]) / total if total > 0 else 0.0
-        depth = (
-            None if normals is None else float(registration.residual_vectors_mm[row] @ normals[row])
-        )
+        is_outlier = share * len(squares) >= OUTLIER_SHARE
+        depth = aside = dwell = replay = None
+        reasons = []
+        if normals is not None:
+            depth = float(registration.residual_vectors_mm[row] @ normals[row])
+            aside = float(np.sqrt(max(residual**2 - depth**2, 0.0)))
+            reasons.append(Reason.DEPTH if abs(depth) > aside else Reason.ASIDE)
+        if trajectory is not None and label in touches:
+            dwell, replay, how = _touched(trajectory, touches[label])
+            reasons += how
         findings.append(
-            _finding(
+            TouchFinding(
                 label,
-                float(registration.residuals_mm[row]),
+                residual,
                 depth,
+                aside,
                 share,
-                share * len(squares) >= OUTLIER_SHARE,
-                trajectory,
-                touches.get(label),
+                dwell,
+                is_outlier,
+                tuple(reasons) if is_outlier else (),
+                replay,
             )
         )
     return tuple(findings)
 
 
-def _finding(
-    label: str,
-    residual: float,
-    depth: float | None,
-    share: float,
-    is_outlier: bool,
-    trajectory: Trajectory | None,
-    index: int | None,
-) -> TouchFinding:
-    dwell = tremor = replay = None
-    is_hurried = False
-    if trajectory is not None and index is not None:
-        touch = trajectory.touches[index]
-        before = trajectory.touches[index - 1].time_s if index else 0.0
-        dwell, tremor = _last_moments(trajectory, touch)
-        is_short = index > 0 and touch.time_s - before < HURRY_SHARE * _typical(trajectory.touches)
-        is_hurried = is_short or (dwell < HURRY_DWELL_S and tremor <= TREMOR_MM)
-        replay = (before, touch.time_s)
-    aside = None if depth is None else float(np.sqrt(max(residual**2 - depth**2, 0.0)))
-    reasons = []
-    if is_outlier and depth is not None and aside is not None:
-        reasons.append(Reason.DEPTH if abs(depth) > aside else Reason.ASIDE)
-    if is_outlier and tremor is not None and tremor > TREMOR_MM:
-        reasons.append(Reason.TREMOR)
-    if is_outlier and is_hurried:
-        reasons.append(Reason.HURRY)
-    return TouchFinding(
-        label, residual, depth, aside, share, dwell, is_outlier, tuple(reasons), replay
-    )
+def _touched(trajectory: Trajectory, index: int) -> tuple[float, tuple[float, float], list[Reason]]:
+    """Return the dwell of a touch (s), its start and end, and whether it was shaky or hurried."""
+    touches = trajectory.touches
+    touch, before = touches[index], touches[index - 1].time_s if index else 0.0
+    dwell, tremor = _last_moments(trajectory, touch)
+    usual = float(np.median(np.diff([each.time_s for each in touches]))) if touches[1:] else 0.0
+    is_short = index > 0 and touch.time_s - before < HURRY_SHARE * usual
+    how = [Reason.TREMOR] if tremor > TREMOR_MM else []
+    if is_short or (dwell < HURRY_DWELL_S and tremor <= TREMOR_MM):
+        how.append(Reason.HURRY)
+    return dwell, (before, touch.time_s), how
 
 
 def _last_moments(trajectory: Trajectory, touch: Touch) -> tuple[float, float]:
@@ -163,11 +155,6 @@ def _last_moments(trajectory: Trajectory, touch: Touch) -> tuple[float, float]:
 def _since(times: np.ndarray, is_far: np.ndarray) -> float:
     far = np.flatnonzero(is_far)
     return float(times[min(far[-1] + 1, len(times) - 1)] if len(far) else times[0])
-
-
-def _typical(touches: Sequence[Touch]) -> float:
-    times = [touch.time_s for touch in touches]
-    return float(np.median(np.diff(times))) if len(times) > 1 else 0.0
 
 
 GOOD_EFFICIENCY = 0.35

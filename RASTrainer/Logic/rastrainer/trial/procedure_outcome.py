@@ -60,12 +60,8 @@ class ProcedureMeasures:
 
     Attributes:
         duration_s: from the start of the trial to the last release, without pauses; above 0.
-        target_mm: root mean square of the true target point errors.
-        worst_target_mm: the largest of them.
-        entry_mm: root mean square of the true entry point errors.
-        worst_entry_mm: the largest of them.
-        angle_deg: root mean square of the angular deviations.
-        worst_angle_deg: the largest of them.
+        target_mm, entry_mm, angle_deg: root mean squares of the true errors; beside each, the
+            largest of them.
         plunge_mm: the deepest that the drill was past an inner table.
         intrusion_mm: how far an instrument is within its safety distance to a no-go structure.
         hits: how many times an instrument and a no-go structure meet.

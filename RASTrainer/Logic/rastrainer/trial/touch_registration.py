@@ -34,11 +34,7 @@ from rastrainer.protocol import (
     RegistrationMethod,
 )
 from rastrainer.registration.fits import RIGID
-from rastrainer.registration.localization_error import (
-    LocalizationError,
-    error_along_surface,
-    isotropic_error,
-)
+from rastrainer.registration.localization_error import error_along_surface, isotropic_error
 from rastrainer.registration.registration import Registration, register, register_all_kinds
 from rastrainer.registration.surface_error import (
     TraceGuide,
@@ -49,7 +45,7 @@ from rastrainer.registration.surface_error import (
 from rastrainer.registration.surface_match import SurfaceMatch, match_surface
 from rastrainer.registration.target_error import TargetError, target_error, true_errors
 from rastrainer.scenario.scenario import Scenario, method_of, task_by_method
-from rastrainer.trial.record import TrialRecord, trace_points
+from rastrainer.trial.record import TracePoint, TrialRecord, trace_points
 from rastrainer.trial.score_reference import point_normals
 from rastrainer.trial.wording import Sentence, say
 
@@ -82,13 +78,10 @@ class GivenPoints:
         Of a trace, `least_traced` points are needed: as many as register it, or fewer to show it.
         """
         method, given = method_of(answer.get("method")), answer.get("touches")
-        is_all = isinstance(given, list) and (
-            len(given) == FIDUCIAL_COUNT
-            if method is RegistrationMethod.FIDUCIALS
-            else COARSE_LANDMARKS <= len(given) <= FIDUCIAL_COUNT
-        )
-        if not isinstance(given, list) or not is_all:
-            wanted = FIDUCIAL_COUNT if method is RegistrationMethod.FIDUCIALS else "landmarks"
+        is_by_fiducials = method is RegistrationMethod.FIDUCIALS
+        least = FIDUCIAL_COUNT if is_by_fiducials else COARSE_LANDMARKS
+        if not isinstance(given, list) or not least <= len(given) <= FIDUCIAL_COUNT:
+            wanted = FIDUCIAL_COUNT if is_by_fiducials else "landmarks"
             raise InputError(
                 f"The simulator's answer to GetTrial must hold touches, a list of {wanted}."
             )
@@ -97,20 +90,17 @@ class GivenPoints:
         ]
         places = np.array([point.position_mm for point in points])
         touches = PointList(tuple(point.label for point in points), places)
-        trace = _trace_of(answer, method, least_traced)
-        return cls(str(answer.get("task", "")), touches, method, trace)
-
-
-def _trace_of(answer: Mapping[str, Any], method: RegistrationMethod, least: int) -> np.ndarray:
-    if method not in TRACED_METHODS:
-        return np.empty((0, 3))
-    trace = accepted(trace_points, answer.get("trace"), "The trace in the answer to GetTrial")
-    if len(trace) < least:
-        raise InputError(
-            f"The simulator's answer to GetTrial must hold a trace of {least} points or "
-            f"more, not {len(trace)}."
-        )
-    return np.array(trace).reshape(-1, 4)[:, :3]
+        trace: tuple[TracePoint, ...] = ()
+        if method in TRACED_METHODS:
+            what = "The trace in the answer to GetTrial"
+            trace = accepted(trace_points, answer.get("trace"), what)
+            if len(trace) < least_traced:
+                raise InputError(
+                    f"The simulator's answer to GetTrial must hold a trace of {least_traced} "
+                    f"points or more, not {len(trace)}."
+                )
+        traced = np.array(trace, dtype=float).reshape(-1, 4)[:, :3]
+        return cls(str(answer.get("task", "")), touches, method, traced)
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,7 +206,8 @@ def register_trial(
     errors = {}
     for kind, fit in fits.items():
         pause()
-        localization = _localization_error(fit, normals)
+        is_along = len(labels) >= LEAST_ALONG_SURFACE
+        localization = error_along_surface(fit, normals) if is_along else isotropic_error(fit)
         pause()
         errors[kind] = target_error(fit, scenario.target_position, localization)
     pause()
@@ -226,24 +217,15 @@ def register_trial(
 def _by_trace(
     given: GivenPoints, scenario: Scenario, coarse: Registration, pause: Callable[[], None]
 ) -> TouchRegistration:
-    """Return the rigid registration alone: a scaled or sheared head would fit any trace."""
+    """Return the rigid registration alone: a scaled or sheared head would fit any trace.
+
+    It is that of the landmarks with the matrix that fits the trace to the surface.
+    """
     match = match_surface(given.trace_mm, head_of(scenario), coarse.matrix)
     pause()
     error = surface_target_error(knowledge_of(match), scenario.target_position)
-    return TouchRegistration({RIGID: _matched(coarse, match)}, {RIGID: error}, match)
-
-
-def _localization_error(fit: Registration, normals: np.ndarray) -> LocalizationError:
-    """Return how the points are localized; few cannot separate errors along and across the skin."""
-    if len(fit.labels) < LEAST_ALONG_SURFACE:
-        return isotropic_error(fit)
-    return error_along_surface(fit, normals)
-
-
-def _matched(coarse: Registration, match: SurfaceMatch) -> Registration:
-    """Return the registration of landmarks with the matrix that fits the trace to the surface."""
     vectors = transforms.apply(match.matrix, coarse.moving_mm) - coarse.fixed_mm
-    return replace(
+    matched = replace(
         coarse,
         matrix=match.matrix,
         fre_mm=match.rms_mm,
@@ -251,6 +233,7 @@ def _matched(coarse: Registration, match: SurfaceMatch) -> Registration:
         residuals_mm=np.linalg.norm(vectors, axis=1),
         warnings=(*coarse.warnings, *match.warnings),
     )
+    return TouchRegistration({RIGID: matched}, {RIGID: error}, match)
 
 
 def head_of(scenario: Scenario) -> HeadMesh:

@@ -11,6 +11,7 @@ from typing import Any
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
+from rastrainer.json_records import record_from_json
 from rastrainer.protocol import FREE, StepKind
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.practice_monitor import PracticeMonitor
@@ -222,7 +223,7 @@ class StudyLogic(Listening):
     def _takeAnswers(self, value: Mapping[str, Any]) -> None:
         """Store answers given at the simulator, which repeats them until another step is sent."""
         try:
-            answers = StepAnswers.from_json(value)
+            answers = record_from_json(StepAnswers, value, "StepAnswered")
             if answers.trainee not in self.study.enrolled():
                 return
             progress = self.study.progress(answers.trainee)

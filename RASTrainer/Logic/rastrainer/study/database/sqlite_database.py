@@ -162,7 +162,8 @@ class ReadOnlySqliteDatabase(SqliteDatabase):
     def _connect(self) -> sqlite3.Connection:
         if not self.path.is_file():
             raise InputError(f"There is no file {self.path}.")
-        if _holds_something(self.path.with_name(f"{self.path.name}-journal")):
+        journal = self.path.with_name(f"{self.path.name}-journal")
+        if journal.is_file() and journal.stat().st_size > 0:
             connection = sqlite3.connect(self.path, timeout=self._lock_wait.timeout_s)
             try:
                 connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
@@ -189,10 +190,3 @@ def read_only_uri(path: Path) -> str:
     # `C:/…` needs a slash before it; a share's `//server/…` must not become a host.
     rooted = name if name.startswith("/") else f"/{name}"
     return f"file://{quote(rooted)}?mode=ro"
-
-
-def _holds_something(path: Path) -> bool:
-    try:
-        return path.stat().st_size > 0
-    except OSError:
-        return False

@@ -456,7 +456,27 @@ class Study:
                 pseudonym,
                 TRIAL_RUN,
             )
-        return tuple(_past_trial(*row[:-1]) for row in rows)
+        past = []
+        for trial, task, mode, time_s, scenario, started_utc, method, scored, done, _stored in rows:
+            score = decoded_record(TrialScore, scored)
+            procedure = None if done is None else decoded_record(ProcedureOutcome, done)
+            past.append(
+                PastTrial(
+                    trial,
+                    task,
+                    mode,
+                    time_s,
+                    score.score,
+                    score.acceptable,
+                    method=RegistrationMethod(method),
+                    scenario=scenario,
+                    started_utc=started_utc,
+                    parts=score.parts,
+                    procedure="" if procedure is None else procedure.analysis.procedure,
+                    procedure_score=None if procedure is None else procedure.score,
+                )
+            )
+        return tuple(past)
 
     def attempts(self, pseudonym: str) -> tuple[PastTrial, ...]:
         """Return the trials from which progress is computed, as started: scored and failed.
@@ -507,30 +527,6 @@ class Study:
 def _latest(table: str, column: str) -> str:
     own = f"WHERE {table}.trial_id = trials.trial_id ORDER BY {table}.id DESC LIMIT 1"
     return f"SELECT {column} FROM {table} {own}"
-
-
-def _past_trial(
-    trial_id: str,
-    task: str,
-    mode: str,
-    seconds: float,
-    scenario: str,
-    started_utc: str,
-    method: str,
-    score_json: str,
-    outcome_json: str | None,
-) -> PastTrial:
-    score = decoded_record(TrialScore, score_json)
-    done = None if outcome_json is None else decoded_record(ProcedureOutcome, outcome_json)
-    return PastTrial(
-        *(trial_id, task, mode, seconds, score.score, score.acceptable),
-        method=RegistrationMethod(method),
-        scenario=scenario,
-        started_utc=started_utc,
-        parts=score.parts,
-        procedure="" if done is None else done.analysis.procedure,
-        procedure_score=None if done is None else done.score,
-    )
 
 
 def _trainee(pseudonym: str, consent: int, archived: int, created_utc: str) -> Trainee:

@@ -129,7 +129,7 @@ class StepProgress:
 
     def check_start(self, mode: str, task: str) -> StudyStep:
         """Return the step of a trial to be started."""
-        step = self._next()
+        step = self.due()
         if step.kind not in (StepKind.TRIAL, StepKind.TRIAL_RUN) or (step.mode, step.task) != (
             mode,
             task,
@@ -152,27 +152,24 @@ class StepProgress:
                     "A step with a trial is complete only with the UUID of the stored trial."
                 )
             return {"trialId": details["trialId"]}
-        return {"minutes": _checked_minutes(step, details.get("minutes"))}
+        minutes = details.get("minutes")
+        if not is_number(minutes) or not step.minutes <= minutes < float("inf"):
+            what = "The trial run" if step.kind == StepKind.TRIAL_RUN else "The break"
+            took = f"{minutes:.1f}" if is_number(minutes) else "none"
+            raise InputError(
+                f"{what} takes {step.minutes:g} minutes, of which {took} have passed; to continue "
+                "earlier, skip it and give a reason."
+            )
+        return {"minutes": float(minutes)}
 
-    def check_skipped(self, step_name: str, reason: str) -> dict[str, Any]:
-        """Return the details to store when a step is skipped."""
-        self.expected(step_name)
-        return {"reason": _checked_reason(reason, "A step can be skipped")}
-
-    def check_repeat(self, reason: str) -> tuple[StudyStep, str]:
-        """Return the aborted step and the reason to store when it is repeated."""
-        if not self.unexplained:
-            raise InputError("The next step was not aborted; it needs no reason to be played.")
-        return self._next(), _checked_reason(reason, "An aborted trial can be repeated")
-
-    def _next(self) -> StudyStep:
+    def due(self) -> StudyStep:
         if self.next_step is None:
             raise InputError("All steps of the study are done; nothing comes after them.")
         return self.next_step
 
     def expected(self, step_name: str) -> StudyStep:
         """Return the next step; raise `InputError` unless it has this name."""
-        step = self._next()
+        step = self.due()
         if step.name != step_name:
             raise InputError(
                 f"The next step is {step.name}, not {step_name[:80]}. Steps are done in "
@@ -181,7 +178,7 @@ class StepProgress:
         return step
 
 
-def _checked_reason(reason: Any, what: str) -> str:
+def checked_reason(reason: Any, what: str) -> str:
     is_text = isinstance(reason, str) and reason.strip().isprintable()
     if not is_text or not MIN_REASON_LENGTH <= len(reason.strip()) <= MAX_REASON_LENGTH:
         raise InputError(
@@ -189,14 +186,3 @@ def _checked_reason(reason: Any, what: str) -> str:
             "it goes into the report."
         )
     return reason.strip()
-
-
-def _checked_minutes(step: StudyStep, minutes: Any) -> float:
-    if not is_number(minutes) or not step.minutes <= minutes < float("inf"):
-        what = "The trial run" if step.kind == StepKind.TRIAL_RUN else "The break"
-        took = f"{minutes:.1f}" if is_number(minutes) else "none"
-        raise InputError(
-            f"{what} takes {step.minutes:g} minutes, of which {took} have passed; to continue "
-            "earlier, skip it and give a reason."
-        )
-    return float(minutes)

@@ -5,12 +5,10 @@ Slicer sends the next step (`StudyStep`); the simulator answers (`StepAnswered`)
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any
 
 from rastrainer.json_checks import whole_number
-from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import Guidance, Mode, RegistrationMethod, StepKind
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES, find_questionnaire
 from rastrainer.study_messages import StudyStep
@@ -78,13 +76,6 @@ class StepAnswers:
 
     def __post_init__(self) -> None:
         find_questionnaire(self.questionnaire).checked(self.answers)
-
-    @classmethod
-    def from_json(cls, value: Mapping[str, Any]) -> StepAnswers:
-        return record_from_json(cls, value, "StepAnswered")
-
-    def to_json(self) -> dict[str, Any]:
-        return record_to_json(self)
 
     def belong_to(self, step: StudyStep) -> bool:
         answered = (self.trainee, self.number, self.questionnaire)

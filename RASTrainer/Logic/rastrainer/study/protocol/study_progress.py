@@ -18,7 +18,13 @@ from rastrainer.study.database.schema import TRAINEE_ID
 from rastrainer.study.database.study import METHOD, Study
 from rastrainer.study.database.values import decoded, json_text, moment
 from rastrainer.study.protocol.questionnaires import find_questionnaire
-from rastrainer.study.protocol.step_progress import DONE, SKIPPED, StepEntry, StepProgress
+from rastrainer.study.protocol.step_progress import (
+    DONE,
+    SKIPPED,
+    StepEntry,
+    StepProgress,
+    checked_reason,
+)
 from rastrainer.study.protocol.steps import objections_to
 from rastrainer.study.protocol.study_protocol import (
     StudyProtocol,
@@ -153,8 +159,9 @@ class StudyProgress:
 
     def skip(self, pseudonym: str, step: str, reason: str) -> StepProgress:
         with self._database.writing():
-            checked = self.progress(pseudonym).check_skipped(step, reason)
-            return self._store(pseudonym, step, SKIPPED, checked)
+            self.progress(pseudonym).expected(step)
+            checked = checked_reason(reason, "A step can be skipped")
+            return self._store(pseudonym, step, SKIPPED, {"reason": checked})
 
     def _store(
         self, pseudonym: str, step: str, outcome: str, details: Mapping[str, Any]
@@ -170,7 +177,12 @@ class StudyProgress:
         """Store why the next step is repeated after an abort; return the new progress."""
         with self._database.writing():
             progress = self.progress(pseudonym)
-            step, checked = progress.check_repeat(reason)
+            if not progress.unexplained:
+                raise InputError("The next step was not aborted; it needs no reason to be played.")
+            step, checked = (
+                progress.due(),
+                checked_reason(reason, "An aborted trial can be repeated"),
+            )
             for record in progress.unexplained:
                 self._database.insert(
                     "repeats", trial_id=record.trial_id, step=step.name, reason=checked

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import (
-    accepted,
     is_identifier,
     number,
     one_of,
@@ -18,9 +17,8 @@ from rastrainer.json_checks import (
     texts,
     whole_number,
 )
-from rastrainer.json_records import record_from_json, record_to_json
+from rastrainer.json_records import record_to_json
 from rastrainer.protocol import (
-    PLAYED_METHODS,
     SKIN_KEYS,
     TRIAL_RUN,
     Mode,
@@ -33,6 +31,7 @@ from rastrainer.study_messages import (
     FIDUCIALS,
     GhostChoice,
     GuidanceRule,
+    PlayedMethod,
     StudyStep,
     TutorialChoice,
     identifier,
@@ -63,21 +62,8 @@ def _questionnaire(value: Any) -> str:
         raise ValueError(f"a questionnaire ({error})") from None
 
 
-def _by_task(key: str, check: Callable[[Any], Any]) -> Callable[[Any], dict[str, Any]]:
-    def read(value: Any) -> dict[str, Any]:
-        if not isinstance(value, Mapping):
-            raise ValueError("an object of tasks")
-        return {task: accepted(check, item, f"{key}.{task[:40]}") for task, item in value.items()}
-
-    return read
-
-
 def _skin(value: Any) -> dict[str, float]:
     return dict.fromkeys(SKIN_KEYS, 0.0) | skin_amounts(value)
-
-
-def _reference(value: Any) -> ScoreReference:
-    return record_from_json(ScoreReference, value, "A score's reference", only_known=True)
 
 
 @dataclass(frozen=True)
@@ -129,22 +115,14 @@ class StudyProtocol:
     break_between_modes_min: Annotated[float, number(0, 30 * 24 * 60, "min")] = 0.0
     break_between_tasks_min: Annotated[float, number(0, 24 * 60, "min")] = 0.0
     questionnaires: tuple[ScheduledQuestionnaire, ...] = ()
-    references: Annotated[Mapping[str, ScoreReference], _by_task("references", _reference)] = field(
-        default_factory=dict
-    )
+    references: Mapping[str, ScoreReference] = field(default_factory=dict)
     pass_mark: Annotated[float | None, number(1, 100)] = None
     guidance: GuidanceRule = ""
     ghost: GhostChoice = ""
     tutorial: TutorialChoice = ""
-    procedures: Annotated[Mapping[str, str], _by_task("procedures", identifier)] = field(
-        default_factory=dict
-    )
-    methods: Annotated[
-        Mapping[str, str], _by_task("methods", one_of(*(method.value for method in PLAYED_METHODS)))
-    ] = field(default_factory=dict)
-    skin: Annotated[Mapping[str, Mapping[str, float]], _by_task("skin", _skin)] = field(
-        default_factory=dict
-    )
+    procedures: Mapping[str, Annotated[str, identifier]] = field(default_factory=dict)
+    methods: Mapping[str, PlayedMethod] = field(default_factory=dict)
+    skin: Mapping[str, Annotated[Mapping[str, float], _skin]] = field(default_factory=dict)
     allows: Annotated[tuple[str, ...], texts(0, len(_ALLOWANCES), _ALLOWANCES)] = ()
     check_journals: bool = True
 
