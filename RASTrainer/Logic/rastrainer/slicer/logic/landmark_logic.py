@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.files.point_files import read_markups, write_markups
@@ -24,7 +25,6 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.logic.scenario_logic import ScenarioFiles
 from rastrainer.slicer.scene.nodes import (
     Role,
-    changedOnce,
     findNode,
     findOrAddNode,
     isUsed,
@@ -153,7 +153,7 @@ class LandmarkPoints:
 
     def _set(self, placed: _Placed) -> None:
         node = self._list()
-        with changedOnce(node):
+        with slicer.util.NodeModify(node):
             setPoints(node, placed.names, placed.places)
             for row, isSelected in enumerate(placed.selected):
                 node.SetNthControlPointSelected(row, isSelected)
