@@ -112,7 +112,7 @@ def test_the_main_thread_waits_only_briefly_for_a_worker(monkeypatch):
     assert TIME_S <= 0.05
     while not job.isDone:
         job.yieldTime()
-    assert job.result()
+    assert job.outcome.result()
 
 
 @pytest.mark.usefixtures("host")

@@ -125,10 +125,10 @@ class HeadMesh:
     @property
     def _crosses(self) -> np.ndarray:
         """(m, 3) float: outward normals as long as twice the triangles' areas."""
-        a, b, c = self._corners()
+        a, b, c = self.corners()
         return np.cross(b - a, c - a)
 
-    def _corners(self) -> Iterator[np.ndarray]:
+    def corners(self) -> Iterator[np.ndarray]:
         """Return the first, the second and the third corners of all triangles, each (m, 3)."""
         return (self.vertices[self.triangles[:, corner]] for corner in range(3))
 
@@ -155,7 +155,7 @@ class HeadMesh:
     @property
     def centroid(self) -> np.ndarray:
         """(3,) float: the center of mass of the closed body, RAS mm."""
-        a, b, c = self._corners()
+        a, b, c = self.corners()
         volumes = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0
         return volumes @ (a + b + c) / (4.0 * volumes.sum())
 
@@ -293,7 +293,7 @@ def hides(mesh: HeadMesh, eye: np.ndarray, point: np.ndarray, slack_mm: float = 
     """
     start = np.asarray(eye, dtype=float)
     along = point - start
-    a, b, c = (mesh.vertices[mesh.triangles[:, corner]] for corner in range(3))
+    a, b, c = mesh.corners()
     across = np.cross(along, c - a)
     determinant = np.einsum("ij,ij->i", b - a, across)
     safe = np.where(np.abs(determinant) > 1e-12, determinant, np.inf)

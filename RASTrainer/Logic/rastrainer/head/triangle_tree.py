@@ -122,7 +122,16 @@ class TriangleTree:
 
     def __init__(self, corners: np.ndarray) -> None:
         levels = max(int(np.ceil(np.log2(max(len(corners) / LEAF, 1.0)))), 0)
-        self._order = _halved(corners.mean(axis=1), levels)
+        # Halves, quarters … of this order are compact; the last triangle is repeated.
+        order, centers = np.arange(LEAF * 2**levels), corners.mean(axis=1)
+        order[len(centers) :] = len(centers) - 1
+        for level in range(levels):
+            rows = order.reshape(2**level, -1)
+            places = centers[rows]
+            axis = np.ptp(places, axis=1).argmax(axis=1)
+            keys = np.take_along_axis(places, axis[:, None, None], axis=2)[:, :, 0]
+            order = np.take_along_axis(rows, keys.argsort(axis=1, kind="stable"), axis=1).ravel()
+        self._order = order
         ordered = np.asarray(corners, dtype=float)[self._order]
         self.sides = TriangleSides.of(ordered)
         lows, highs = ordered.min(axis=1), ordered.max(axis=1)
@@ -199,19 +208,6 @@ def _is_within(boxes: np.ndarray, points: np.ndarray, squares: np.ndarray) -> np
         np.maximum(outside, 0.0, out=outside)
         away = away + outside * outside
     return np.asarray(away <= squares)
-
-
-def _halved(centers: np.ndarray, levels: int) -> np.ndarray:
-    """Return an order (LEAF · 2^levels,) whose halves, quarters … are compact; the last repeats."""
-    order = np.arange(LEAF * 2**levels)
-    order[len(centers) :] = len(centers) - 1
-    for level in range(levels):
-        rows = order.reshape(2**level, -1)
-        places = centers[rows]
-        axis = np.ptp(places, axis=1).argmax(axis=1)
-        keys = np.take_along_axis(places, axis[:, None, None], axis=2)[:, :, 0]
-        order = np.take_along_axis(rows, keys.argsort(axis=1, kind="stable"), axis=1).ravel()
-    return order
 
 
 POOR_GUESS_MM = 2.0

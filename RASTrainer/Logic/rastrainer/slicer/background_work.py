@@ -62,7 +62,7 @@ class Job(Generic[T]):
 
     def __init__(self, work: Callable[[], T]) -> None:
         self._work = work
-        self._outcome: Future[T] = Future()
+        self.outcome: Future[T] = Future()
         self._isSupervised = True
         self._thread = threading.Thread(target=self._run, daemon=True)
         if not Job._supervised:
@@ -96,15 +96,11 @@ class Job(Generic[T]):
             if wasCollecting:
                 gc.enable()
 
-    def result(self) -> T:
-        """Return what finished work has returned, or raise what it has raised."""
-        return self._outcome.result(timeout=0)
-
     def _run(self) -> None:
         try:
-            self._outcome.set_result(self._work())
+            self.outcome.set_result(self._work())
         except BaseException as error:
-            self._outcome.set_exception(error)
+            self.outcome.set_exception(error)
 
 
 _Take = Callable[[Any], None]
@@ -181,7 +177,7 @@ class BackgroundWork:
                 job, take, refuse = self._underWay
                 self._underWay = None
                 try:
-                    result = job.result()
+                    result = job.outcome.result()
                 except Exception as error:
                     refuse(error)
                     if not isinstance(error, InputError):
@@ -242,7 +238,7 @@ def inBackground(work: Callable[[Progress], T], progress: Progress) -> T:
         isCanceled.set()
         job.leave()
         raise
-    return job.result()
+    return job.outcome.result()
 
 
 class CancelableUntilBegun:

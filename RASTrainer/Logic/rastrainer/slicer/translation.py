@@ -25,15 +25,14 @@ else:
         """Return the text in the language of Slicer."""
         key = (sys._getframe(1).f_code.co_filename, text)
         if key not in _known:
-            _known[key] = _translated(*key)
+            translated = translate(getContext(key[0]), text)
+            if _placeholders(translated) != _placeholders(text):
+                logging.warning(
+                    "The translation “%s” of “%s” lacks a placeholder.", translated, text
+                )
+                translated = text
+            _known[key] = translated
         return _known[key]
-
-    def _translated(file: str, text: str) -> str:
-        translated = translate(getContext(file), text)
-        if _placeholders(translated) == _placeholders(text):
-            return translated
-        logging.warning("The translation “%s” of “%s” lacks a placeholder.", translated, text)
-        return text
 
     def _placeholders(text: str) -> set[str | None] | None:
         try:

@@ -173,21 +173,20 @@ def skinOf(head: HeadBody, settings: HeadSettings, progress: Progress) -> HeadMe
             mesh = surface.cutFlat(mesh, head.baseMm)
         # The base is not decimated with the rest; how many it adds shows only afterward.
         over = len(mesh.triangles) - MAX_TRIANGLES
-        if over <= 0 and _isSound(mesh):
-            break
+        isSound = mesh.is_closed and mesh.euler_characteristic == 2
+        if over <= 0 and isSound:
+            progress("Done", 1.0)
+            return mesh
         # Another number of triangles also avoids what decimation has torn.
         wanted -= max(0, over) + BASE_RESERVE
-    if not _isSound(mesh):
+    if not isSound:
         raise InputError(
             "No head was found: its surface could not be closed; try another threshold or base."
         )
-    if len(mesh.triangles) > MAX_TRIANGLES:
-        raise InputError(
-            f"The head's surface has {len(mesh.triangles)} triangles, more than {MAX_TRIANGLES}; "
-            "aim at fewer."
-        )
-    progress("Done", 1.0)
-    return mesh
+    raise InputError(
+        f"The head's surface has {len(mesh.triangles)} triangles, more than {MAX_TRIANGLES}; "
+        "aim at fewer."
+    )
 
 
 def _body(inside: np.ndarray, settings: HeadSettings, progress: Progress) -> np.ndarray:
@@ -205,7 +204,3 @@ def _body(inside: np.ndarray, settings: HeadSettings, progress: Progress) -> np.
             progress("Closing tunnels", 0.7)
             return mask.carved(body, wanted)
     raise InputError("No head was found: the shape above the threshold has too many tunnels.")
-
-
-def _isSound(mesh: HeadMesh) -> bool:
-    return mesh.is_closed and mesh.euler_characteristic == 2

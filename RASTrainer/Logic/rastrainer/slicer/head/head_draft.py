@@ -161,7 +161,7 @@ def checkVolume(volume: Volume) -> list[str]:
 def checkHead(mesh: HeadMesh) -> None:
     """Raise an error if a closed surface cannot be a head's."""
     extent = np.ptp(mesh.vertices, axis=0)
-    a, b, c = (mesh.vertices[mesh.triangles[:, corner]].astype(float) for corner in range(3))
+    a, b, c = (corner.astype(float) for corner in mesh.corners())
     volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0
     isSize = all(low <= e <= high for e, (low, high) in zip(extent, HEAD_EXTENT_MM, strict=True))
     if not isSize or volume > FULLEST * extent.prod():

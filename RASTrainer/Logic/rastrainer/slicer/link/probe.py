@@ -56,7 +56,15 @@ class PeerRecognition:
         elif not any(sign[: len(self._start)] == self._start[: len(sign)] for sign in known):
             self.peer = Peer.OTHER_PROGRAM
         else:
-            self._readMessages(data)
+            for message in self._reader.feed(data):
+                # The reader lets nothing but STATUS through.
+                if message.device == DeviceName.SIM_SERVER and isinstance(message.content, Status):
+                    self.peer, self.version = Peer.SIMULATOR, message.content.subcode
+                    return
+            if self._reader.refusal:
+                self.peer = self.giveUp()
+            elif self._size > MAX_BYTES:
+                self.peer = Peer.OTHER_OPENIGTLINK
 
     def giveUp(self) -> Peer:
         """Return who it is if nothing more comes."""
@@ -65,17 +73,6 @@ class PeerRecognition:
         if not self._size:
             return Peer.SILENT
         return Peer.OTHER_OPENIGTLINK if self._reader.taken else Peer.OTHER_PROGRAM
-
-    def _readMessages(self, data: bytes) -> None:
-        for message in self._reader.feed(data):
-            # The reader lets nothing but STATUS through.
-            if message.device == DeviceName.SIM_SERVER and isinstance(message.content, Status):
-                self.peer, self.version = Peer.SIMULATOR, message.content.subcode
-                return
-        if self._reader.refusal:
-            self.peer = self.giveUp()
-        elif self._size > MAX_BYTES:
-            self.peer = Peer.OTHER_OPENIGTLINK
 
 
 _running: dict[str, Future[str | Peer]] = {}
@@ -137,7 +134,7 @@ class Probe:
         """Let the thread run for some milliseconds; return who answers once that is known."""
         self._job.yieldTime(POLL_S)
         if self._job.isDone:
-            peer = self._job.result()
+            peer = self._job.outcome.result()
         elif self._clock() > self._deadline:
             peer = Peer.UNREACHABLE if self._ip else Peer.UNKNOWN_HOST
             if self._isAsked:

@@ -13,7 +13,6 @@ from rastrainer import transforms
 from rastrainer.registration.registration import Registration
 from rastrainer.slicer.scene.nodes import (
     Role,
-    changedOnce,
     findNode,
     findOrAddNode,
     nodesOfClass,
@@ -37,7 +36,7 @@ OPACITY_ATTRIBUTE = "RASTrainer.opacity"
 
 def showScalars(model: Any, name: str, ends: tuple[float, float]) -> None:
     display = model.GetDisplayNode()
-    with changedOnce(display):
+    with slicer.util.NodeModify(display):
         display.SetActiveScalar(name, vtk.vtkAssignAttribute.POINT_DATA)
         display.SetAndObserveColorNodeID(COLOR_TABLE_ID)
         display.SetScalarRangeFlag(display.UseManualScalarRange)
@@ -55,7 +54,7 @@ def showLegend(node: Any, title: str, rank: int) -> Any | None:
     legend = slicer.vtkSlicerColorLogic.GetColorLegendDisplayNode(node)
     if legend is None:
         legend = slicer.vtkSlicerColorLogic.AddDefaultColorLegendDisplayNode(node)
-        with changedOnce(legend):
+        with slicer.util.NodeModify(legend):
             legend.SetVisibility2D(False)
             legend.SetSize(*SIZE)
             legend.SetPosition(*PLACE)
@@ -171,7 +170,7 @@ def glyphsPolyData(
 def showResidualArrows(scene: Any, registration: Registration) -> Any:
     """Show the arrows in a `vtkMRMLModelNode` and return it."""
     node = findOrAddNode(scene, "vtkMRMLModelNode", Role.RESIDUAL_ARROWS, "Residual arrows")
-    with changedOnce(node):
+    with slicer.util.NodeModify(node):
         node.SetDescription(f"Residuals, {magnification(registration):g} times as long")
         showScalars(node, RESIDUAL_SCALARS, residualRange(registration))
         node.SetAndObservePolyData(glyphsPolyData(registration))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -57,16 +56,6 @@ class Role:
     LANDMARKS = "landmarks"
     TRACED_POINTS = "traced points"
     NEXT_PLACE = "next place of the trace"
-
-
-@contextlib.contextmanager
-def changedOnce(node: Any) -> Iterator[None]:
-    """Have a node tell of all changes together: at each event every view would draw it again."""
-    wasModifying = node.StartModify()
-    try:
-        yield
-    finally:
-        node.EndModify(wasModifying)
 
 
 def findNode(scene: Any, className: str, role: str) -> Any | None:
@@ -160,7 +149,7 @@ def usedPoints(node: Any, points: np.ndarray, labels: tuple[str, ...]) -> PointL
 
 def setPoints(node: Any, labels: Sequence[str], points: np.ndarray) -> None:
     """Replace the points of a `vtkMRMLMarkupsNode` by (n, 3) float, mm, in its own frame."""
-    with changedOnce(node):
+    with slicer.util.NodeModify(node):
         node.RemoveAllControlPoints()
         slicer.util.updateMarkupsControlPointsFromArray(node, np.asarray(points, dtype=float))
         for index, label in enumerate(labels):
@@ -202,7 +191,7 @@ def capturedPointsNode(scene: Any) -> Any:
         node.SetLocked(True)
         node.CreateDefaultDisplayNodes()
         display = node.GetDisplayNode()
-        with changedOnce(display):
+        with slicer.util.NodeModify(display):
             display.SetSelectedColor(TOUCH_COLOR)
             display.SetGlyphScale(2.5)
             display.SetTextScale(3.5)
@@ -221,7 +210,7 @@ def drawAsPoints(node: Any) -> None:
     """Draw a model as the points of a trace."""
     node.SetSelectable(False)
     display = node.GetDisplayNode()
-    with changedOnce(display):
+    with slicer.util.NodeModify(display):
         display.SetRepresentation(display.PointsRepresentation)
         display.SetPointSize(POINT_PIXELS)
         display.SetColor(TOUCH_COLOR)

@@ -12,7 +12,6 @@ from rastrainer.errors import InputError
 from rastrainer.slicer.scene.nodes import (
     ROLE_ATTRIBUTE,
     Role,
-    changedOnce,
     findOrAddNode,
     labelOf,
     nodesOf,
@@ -75,7 +74,7 @@ class PlacedPoints:
 
     def put(self, node: Any) -> None:
         """Replace the points of a list or a line by these."""
-        with changedOnce(node):
+        with slicer.util.NodeModify(node):
             setPoints(node, self.labels, self.points)
             for row, isSelected in enumerate(self.selected):
                 node.SetNthControlPointSelected(row, isSelected)

@@ -65,11 +65,9 @@ def raiseLine(scene: Any, line: Any) -> None:
 def newPlanLine(scene: Any) -> Any:
     """Return a line of the plan that lacks its entry or target, for the next clicks."""
     unfinished = [line for line in planLines(scene) if len(placedRows(line)) < ENDS]
-    return (
-        unfinished[0]
-        if unfinished
-        else _newLine(scene, Role.PLAN_LINE, scene.GenerateUniqueName(_("Line")))
-    )
+    if unfinished:
+        return unfinished[0]
+    return _newLine(scene, Role.PLAN_LINE, scene.GenerateUniqueName(_("Line")))
 
 
 def removeLine(scene: Any, line: Any) -> int:

@@ -25,7 +25,6 @@ from rastrainer.slicer.scene.nodes import (
     SCENARIO_ATTRIBUTE,
     TASK_ATTRIBUTE,
     Role,
-    changedOnce,
     findNode,
     findOrAddNode,
     isShown,
@@ -84,7 +83,7 @@ def showTask(
     name, digest = taskKey(scenario.name, task.name), sha256(task.fiducials.tobytes()).hexdigest()
     if not isShown(node, TASK_ATTRIBUTE, name, digest):
         display = node.GetDisplayNode()
-        with changedOnce(node), changedOnce(display):
+        with slicer.util.NodeModify(node), slicer.util.NodeModify(display):
             node.SetName(f"{task.title} fiducials")
             setPoints(node, task.labels, task.fiducials)
             node.SetLocked(True)
@@ -127,7 +126,7 @@ def _requestMesh(
     node.SetAndObservePolyData(None)
     display = node.GetDisplayNode()
     # All at once, and before the surface comes: at each change every view would cut or redraw it.
-    with changedOnce(display):
+    with slicer.util.NodeModify(display):
         display.SetColor(color)
         display.SetOpacity(opacity)
         display.SetVisibility2D(True)

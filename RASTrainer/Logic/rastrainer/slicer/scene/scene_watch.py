@@ -56,7 +56,6 @@ class SceneWatch:
             self._observe(scene.GetNthNode(index))
 
     def close(self) -> None:
-        """Stop observing."""
         for tag in self._sceneTags:
             self._scene.RemoveObserver(tag)
         for nodeId in list(self._tags):
@@ -85,9 +84,9 @@ class SceneWatch:
             for event in events
         ]
         if node.IsA(TRANSFORM):
-            tags.append(node.AddObserver(_MOVED, self._notePose))
+            tags.append(node.AddObserver(_MOVED, self._noteIncoming))
         elif node.IsA(TEXT):
-            tags.append(node.AddObserver(slicer.vtkMRMLTextNode.TextModifiedEvent, self._noteText))
+            tags.append(node.AddObserver(node.TextModifiedEvent, self._noteIncoming))
         if tags:
             self._tags[node.GetID()] = tags
 
@@ -100,14 +99,10 @@ class SceneWatch:
         self._hasChanged = True
         self.noticed.emit()
 
-    def _notePose(self, transform: Any, _event: str) -> None:
-        """Note where the head or a tool is; the links of the robot move by themselves."""
-        role = transform.GetAttribute(ROLE_ATTRIBUTE)
+    def _noteIncoming(self, node: Any, _event: str) -> None:
+        """Note the head, a tool or the state; the links of the robot move by themselves."""
+        role = node.GetAttribute(ROLE_ATTRIBUTE)
         if role == Role.WORLD_TO_HEAD:
             self._noteChange()
-        elif role in TOOLS:
-            self.noticed.emit()
-
-    def _noteText(self, text: Any, _event: str) -> None:
-        if text.GetAttribute(ROLE_ATTRIBUTE) == Role.SIM_STATE:
+        elif role in TOOLS or role == Role.SIM_STATE:
             self.noticed.emit()

@@ -7,12 +7,13 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import slicer
 import vtk
 
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
-from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, Role, changedOnce, findOrAddNode
+from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, Role, findOrAddNode
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.values import StoredTrial
 
@@ -37,7 +38,7 @@ def showTable(
     Rows without values follow where there are fewer than `fewestRows`.
     """
     node = findOrAddNode(scene, "vtkMRMLTableNode", role, name)
-    with changedOnce(node):
+    with slicer.util.NodeModify(node):
         node.RemoveAllColumns()
         node.SetUseColumnTitleAsColumnHeader(True)
         for title, values in columns.items():

@@ -64,11 +64,8 @@ def showReplay(
     times = trajectory.times_s
     wanted = np.arange(times[0], times[-1], 1.0 / SAMPLE_HZ)
     rows = np.unique([*np.searchsorted(times, wanted), len(times) - 1])
-    poses = (
-        chain.toolToWorld(track.q[rows])
-        if chain.axes.any(axis=1).sum() == track.q.shape[1]
-        else None
-    )
+    isSameLength = chain.axes.any(axis=1).sum() == track.q.shape[1]
+    poses = chain.toolToWorld(track.q[rows]) if isSameLength else None
     tips = trajectory.tip_mm[rows]
     if poses is None or np.abs(poses[:, :3, 3] - tips).max() > SAME_ROBOT_MM:
         raise InputError("The trial was recorded with another robot than the one that is here.")
@@ -140,12 +137,11 @@ def _fillScene(
                 rest(done / total)
                 _checkIsThere(browser, sequence)
         # Notified of both at once, Slicer creates no proxy itself.
-        wasModifying = browser.StartModify()
-        browser.AddSynchronizedSequenceNode(sequence)
-        browser.AddProxyNode(proxy, sequence, False)
-        browser.SetOverwriteProxyName(sequence, False)
-        browser.SetSaveChanges(sequence, False)
-        browser.EndModify(wasModifying)
+        with slicer.util.NodeModify(browser):
+            browser.AddSynchronizedSequenceNode(sequence)
+            browser.AddProxyNode(proxy, sequence, False)
+            browser.SetOverwriteProxyName(sequence, False)
+            browser.SetSaveChanges(sequence, False)
     browser.SetSelectedItemNumber(0)
     return browser
 

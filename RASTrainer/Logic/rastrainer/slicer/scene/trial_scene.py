@@ -19,7 +19,6 @@ from rastrainer.slicer.scene.error_colors import showResidualArrows
 from rastrainer.slicer.scene.nodes import (
     Role,
     capturedPointsNode,
-    changedOnce,
     findNode,
     findOrAddNode,
     labelsOf,
@@ -117,7 +116,7 @@ def showRegistration(scene: Any, registration: Registration, moving: Any, fixed:
     node = findOrAddNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD, "WorldToHead")
     isFirst = movingNode(node) is None
     # Touches and robot follow it.
-    with changedOnce(node):
+    with slicer.util.NodeModify(node):
         node.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(registration.matrix))
         rememberLists(node, moving, fixed)
         node.SetAttribute(KIND_ATTRIBUTE, registration.kind)
