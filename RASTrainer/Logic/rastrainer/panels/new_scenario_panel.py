@@ -11,7 +11,7 @@ from rastrainer.head.trial_head import MAX_PERTURBATION, Perturbation
 from rastrainer.panels.application import downloadSample, fitThreeDViews
 from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.shown_errors import showErrors
-from rastrainer.panels.widgets import setEnabled, setText
+from rastrainer.panels.widgets import CancelableWork, setEnabled, setText
 from rastrainer.protocol import WORLD_LIMIT_MM
 from rastrainer.scenario.scenario import STAND_DIAMETERS_MM, OperatingTable, Stand
 from rastrainer.scenario.setup import HeadPlace, SetUp
@@ -88,9 +88,10 @@ class NewScenarioPanel(Panel):
         super().__init__(ui, session)
         self._maker = session.scenarioMaker
         self._setUp = SetUpForm(ui.setUpGroupBox)
-        self._work = self.cancelableWork(self._showMessage, self._showProgress, self._showUsable)
+        failure = _("The scenario was not made.")
+        shows = (self._showMessage, self._showUsable, self._showProgress)
+        self._work = CancelableWork(ui.makeScenarioButton, self.make, failure, *shows)
         ui.sampleDataButton.connect("clicked()", self.loadSampleData)
-        self._work.connectButton(ui.makeScenarioButton, self.make, _("The scenario was not made."))
         connectClick(ui.previewHeadButton, self.preview, _("No head could be shown."))
         failure = _("The scenario could not be made with these choices.")
         connectClick(ui.checkScenarioButton, self.check, failure)

@@ -16,9 +16,9 @@ from rastrainer.panels.plain_text import buttonTitle, shortName
 from rastrainer.panels.widgets import (
     LINK_COLORS,
     connectAsPressed,
+    setEnabled,
     setLight,
     setText,
-    setUsable,
 )
 from rastrainer.protocol import TRIAL_RUN, Phase, StepKind
 from rastrainer.slicer.link.link_status import LinkState, notInstalled
@@ -138,7 +138,7 @@ class NextStepPanel(Panel):
             ui.nextStepButton.setShortcut(qt.QKeySequence(SHORTCUT))
         isPossible = step.action is not NextAction.WAIT
         tip = _("The next thing to do ({shortcut})").format(shortcut=SHORTCUT)
-        setUsable(ui.nextStepButton, isPossible, tip, step.sentence)
+        setEnabled(ui.nextStepButton, isPossible, step.sentence, tip)
         setText(ui.nextStepText, step.sentence)
         if self._section is not step.section:
             self._section = step.section

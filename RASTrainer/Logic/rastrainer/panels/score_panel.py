@@ -14,13 +14,13 @@ from rastrainer.panels.application import TABLES, askWhereToSave, fitThreeDViews
 from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
+    CancelableWork,
     chosenData,
     fillTable,
     offerEntries,
     setChecked,
     setEnabled,
     setText,
-    setUsable,
 )
 from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.logic.module_session import ModuleSession
@@ -49,7 +49,9 @@ class ScorePanel(Panel):
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
         self._trainees = session.trainees
-        self._work = self.cancelableWork(self._showMessage, self._showProgress, self._showUsable)
+        failure = _("The trial is not shown.")
+        shows = (self._showMessage, self._showUsable, self._showProgress)
+        self._work = CancelableWork(ui.replayButton, self.replay, failure, *shows)
         self._trial: StoredTrial | None = None
         self._newTrial = ""
         self._worst = ""
@@ -59,7 +61,6 @@ class ScorePanel(Panel):
         connectClick(ui.exportScoresButton, self.exportScores, _("The trials were not exported."))
         ui.reportButton.connect("clicked()", self.writeReport)
         ui.scoreCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
-        self._work.connectButton(ui.replayButton, self.replay, _("The trial is not shown."))
         connectClick(ui.worstTouchButton, self.replayWorstTouch, _("The touch is not shown."))
         self.listen(
             (self._trainees.changed, self._show),
@@ -220,7 +221,7 @@ class ScorePanel(Panel):
             reason = _("The trial cannot be analyzed.")
         tip = _("Show how point {label} was touched.").format(label=self._worst)
         isUsable = bool(self._worst) and not isAtWork
-        setUsable(ui.worstTouchButton, isUsable, tip, busy if isAtWork else reason)
+        setEnabled(ui.worstTouchButton, isUsable, busy if isAtWork else reason, tip)
         self._showReplay()
 
     def _showProgress(self, step: str, share: float) -> None:

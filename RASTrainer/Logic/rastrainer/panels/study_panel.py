@@ -20,7 +20,6 @@ from rastrainer.panels.widgets import (
     fillTable,
     setEnabled,
     setText,
-    setUsable,
     textLabel,
 )
 from rastrainer.protocol import StepKind
@@ -165,7 +164,7 @@ class StudyPanel(Panel):
         if self._progress is not None and self._progress.next_step is not None:
             reason = self._session.training.obstacle
             tip = instruction(self._progress.next_step)
-            setUsable(ui.startStepButton, not reason, tip, reason)
+            setEnabled(ui.startStepButton, not reason, reason, tip)
 
 
 def _row(progress: StepProgress, number: int) -> tuple[str, str, str]:

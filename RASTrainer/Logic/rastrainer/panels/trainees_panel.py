@@ -15,6 +15,7 @@ from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
+    CancelableWork,
     chosenData,
     connectAsPressed,
     fillComboBox,
@@ -23,7 +24,6 @@ from rastrainer.panels.widgets import (
     setChecked,
     setEnabled,
     setText,
-    setUsable,
 )
 from rastrainer.protocol import Mode
 from rastrainer.slicer.logic.module_session import ModuleSession
@@ -45,9 +45,9 @@ class TraineesPanel(Panel):
         self._logic = session.trainees
         self._trainee: Trainee | None = None
         self._isStateShown = self._isErasing = False
-        self._deletion = self.cancelableWork(
-            self._showMessage, self._noteErasing, self._showDeleting
-        )
+        failure = _("The trainee was not deleted.")
+        shows = (self._showMessage, self._showDeleting, self._noteErasing)
+        self._deletion = CancelableWork(ui.deleteTraineeButton, self.deleteTrainee, failure, *shows)
         self._showPlace()
         ui.studyPathLineEdit.connect("currentPathChanged(QString)", self.chooseStudy)
         ui.studyAddressLineEdit.connect("editingFinished()", self.chooseStudyAddress)
@@ -59,9 +59,6 @@ class TraineesPanel(Panel):
         ui.createTraineeButton.connect("clicked()", self.createTrainee)
         ui.traineesCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
         connectAsPressed(ui.archiveButton, lambda: partial(self.setArchived, not self._isArchived))
-        self._deletion.connectButton(
-            ui.deleteTraineeButton, self.deleteTrainee, _("The trainee was not deleted.")
-        )
         for button, action, failure in (
             (ui.exportTraineeButton, self.exportTrainee, _("The trainee was not exported.")),
             (ui.exportHistoryButton, self.exportHistory, _("The history was not exported.")),
@@ -212,7 +209,7 @@ class TraineesPanel(Panel):
         if isAtWork:
             tip = _("Delete nothing; the study is still being opened.")
             begun = _("The deletion has begun, and can no longer be canceled.")
-            setUsable(ui.deleteTraineeButton, not self._isErasing, tip, begun)
+            setEnabled(ui.deleteTraineeButton, not self._isErasing, begun, tip)
         else:
             reason = _("Choose a trainee first.")
             setEnabled(ui.deleteTraineeButton, self._trainee is not None, reason)

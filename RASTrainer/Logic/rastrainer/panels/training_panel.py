@@ -25,7 +25,6 @@ from rastrainer.panels.widgets import (
     setLight,
     setProperty,
     setText,
-    setUsable,
 )
 from rastrainer.protocol import (
     PROCEDURE_PHASES,
@@ -139,11 +138,11 @@ class TrainingPanel(Panel):
         """Offer what the chosen scenario has; another scenario begins with fiducials alone."""
         box, methods = self._ui.methodComboBox, self._session.methods
         offerEntries(box, [(METHODS[each], each) for each in methods], chosenData(box))
-        setUsable(
+        setEnabled(
             box,
             len(methods) > 1,
-            _("What the trainee touches, and how the head is registered. A study decides this."),
             _("The chosen scenario has no landmarks: only its fiducials can be touched."),
+            _("What the trainee touches, and how the head is registered. A study decides this."),
         )
         entries = [(_("none: only touches"), "")]
         entries += [(title, name) for name, title in self._session.procedures]
