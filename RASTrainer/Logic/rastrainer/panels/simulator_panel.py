@@ -21,7 +21,6 @@ from rastrainer.panels.widgets import (
 )
 from rastrainer.slicer.link.link_status import LinkState, LinkStatus
 from rastrainer.slicer.logic.module_session import ModuleSession
-from rastrainer.slicer.logic.simulator_logic import freePort
 from rastrainer.slicer.program.simulator_program import ProgramState
 from rastrainer.slicer.settings import HAS_NETWORK, HAS_WINDOW, HOST, PORT
 from rastrainer.slicer.translation import _
@@ -109,7 +108,7 @@ class SimulatorPanel(Panel):
         ui = self._ui
         with showErrors(_("The simulator could not be started.")):
             self._simulator.start(
-                freePort(ui.portSpinBox.value),
+                ui.portSpinBox.value,
                 hasWindow=ui.windowCheckBox.checked,
                 hasNetwork=ui.networkCheckBox.checked,
             )

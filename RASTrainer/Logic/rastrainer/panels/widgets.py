@@ -221,9 +221,7 @@ class CancelableWork:
         """Have a click start or cancel the work.
 
         Args:
-            button: whose click it is.
             start: calls `run`; where that fails, `failure` says what was not done.
-            failure: a sentence.
             showSentence: shows a sentence, an empty one where the work has failed.
             showUsable: called when work begins and ends.
             show: shows a step and the share of the work done; None shows the step as a sentence.

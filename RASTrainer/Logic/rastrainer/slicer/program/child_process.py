@@ -101,7 +101,7 @@ class ChildProcess:
             self.end()
         if self._killAt is None or time.monotonic() < self._killAt:
             return False
-        self._group.kill()
+        self._group.end(isAsked=False)
         # A process that has left the group may keep the output open forever.
         return hasEnded and time.monotonic() > self._killAt + LAST_OUTPUT_S
 
@@ -113,14 +113,14 @@ class ChildProcess:
         """Ask the program and all that it has started to end, once; see `poll`."""
         if self._killAt is None:
             self._killAt = time.monotonic() + KILL_AFTER_S
-            self._group.end()
+            self._group.end(isAsked=True)
 
     def close(self) -> None:
         """End it and all that it has started, in order where that takes half a second at most."""
         self.end()
         self._reader.join(CLOSING_S)
         if not self.poll():
-            self._group.kill()
+            self._group.end(isAsked=False)
             with contextlib.suppress(subprocess.TimeoutExpired):
                 self._process.wait(LAST_OUTPUT_S)
 
