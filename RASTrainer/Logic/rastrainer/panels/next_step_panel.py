@@ -13,13 +13,7 @@ import qt
 from rastrainer.errors import InputError
 from rastrainer.panels.panel import Panel
 from rastrainer.panels.plain_text import buttonTitle, shortName
-from rastrainer.panels.widgets import (
-    LINK_COLORS,
-    connectAsPressed,
-    setLight,
-    setText,
-    setUsable,
-)
+from rastrainer.panels.widgets import LINK_COLORS, connectAsPressed, setLight, setText, setUsable
 from rastrainer.protocol import TRIAL_RUN, Phase, StepKind
 from rastrainer.slicer.link.link_status import LinkState, notInstalled
 from rastrainer.slicer.logic.module_session import ModuleSession
