@@ -140,7 +140,6 @@ class NextStepPanel(Panel):
                 button.collapsed = each is not step.section
 
     def _lookUp(self, *_arguments: Any) -> None:
-        """Look up the chosen trainee in the study."""
         trainees, now = self._session.trainees, self._now
         if trainees.chosen != now.trainee:
             now = replace(now, hasPracticed=False, hasNewResult=False, isResultShown=False)

@@ -123,7 +123,6 @@ class TrainingPanel(Panel):
         self._session.study.startTrial(task, mode, isTutorialFirst, procedure, method)
 
     def abort(self) -> None:
-        """End the trial without registering it, after asking."""
         trial = self._logic.status
         question = _("Abort the trial of {name}? Its touches will not be registered.").format(
             name=shortName(trial.trainee)
@@ -154,7 +153,6 @@ class TrainingPanel(Panel):
         self._session.woken.emit()
 
     def showState(self, *_arguments: Any) -> None:
-        """Show the state of the trial."""
         ui, trial, session = self._ui, self._logic.status, self._session
         nobody = _("None: choose one in the section Trainees.")
         setText(ui.trainingTraineeText, session.trainees.chosen or nobody)

@@ -164,7 +164,6 @@ class ModuleSession:
         return Study.open(self.studyPlace, make_folder=True)
 
     def chooseStudy(self, place: StudyPlace) -> None:
-        """Continue with another study, which is created if missing."""
         Study.open(place, self._lockWait, make_folder=True).close()
         self.study.leaveStudy()
         self.studyPlace = place
@@ -175,7 +174,6 @@ class ModuleSession:
         self.trainees.reopen()
 
     def chooseTask(self, task: Task, scenario: Scenario) -> None:
-        """Choose the task that is started next, in its scenario."""
         self.task, self.taskTitle = task.name, task.title
         self.procedures = tuple((each.name, each.title) for each in scenario.procedures)
         self.methods = tuple(each.value for each in playable_methods(scenario))

@@ -197,7 +197,6 @@ class SliceFollower:
         jumpTo(self._scene, self._place.tolist(), later)
 
     def showAgain(self) -> None:
-        """Show the last point again, after the views were moved."""
         if self._place is not None:
             self.show(self._place)
 
@@ -215,7 +214,6 @@ class SliceFollower:
         return DEVICES.get(self._training.status.phase) if self.liesAlong else None
 
     def process(self) -> None:
-        """Follow what has moved."""
         device = self._device
         if device is None and self._along.former:
             if self._training.status.phase == Phase.PAUSED.value:
