@@ -110,12 +110,12 @@ class ProcedurePlanPanel(Panel):
         line = self._line()
         if line is not None:
             self._removed.append((line, removeLine(slicer.mrmlScene, line)))
-            self.showState()
+        self.showState()
 
     def restoreLine(self) -> None:
         if self._removed:
             restoreLine(slicer.mrmlScene, *self._removed.pop())
-            self.showState()
+        self.showState()
 
     def raiseLine(self) -> None:
         """Have the chosen line carried out before the one above it; it stays chosen."""
@@ -123,7 +123,7 @@ class ProcedurePlanPanel(Panel):
         if line is not None:
             raiseLine(slicer.mrmlScene, line)
             table.selectRow(max(table.currentRow() - 1, 0))
-            self.showState()
+        self.showState()
 
     def placeCheckpoint(self) -> None:
         """Let the next click place a checkpoint, in the chosen list or in the plan's own."""

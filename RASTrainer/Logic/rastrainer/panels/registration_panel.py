@@ -44,7 +44,9 @@ class RegistrationPanel(Panel):
         entries = [(title, kind) for kind, title in TITLES.items()]
         bindChosen(ui.kindComboBox, entries, session.settings, FIT)
         self._logic.kind = chosenData(ui.kindComboBox)
-        ui.kindComboBox.connect("activated(int)", self._chooseKind)
+        ui.kindComboBox.connect(
+            "activated(int)", lambda _index: self._logic.chooseKind(chosenData(ui.kindComboBox))
+        )
         for combo in (ui.movingComboBox, ui.fixedComboBox, ui.targetComboBox):
             combo.connect("currentNodeChanged(vtkMRMLNode*)", self._chooseLists)
         ui.residualsTable.connect("itemSelectionChanged()", self._chooseFiducial)
@@ -83,9 +85,6 @@ class RegistrationPanel(Panel):
         combos = (ui.movingComboBox, ui.fixedComboBox, ui.targetComboBox)
         self._logic.chooseLists(*(combo.currentNode() for combo in combos))
         self._session.woken.emit()
-
-    def _chooseKind(self, _index: int = 0) -> None:
-        self._logic.chooseKind(chosenData(self._ui.kindComboBox))
 
     def _apply(self, applied: bool) -> None:
         transform = self._logic.transform

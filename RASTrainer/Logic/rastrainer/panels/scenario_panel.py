@@ -73,7 +73,10 @@ class ScenarioPanel(Panel):
             (session.files.problemFound, self._showMessage),
             (self._logic.robotShown, fitThreeDViews),
             (self._logic.problemFound, self._showMessage),
-            (session.sceneChanged, self._showRobotBox),
+            (
+                session.sceneChanged,
+                lambda: setChecked(ui.robotCheckBox, self._logic.isRobotShown),
+            ),
         )
         self._fill(session.settings.get(SCENARIO))
 
@@ -173,9 +176,6 @@ class ScenarioPanel(Panel):
 
     def _showHeadMessage(self, sentence: str) -> None:
         setText(self._ui.otherHeadText, sentence)
-
-    def _showRobotBox(self) -> None:
-        setChecked(self._ui.robotCheckBox, self._logic.isRobotShown)
 
     def _fill(self, wanted: str = "") -> None:
         """Offer the available scenarios, and choose one; the first if it is missing."""

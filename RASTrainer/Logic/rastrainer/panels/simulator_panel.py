@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import slicer
@@ -52,7 +51,10 @@ class SimulatorPanel(Panel):
         setup, program = self._simulator.setup, self._simulator.program
         self.listen(
             (self._link.statusChanged, self._showStatus),
-            (self._link.stateChanged, self._showTraining),
+            (
+                self._link.stateChanged,
+                lambda state: setText(ui.trainingText, str(state.get("instruction", ""))),
+            ),
             (setup.changed, self._showProgram),
             (setup.finished, self._startAfterSetup),
             (program.wroteLine, ui.simulatorLogEdit.appendPlainText),
@@ -147,9 +149,6 @@ class SimulatorPanel(Panel):
         setLight(self._ui.stateLight, LINK_COLORS[status.state])
         setText(self._ui.stateText, status.sentence)
         setText(self._ui.remedyText, status.remedy)
-
-    def _showTraining(self, state: Mapping[str, Any]) -> None:
-        setText(self._ui.trainingText, str(state.get("instruction", "")))
 
 
 class RunningSimulatorPanel(Panel):

@@ -25,6 +25,7 @@ from rastrainer.panels.widgets import (
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.logic.scenario_logic import planArguments
 from rastrainer.slicer.logic.target_plan_logic import PlanOnImages, targetsOf
 from rastrainer.slicer.scene.plan_points import startPlacing, whyNotRemoved
 from rastrainer.slicer.translation import _
@@ -78,15 +79,10 @@ class PlanPanel(Panel):
 
     def save(self) -> None:
         """Copy the scenario chosen above with this plan and use the copy."""
-        ui = self._ui
-        scenario = self._keeping.run(
-            lambda report: self._session.scenarioFiles.savePlan(
-                chosenData(ui.scenarioComboBox),
-                ui.planTitleLineEdit.text.strip(),
-                ui.planComboBox.currentNode(),
-                report,
-            )
-        )
+        ui, files = self._ui, self._session.scenarioFiles
+        name, title = chosenData(ui.scenarioComboBox), ui.planTitleLineEdit.text.strip()
+        plan = planArguments(ui.planComboBox.currentNode())
+        scenario = self._keeping.run(lambda report: files.saveWith(plan, name, title, report))
         if scenario is not None:
             self._session.scenarioMade.emit(scenario.name)
 

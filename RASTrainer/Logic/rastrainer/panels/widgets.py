@@ -222,7 +222,7 @@ class CancelableWork:
 
         Args:
             showSentence: shows a sentence, an empty one where the work has failed.
-            show: shows a step and the share of the work done; None has the step shown as a sentence.
+            show: shows a step and the share of the work done; None shows the step as a sentence.
             showUsable: called when work begins and ends.
         """
         self.isUnderWay = self._isCanceled = False

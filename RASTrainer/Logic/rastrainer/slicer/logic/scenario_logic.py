@@ -115,17 +115,18 @@ class ScenarioLogic:
 
     def setRobotShown(self, shown: bool) -> None:
         """Show the robot, which follows the link, or hide it; its links come one by one."""
+
+        def refuse(error: Exception) -> None:
+            self._isRobotComing = False
+            self.problemFound.emit(_("The robot cannot be shown. {problem}").format(problem=error))
+
         setRobotVisible(self._scene, shown)
         self._isRobotComing = shown
-        if not shown:
-            return
-        if self._links or not missingLinks(self._scene):
+        if shown and (self._links or not missingLinks(self._scene)):
             self._addLinks(self._links)
-        else:
+        elif shown:
             check, folder = self._work.checkWanted, self._robotFolder
-            self._work.do(
-                lambda: self._run(READ_LINKS, check, folder), self._addLinks, self._refuseRobot
-            )
+            self._work.do(lambda: self._run(READ_LINKS, check, folder), self._addLinks, refuse)
 
     def forgetScene(self) -> None:
         """Stop showing the robot: the scene was cleared."""
@@ -136,15 +137,11 @@ class ScenarioLogic:
         node = robotNode(self._scene, 0)
         return self._isRobotComing or (node is not None and bool(node.GetDisplayVisibility()))
 
-    def _refuseRobot(self, error: Exception) -> None:
-        self._isRobotComing = False
-        self.problemFound.emit(_("The robot cannot be shown. {problem}").format(problem=error))
-
     def _addLinks(self, links: tuple[LinkMesh, ...]) -> None:
         """Add the links that are missing, one in each turn."""
         self._links = links
 
-        def addLinkOf(number: int) -> None:
+        def addMissing(number: int) -> None:
             if self._isRobotComing and number in missingLinks(self._scene):
                 addLink(self._scene, number, links[number])
                 # At once, so that the views can be moved to it.
@@ -156,7 +153,7 @@ class ScenarioLogic:
                 self.robotShown.emit()
 
         for number in missingLinks(self._scene):
-            self._work.later(partial(addLinkOf, number))
+            self._work.later(partial(addMissing, number))
         self._work.later(finish)
 
 
@@ -211,14 +208,6 @@ class ScenarioFiles:
         words += ["--keep-names"] if keepsNames else []
         return self.run(words, progress)
 
-    def savePlan(
-        self, name: str, title: str, node: Any, progress: Progress = no_progress
-    ) -> Scenario:
-        """Copy a scenario with a list in place of its targets, or a line of its trajectory."""
-        isLine = node.IsA("vtkMRMLMarkupsLineNode")
-        plan = planArguments(None, node) if isLine else planArguments(node, None)
-        return self.saveWith(plan, name, title, progress)
-
     def saveWith(
         self, plan: list[str], name: str, title: str, progress: Progress = no_progress
     ) -> Scenario:
@@ -236,17 +225,20 @@ class ScenarioFiles:
         return self.simulator.run(["scenario", *words], progress, mayFail)
 
 
-def planArguments(targets: Any | None, trajectory: Any | None) -> list[str]:
-    """Return the arguments of `rastrainer scenario` for a list of targets and a line."""
+def planArguments(*planned: Any | None) -> list[str]:
+    """Return the arguments of `rastrainer scenario` for lists of targets, and a line."""
     words = []
-    if targets is not None:
-        for name, place in zip(labelsOf(targets), worldPoints(targets), strict=True):
-            words += ["--target", name, *map(str, place.tolist())]
-    if trajectory is not None:
-        ends = worldPoints(trajectory)
-        if len(ends) != 2:
+    for node in planned:
+        if node is None:
+            continue
+        points = worldPoints(node)
+        if not node.IsA("vtkMRMLMarkupsLineNode"):
+            for name, place in zip(labelsOf(node), points, strict=True):
+                words += ["--target", name, *map(str, place.tolist())]
+        elif len(points) == 2:
+            words += ["--trajectory", node.GetName(), *map(str, points.ravel().tolist())]
+        else:
             raise InputError(_("The trajectory needs two points: its entry and its target."))
-        words += ["--trajectory", trajectory.GetName(), *map(str, ends.ravel().tolist())]
     return words
 
 

@@ -24,6 +24,8 @@ _NEW_CODE = re.compile(r"RASTrainer simulator has a new pairing code for views: 
 
 
 class ProgramState(str, Enum):
+    """Of the simulator's process."""
+
     STOPPED = "stopped"
     STARTING = "starting"
     READY = "ready"
