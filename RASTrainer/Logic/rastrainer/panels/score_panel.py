@@ -85,7 +85,6 @@ class ScorePanel(Panel):
         self._showMessage(_("Score, Comparison and Motion metrics are now tables in the scene."))
 
     def exportScores(self) -> None:
-        """Write all trials of the study as a table."""
         from rastrainer.study.tidy_csv import write_histories
 
         path = askWhereToSave(_("Export all trials"), "trials.csv", "CSV (*.csv)")
@@ -117,14 +116,12 @@ class ScorePanel(Panel):
                     qt.QDesktopServices.openUrl(qt.QUrl.fromLocalFile(str(page)))
 
     def replay(self) -> None:
-        """Show the trial again in the 3D view."""
         trial = self._trial
         if trial is not None:
             self._work.run(lambda report: self._session.replay.show(trial, report))
             fitThreeDViews()
 
     def replayWorstTouch(self) -> None:
-        """Show again how the worst touch came about."""
         trial = self._trial
         if trial is not None:
             self._work.run(lambda report: self._session.replay.showWorstTouch(trial, report))
@@ -152,7 +149,8 @@ class ScorePanel(Panel):
             self._named = None
             self._showMessage(str(error))
             return
-        text, entries = _("{number}: {task}, {day}"), []
+        text = _("{number}: {task}, {day}")
+        entries: list[tuple[str, str]] = []
         for number, trial in enumerate(history, start=1):
             record = trial.record
             day = record.started_utc[:16].replace("T", " ")
@@ -191,7 +189,6 @@ class ScorePanel(Panel):
         self._showFeedback()
 
     def _showFeedback(self) -> None:
-        """Show the feedback on the trial when it is known."""
         trial, self._worst = self._trial, ""
         sentences = [] if trial is None else [_("Feedback on the trial is being prepared.")]
         try:

@@ -127,7 +127,6 @@ class TraineesPanel(Panel):
         ui.studyPathLineEdit.currentPath = str(self._session.studyFile)
 
     def createTrainee(self) -> None:
-        """Add a trainee and choose them."""
         ui = self._ui
         with showErrors(_("The trainee was not created.")):
             self._logic.create(ui.pseudonymLineEdit.text, ui.newConsentCheckBox.checked)
@@ -135,7 +134,6 @@ class TraineesPanel(Panel):
             ui.newConsentCheckBox.checked = False
 
     def setConsent(self, consent: bool) -> None:
-        """Note whether the chosen trainee consents to research."""
         with showErrors(_("The consent was not saved.")):
             try:
                 self._logic.setConsent(consent)
@@ -152,7 +150,6 @@ class TraineesPanel(Panel):
             self._logic.setArchived(isArchived)
 
     def exportTrainee(self) -> None:
-        """Write everything about the chosen trainee into a file."""
         from rastrainer.study.trainee_data import export_trainee
 
         chosen = self._logic.chosen
@@ -174,7 +171,6 @@ class TraineesPanel(Panel):
         self._showMessage(text.format(count=count, path=path))
 
     def deleteTrainee(self) -> None:
-        """Delete the chosen trainee for good, after asking."""
         name, trials = self._logic.chosen, len(self._logic.history())
         question = _(
             "Delete {name} with {trials} trials from the study and from the journals on this "
@@ -198,7 +194,6 @@ class TraineesPanel(Panel):
             self._showDeleting()
 
     def _showDeleting(self) -> None:
-        """Show whether a trainee is being deleted, and whether that can be canceled."""
         ui, isAtWork = self._ui, self._deletion.isUnderWay
         self._isErasing = self._isErasing and isAtWork
         # Nobody else is chosen meanwhile. A file is chosen only if no address is.
@@ -215,7 +210,6 @@ class TraineesPanel(Panel):
             setEnabled(ui.deleteTraineeButton, self._trainee is not None, reason)
 
     def showCurve(self) -> None:
-        """Show score and time over the trials as a plot, or restore the user's layout."""
         if not self._ui.learningCurveButton.checked:
             self._session.layout.giveBack(CURVE)
             return

@@ -98,11 +98,7 @@ class TrainingPanel(Panel):
             lambda: self.resume if logic.status.phase == Phase.PAUSED.value else self.pause,
         )
         connectClick(ui.abortButton, self.abort, _("The trial was not aborted."))
-        sayings = (
-            self._logic.answered,
-            session.trials.problemFound,
-            session.aborted.problemFound,
-        )
+        sayings = (self._logic.answered, session.trials.problemFound, session.aborted.problemFound)
         self.listen(
             (self._logic.changed, self.showState),
             *((signal, partial(setText, ui.trainingMessageText)) for signal in sayings),
@@ -126,7 +122,6 @@ class TrainingPanel(Panel):
         self._session.study.startTrial(task, mode, isTutorialFirst, procedure, method)
 
     def abort(self) -> None:
-        """End the trial without registering it, after asking."""
         trial = self._logic.status
         question = _("Abort the trial of {name}? Its touches will not be registered.").format(
             name=shortName(trial.trainee)
@@ -157,7 +152,6 @@ class TrainingPanel(Panel):
         self._session.woken.emit()
 
     def showState(self, *_arguments: Any) -> None:
-        """Show the state of the trial."""
         ui, trial, session = self._ui, self._logic.status, self._session
         nobody = _("None: choose one in the section Trainees.")
         setText(ui.trainingTraineeText, session.trainees.chosen or nobody)
