@@ -21,19 +21,14 @@ from rastrainer.slicer.translation import _
 
 NARROWEST = 60
 _USUAL = SetUp()
-_MOVED = _USUAL.perturbation
+_MOVED, _MOST = _USUAL.perturbation, MAX_PERTURBATION
 _PLACE, _EXTENT = (-WORLD_LIMIT_MM, WORLD_LIMIT_MM), (1.0, WORLD_LIMIT_MM)
 _ROWS = (
     (_("Head center, mm:"), "head", _PLACE, _USUAL.head.center_mm),
     (_("Head rotation, °:"), "yaw", (-180.0, 180.0), (_USUAL.head.yaw_deg,)),
-    (
-        _("Shift in a trial, ± mm:"),
-        "shift",
-        (0.0, MAX_PERTURBATION.translation_mm),
-        (_MOVED.translation_mm,),
-    ),
-    (_("Rotation in a trial, ± °:"), "turn", (0.0, MAX_PERTURBATION.yaw_deg), (_MOVED.yaw_deg,)),
-    (_("Tilt in a trial, ± °:"), "tilt", (0.0, MAX_PERTURBATION.tilt_deg), (_MOVED.tilt_deg,)),
+    (_("Shift in a trial, ± mm:"), "shift", (0.0, _MOST.translation_mm), (_MOVED.translation_mm,)),
+    (_("Rotation in a trial, ± °:"), "turn", (0.0, _MOST.yaw_deg), (_MOVED.yaw_deg,)),
+    (_("Tilt in a trial, ± °:"), "tilt", (0.0, _MOST.tilt_deg), (_MOVED.tilt_deg,)),
     (_("Table center, mm:"), "table", _PLACE, _USUAL.table.center_mm),
     (_("Table size, mm:"), "size", _EXTENT, _USUAL.table.size_mm),
     (_("Stand diameter, mm:"), "stand", STAND_DIAMETERS_MM, (_USUAL.stand.diameter_mm,)),

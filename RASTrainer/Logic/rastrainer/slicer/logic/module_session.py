@@ -91,7 +91,9 @@ class ModuleSession:
         self._scene = scene
         self._lockWait = LockWait.interactive()
         find_driver_in(places.simulator)
-        self.scenarios = cache = ScenarioCache.below(places.assets / "scenarios", places.library)
+        self.scenarios = cache = ScenarioCache(
+            places.assets / "scenarios", places.library, areLibraries=True
+        )
         self.procedures: tuple[tuple[str, str], ...] = ()
         self.methods: tuple[str, ...] = (RegistrationMethod.FIDUCIALS.value,)
         self.cohort = read_trials(places.assets.joinpath(*PUBLISHED_STUDY))
