@@ -53,7 +53,7 @@ class LandmarkPoints(UndoablePoints):
         """Replace all landmarks."""
         node = self._list()
         self.remember(node)
-        putPoints(node, [PlacedPoint(each.name, each.position_ras) for each in landmarks])
+        putPoints(node, [PlacedPoint(each.name, each.position_ras.tolist()) for each in landmarks])
 
     def startPlacing(self, name: str) -> None:
         """Let the next click in a view place a landmark, in place of one of the same name."""

@@ -55,7 +55,9 @@ class PlacedPoint(NamedTuple):
 def placedPoints(node: Any | None, inRas: bool = False) -> list[PlacedPoint]:
     """Return the points of a node that are placed, and not only under the mouse."""
     points: list[PlacedPoint] = []
-    for row in range(0 if node is None else node.GetNumberOfControlPoints()):
+    if node is None:
+        return points
+    for row in range(node.GetNumberOfControlPoints()):
         if node.GetNthControlPointPositionStatus(row) == node.PositionDefined:
             place = node.GetNthControlPointPosition(row)
             if inRas:
