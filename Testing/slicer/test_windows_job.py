@@ -191,13 +191,13 @@ def started(windows):
 def test_anything_a_program_starts_in_its_first_moment_ends_with_it(windows):
     _process, job = started(windows)
     assert len(windows.running) == 2
-    job.kill()
+    job.end(isAsked=False)
     assert windows.running == set()
 
 
 def test_a_program_not_started_suspended_would_leave_its_first_children_behind(windows):
     process = windows.start(0)
-    WindowsJob(process, windows.kernel).kill()
+    WindowsJob(process, windows.kernel).end(isAsked=False)
     assert len(windows.running) == 1
 
 
@@ -218,7 +218,7 @@ def test_without_a_job_a_program_still_runs_and_is_ended_as_a_tree(windows, monk
     monkeypatch.setattr(process_group, "endTree", ended.append)
     process, job = started(windows)
     assert len(windows.running) == 2
-    job.end()
+    job.end(isAsked=True)
     assert ended == [process.pid]
 
 
@@ -244,7 +244,7 @@ def test_windows_ends_a_program_with_everything_it_started():
     with subprocess.Popen(words, stdout=subprocess.PIPE, text=True, **WINDOWS_OPTIONS) as process:
         job = WindowsJob(process)
         child = process.stdout.readline().strip()
-        job.kill()
+        job.end(isAsked=False)
     listed = ["tasklist", "/NH", "/FI", f"PID eq {child}"]
     end = time.monotonic() + 120.0
     while child in subprocess.run(listed, capture_output=True, text=True, check=True).stdout:

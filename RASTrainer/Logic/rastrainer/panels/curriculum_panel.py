@@ -38,12 +38,10 @@ class CurriculumPanel(Panel):
         self._show()
 
     def setCurriculum(self) -> None:
-        """Have the chosen trainee, or everybody, follow the chosen file's curriculum."""
         curriculum = read_curriculum(Path(self._ui.curriculumPathLineEdit.currentPath))
         self._logic.choose(curriculum, self._ui.everybodyCheckBox.checked)
 
     def endCurriculum(self) -> None:
-        """Have the chosen trainee, or everybody, follow no curriculum, after asking."""
         isForEverybody = self._ui.everybodyCheckBox.checked
         who = _("everybody") if isForEverybody else self._session.trainees.chosen
         question = _(

@@ -9,6 +9,7 @@ from rastrainer.errors import InputError
 from rastrainer.number_text import fixed
 from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.widgets import (
+    CancelableWork,
     chosenData,
     chosenScenario,
     fillComboBox,
@@ -41,11 +42,11 @@ class LandmarksPanel(Panel):
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
         self._logic = session.landmarks
-        self._work = self.cancelableWork(self._showMessage, None, self.showState)
-        fillComboBox(ui.landmarkNameComboBox, ENTRIES, FACE_LANDMARKS[0])
-        self._work.connectButton(
-            ui.proposeLandmarksButton, self.propose, _("No landmarks could be proposed.")
+        failure = _("No landmarks could be proposed.")
+        self._work = CancelableWork(
+            ui.proposeLandmarksButton, self.propose, failure, self._showMessage, self.showState
         )
+        fillComboBox(ui.landmarkNameComboBox, ENTRIES, FACE_LANDMARKS[0])
         connectClick(ui.showLandmarksButton, self.show, _("The landmarks cannot be shown."))
         connectClick(ui.placeLandmarkButton, self.place, _("No landmark can be placed."))
         ui.removeLandmarkButton.connect("clicked()", self.remove)
@@ -100,10 +101,12 @@ class LandmarksPanel(Panel):
         """Show the landmarks of the scene."""
         ui, points, isAtWork = self._ui, self._logic.points, self._work.isUnderWay
         self._showMessage(self._message)
-        rows = [_row(landmark) for landmark in points.landmarks]
+        rows = [_row(landmark) for landmark in points.placed()]
         if fillTable(ui.landmarksTable, rows):
             # The first usual landmark that is missing comes next.
-            fillComboBox(ui.landmarkNameComboBox, ENTRIES, (*points.missing, FACE_LANDMARKS[0])[0])
+            placed = [landmark.name for landmark in points.placed()]
+            missing = [name for name in FACE_LANDMARKS if name not in placed]
+            fillComboBox(ui.landmarkNameComboBox, ENTRIES, (*missing, FACE_LANDMARKS[0])[0])
         none = _("Place landmarks first, or have them proposed.")
         setEnabled(ui.removeLandmarkButton, bool(rows), _("No landmark is placed."))
         setEnabled(ui.undoLandmarkButton, points.canUndo, _("Nothing was changed."))
@@ -119,7 +122,8 @@ class LandmarksPanel(Panel):
             self._showMessage(said)
 
     def _showMessage(self, sentence: str) -> None:
-        self._message, names = sentence, self._logic.points.deselected
+        self._message = sentence
+        names = [landmark.name for landmark in self._logic.points.placed(areSelected=False)]
         if names:
             leftOut = _("Left out, as they are deselected in the module Markups: {names}.").format(
                 names=", ".join(NAMES.get(name, name) for name in names)

@@ -11,7 +11,7 @@ from rastrainer.head.trial_head import MAX_PERTURBATION, Perturbation
 from rastrainer.panels.application import downloadSample, fitThreeDViews
 from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.shown_errors import showErrors
-from rastrainer.panels.widgets import setEnabled, setText
+from rastrainer.panels.widgets import CancelableWork, setEnabled, setText
 from rastrainer.protocol import WORLD_LIMIT_MM
 from rastrainer.scenario.scenario import STAND_DIAMETERS_MM, OperatingTable, Stand
 from rastrainer.scenario.setup import HeadPlace, SetUp
@@ -21,19 +21,14 @@ from rastrainer.slicer.translation import _
 
 NARROWEST = 60
 _USUAL = SetUp()
-_MOVED = _USUAL.perturbation
+_MOVED, _MOST = _USUAL.perturbation, MAX_PERTURBATION
 _PLACE, _EXTENT = (-WORLD_LIMIT_MM, WORLD_LIMIT_MM), (1.0, WORLD_LIMIT_MM)
 _ROWS = (
     (_("Head center, mm:"), "head", _PLACE, _USUAL.head.center_mm),
     (_("Head rotation, °:"), "yaw", (-180.0, 180.0), (_USUAL.head.yaw_deg,)),
-    (
-        _("Shift in a trial, ± mm:"),
-        "shift",
-        (0.0, MAX_PERTURBATION.translation_mm),
-        (_MOVED.translation_mm,),
-    ),
-    (_("Rotation in a trial, ± °:"), "turn", (0.0, MAX_PERTURBATION.yaw_deg), (_MOVED.yaw_deg,)),
-    (_("Tilt in a trial, ± °:"), "tilt", (0.0, MAX_PERTURBATION.tilt_deg), (_MOVED.tilt_deg,)),
+    (_("Shift in a trial, ± mm:"), "shift", (0.0, _MOST.translation_mm), (_MOVED.translation_mm,)),
+    (_("Rotation in a trial, ± °:"), "turn", (0.0, _MOST.yaw_deg), (_MOVED.yaw_deg,)),
+    (_("Tilt in a trial, ± °:"), "tilt", (0.0, _MOST.tilt_deg), (_MOVED.tilt_deg,)),
     (_("Table center, mm:"), "table", _PLACE, _USUAL.table.center_mm),
     (_("Table size, mm:"), "size", _EXTENT, _USUAL.table.size_mm),
     (_("Stand diameter, mm:"), "stand", STAND_DIAMETERS_MM, (_USUAL.stand.diameter_mm,)),
@@ -88,9 +83,10 @@ class NewScenarioPanel(Panel):
         super().__init__(ui, session)
         self._maker = session.scenarioMaker
         self._setUp = SetUpForm(ui.setUpGroupBox)
-        self._work = self.cancelableWork(self._showMessage, self._showProgress, self._showUsable)
+        failure = _("The scenario was not made.")
+        shows = (self._showMessage, self._showUsable, self._showProgress)
+        self._work = CancelableWork(ui.makeScenarioButton, self.make, failure, *shows)
         ui.sampleDataButton.connect("clicked()", self.loadSampleData)
-        self._work.connectButton(ui.makeScenarioButton, self.make, _("The scenario was not made."))
         connectClick(ui.previewHeadButton, self.preview, _("No head could be shown."))
         failure = _("The scenario could not be made with these choices.")
         connectClick(ui.checkScenarioButton, self.check, failure)

@@ -13,13 +13,7 @@ import qt
 from rastrainer.errors import InputError
 from rastrainer.panels.panel import Panel
 from rastrainer.panels.plain_text import buttonTitle, shortName
-from rastrainer.panels.widgets import (
-    LINK_COLORS,
-    connectAsPressed,
-    setLight,
-    setText,
-    setUsable,
-)
+from rastrainer.panels.widgets import LINK_COLORS, connectAsPressed, setEnabled, setLight, setText
 from rastrainer.protocol import TRIAL_RUN, Phase, StepKind
 from rastrainer.slicer.link.link_status import LinkState, notInstalled
 from rastrainer.slicer.logic.module_session import ModuleSession
@@ -138,7 +132,7 @@ class NextStepPanel(Panel):
             ui.nextStepButton.setShortcut(qt.QKeySequence(SHORTCUT))
         isPossible = step.action is not NextAction.WAIT
         tip = _("The next thing to do ({shortcut})").format(shortcut=SHORTCUT)
-        setUsable(ui.nextStepButton, isPossible, tip, step.sentence)
+        setEnabled(ui.nextStepButton, isPossible, step.sentence, tip)
         setText(ui.nextStepText, step.sentence)
         if self._section is not step.section:
             self._section = step.section
@@ -146,7 +140,6 @@ class NextStepPanel(Panel):
                 button.collapsed = each is not step.section
 
     def _lookUp(self, *_arguments: Any) -> None:
-        """Look up the chosen trainee in the study."""
         trainees, now = self._session.trainees, self._now
         if trainees.chosen != now.trainee:
             now = replace(now, hasPracticed=False, hasNewResult=False, isResultShown=False)

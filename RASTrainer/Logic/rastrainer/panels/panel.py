@@ -9,7 +9,6 @@ from rastrainer.panels.shown_errors import guardedAction
 from rastrainer.panels.widgets import CancelableWork
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.signal import Listening, Signal
-from rastrainer.work_progress import Progress
 
 
 class Panel:
@@ -19,26 +18,16 @@ class Panel:
         self._ui = ui
         self._session = session
         self._listening = Listening()
-        self._works: list[CancelableWork] = []
 
     def close(self) -> None:
         """Cancel running work, and stop listening to the session."""
-        for work in self._works:
-            work.cancel()
+        for work in vars(self).values():
+            if isinstance(work, CancelableWork):
+                work.cancel()
         self._listening.close()
 
     def listen(self, *pairs: tuple[Signal, Callable[..., Any]]) -> None:
         self._listening = Listening(*pairs)
-
-    def cancelableWork(
-        self,
-        showSentence: Callable[[str], None],
-        show: Progress | None,
-        showUsable: Callable[[], None],
-    ) -> CancelableWork:
-        """Return what runs work until this panel is closed."""
-        self._works.append(CancelableWork(showSentence, show, showUsable))
-        return self._works[-1]
 
 
 def connectClick(button: Any, action: Callable[[], object], failure: str) -> None:

@@ -80,7 +80,6 @@ class ProcedurePanel(Panel):
         self.showState()
 
     def showState(self, *_arguments: Any) -> None:
-        """Show the progress of the procedure."""
         ui, status, isFailed = self._ui, self._logic.status, self._logic.isRegistrationFailed
         isConnected = self._session.link.status.state is LinkState.CONNECTED
         setText(ui.procedureStateText, stateText(status, isConnected))
@@ -173,7 +172,6 @@ def instruction(status: ProcedureStatus) -> str:
 
 
 def scoreText(outcome: ProcedureOutcome) -> str:
-    """Return the score of a procedure, and why it is not acceptable, if so."""
     score, analysis = outcome.score, outcome.analysis
     text = _("Score of the procedure: {score} of 100 (version {version}).")
     said = [text.format(score=fixed(score.score, 1), version=score.version)]

@@ -10,6 +10,7 @@ import slicer
 from rastrainer.number_text import fixed
 from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.widgets import (
+    CancelableWork,
     blockedSignals,
     chosenData,
     chosenScenario,
@@ -61,7 +62,9 @@ class ProcedurePlanPanel(Panel):
         self._checked: tuple[tuple, MeasuredProcedure] | None = None
         self._problem = ""
         self._removed: list[tuple[Any, int]] = []
-        self._work = self.cancelableWork(self._showProblem, self._showProgress, self.showState)
+        failure = _("The lines were not checked.")
+        shows = (self._showProblem, self.showState, self._showProgress)
+        self._work = CancelableWork(ui.checkLinesButton, self.check, failure, *shows)
         fillComboBox(ui.procedureKindComboBox, KINDS, ProcedureKind.BIOPSY.value)
         connectClick(ui.editProcedureButton, self.edit, _("The procedure cannot be edited."))
         connectClick(ui.placeLineButton, self.placeLine, _("No line can be placed."))
@@ -77,7 +80,6 @@ class ProcedurePlanPanel(Panel):
             box.connect("valueChanged(double)", self._changeInstrument)
         ui.noGoButton.connect("clicked()", self.toggleNoGo)
         ui.noGoComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self.showState)
-        self._work.connectButton(ui.checkLinesButton, self.check, _("The lines were not checked."))
         connectClick(ui.saveProcedureButton, self.save, _("The procedure was not saved."))
         self.listen(
             (session.taskChosen, self._showProcedures), (session.sceneChanged, self.showState)

@@ -16,6 +16,7 @@ from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.training_panel import METHODS
 from rastrainer.panels.widgets import (
+    CancelableWork,
     chosenData,
     chosenScenario,
     fillComboBox,
@@ -43,11 +44,21 @@ class ScenarioPanel(Panel):
         super().__init__(ui, session)
         self._logic = session.scenario
         self._scenarios, self._files = session.scenarios, session.scenarioFiles
-        self._work = self.cancelableWork(
-            self._showHeadMessage, self._showProgress, self._showUsable
+        failure = _("This cannot be used as the head.")
+        shows = (self._showHeadMessage, self._showUsable, self._showProgress)
+        self._work = CancelableWork(ui.useHeadButton, self.useHead, failure, *shows)
+        failure = _("The scenario was not saved.")
+        self._writing = CancelableWork(
+            ui.exportScenarioButton,
+            self.exportScenario,
+            failure,
+            self._showMessage,
+            show=no_progress,
         )
-        self._writing = self.cancelableWork(self._showMessage, no_progress, self._showUsable)
-        self._adding = self.cancelableWork(self._showMessage, None, self._showUsable)
+        failure = _("The scenario was not added.")
+        self._adding = CancelableWork(
+            ui.importScenarioButton, self.importScenario, failure, self._showMessage
+        )
         ui.scenarioComboBox.connect("activated(int)", self._showTasks)
         ui.taskComboBox.connect("activated(int)", self._chooseTask)
         for combo in (ui.scenarioComboBox, ui.taskComboBox):
@@ -55,15 +66,6 @@ class ScenarioPanel(Panel):
         ui.showScenarioButton.connect("clicked()", self.show)
         ui.loadScenarioButton.connect("clicked()", self.loadIntoSimulator)
         ui.robotCheckBox.connect("toggled(bool)", self._logic.setRobotShown)
-        self._work.connectButton(
-            ui.useHeadButton, self.useHead, _("This cannot be used as the head.")
-        )
-        self._writing.connectButton(
-            ui.exportScenarioButton, self.exportScenario, _("The scenario was not saved.")
-        )
-        self._adding.connectButton(
-            ui.importScenarioButton, self.importScenario, _("The scenario was not added.")
-        )
         ui.headModelComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._showUsable)
         self.listen(
             (session.link.statusChanged, self._showUsable),
@@ -256,9 +258,9 @@ class MethodsPanel(Panel):
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
-        self._work = self.cancelableWork(self._showMessage, None, lambda: None)
-        self._work.connectButton(
-            ui.compareMethodsButton, self.compare, _("The methods were not compared.")
+        failure = _("The methods were not compared.")
+        self._work = CancelableWork(
+            ui.compareMethodsButton, self.compare, failure, self._showMessage
         )
         self._showMessage("")
 

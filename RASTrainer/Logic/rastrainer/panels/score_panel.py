@@ -14,13 +14,13 @@ from rastrainer.panels.application import TABLES, askWhereToSave, fitThreeDViews
 from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
+    CancelableWork,
     chosenData,
     fillTable,
     offerEntries,
     setChecked,
     setEnabled,
     setText,
-    setUsable,
 )
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.scene.nodes import Role
@@ -47,7 +47,9 @@ class ScorePanel(Panel):
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
         self._trainees = session.trainees
-        self._work = self.cancelableWork(self._showMessage, self._showProgress, self._showUsable)
+        failure = _("The trial is not shown.")
+        shows = (self._showMessage, self._showUsable, self._showProgress)
+        self._work = CancelableWork(ui.replayButton, self.replay, failure, *shows)
         self._trial: StoredTrial | None = None
         self._newTrial = ""
         self._worst = ""
@@ -57,7 +59,6 @@ class ScorePanel(Panel):
         connectClick(ui.exportScoresButton, self.exportScores, _("The trials were not exported."))
         ui.reportButton.connect("clicked()", self.writeReport)
         ui.scoreCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
-        self._work.connectButton(ui.replayButton, self.replay, _("The trial is not shown."))
         connectClick(ui.worstTouchButton, self.replayWorstTouch, _("The touch is not shown."))
         self.listen(
             (self._trainees.changed, self._show),
@@ -83,7 +84,6 @@ class ScorePanel(Panel):
         self._showMessage(_("Score, Comparison and Motion metrics are now tables in the scene."))
 
     def exportScores(self) -> None:
-        """Write all trials of the study as a table."""
         from rastrainer.study.tidy_csv import write_histories
 
         path = askWhereToSave(_("Export all trials"), "trials.csv", "CSV (*.csv)")
@@ -120,14 +120,12 @@ class ScorePanel(Panel):
                 qt.QDesktopServices.openUrl(qt.QUrl.fromLocalFile(page))
 
     def replay(self) -> None:
-        """Show the trial again in the 3D view."""
         trial = self._trial
         if trial is not None:
             self._work.run(lambda report: self._session.replay.show(trial, report))
             fitThreeDViews()
 
     def replayWorstTouch(self) -> None:
-        """Show again how the worst touch came about."""
         trial = self._trial
         if trial is not None:
             self._work.run(lambda report: self._session.replay.showWorstTouch(trial, report))
@@ -195,7 +193,6 @@ class ScorePanel(Panel):
         self._showFeedback()
 
     def _showFeedback(self) -> None:
-        """Show the feedback on the trial when it is known."""
         trial, self._worst = self._trial, ""
         sentences = [] if trial is None else [_("Feedback on the trial is being prepared.")]
         try:
@@ -225,7 +222,7 @@ class ScorePanel(Panel):
             reason = _("The trial cannot be analyzed.")
         tip = _("Show how point {label} was touched.").format(label=self._worst)
         isUsable = bool(self._worst) and not isAtWork
-        setUsable(ui.worstTouchButton, isUsable, tip, busy if isAtWork else reason)
+        setEnabled(ui.worstTouchButton, isUsable, busy if isAtWork else reason, tip)
         self._showReplay()
 
     def _showProgress(self, step: str, share: float) -> None:

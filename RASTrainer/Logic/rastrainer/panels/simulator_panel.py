@@ -9,7 +9,7 @@ import slicer
 from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.setup_panel import costSentence
-from rastrainer.panels.shown_errors import showErrors
+from rastrainer.panels.shown_errors import guardedAction, showErrors
 from rastrainer.panels.widgets import (
     LINK_COLORS,
     bind,
@@ -21,7 +21,6 @@ from rastrainer.panels.widgets import (
 )
 from rastrainer.slicer.link.link_status import LinkState, LinkStatus
 from rastrainer.slicer.logic.module_session import ModuleSession
-from rastrainer.slicer.logic.simulator_logic import freePort
 from rastrainer.slicer.program.simulator_program import ProgramState
 from rastrainer.slicer.settings import HAS_NETWORK, HAS_WINDOW, HOST, PORT
 from rastrainer.slicer.translation import _
@@ -44,9 +43,8 @@ class SimulatorPanel(Panel):
             ui.stopSimulatorButton, self._simulator.stop, _("The simulator could not be stopped.")
         )
         ui.programPathLineEdit.connect("currentPathChanged(QString)", self._showProgram)
-        connectAsPressed(
-            ui.connectButton, lambda: self.connect if self._isOff() else self.disconnect
-        )
+        disconnect = guardedAction(self._link.disconnect, _("The connection could not be closed."))
+        connectAsPressed(ui.connectButton, lambda: self.connect if self._isOff() else disconnect)
         connectClick(ui.probeButton, self.testConnection, _("The connection could not be tested."))
         setup, program = self._simulator.setup, self._simulator.program
         self.listen(
@@ -83,10 +81,6 @@ class SimulatorPanel(Panel):
             if self._isOff():
                 self._link.connectTo(self._ui.hostLineEdit.text, self._ui.portSpinBox.value)
 
-    def disconnect(self) -> None:
-        with showErrors(_("The connection could not be closed.")):
-            self._link.disconnect()
-
     def testConnection(self) -> None:
         """Check once whether a simulator answers, and show the result."""
 
@@ -109,7 +103,7 @@ class SimulatorPanel(Panel):
         ui = self._ui
         with showErrors(_("The simulator could not be started.")):
             self._simulator.start(
-                freePort(ui.portSpinBox.value),
+                ui.portSpinBox.value,
                 hasWindow=ui.windowCheckBox.checked,
                 hasNetwork=ui.networkCheckBox.checked,
             )
@@ -157,15 +151,12 @@ class RunningSimulatorPanel(Panel):
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
         self._running = running = session.simulator.running
+        self.connectToIt = guardedAction(running.connect, _("The connection could not be started."))
         ui.connectToRunningButton.connect("clicked()", self.connectToIt)
         connectClick(ui.endRunningButton, running.end, _("The simulator could not be ended."))
         self.listen((running.changed, self._show))
         running.look()
         self._show()
-
-    def connectToIt(self) -> None:
-        with showErrors(_("The connection could not be started.")):
-            self._running.connect()
 
     def _show(self) -> None:
         ui, running = self._ui, self._running

@@ -20,7 +20,6 @@ from rastrainer.panels.widgets import (
     fillTable,
     setEnabled,
     setText,
-    setUsable,
     textLabel,
 )
 from rastrainer.protocol import StepKind
@@ -65,7 +64,6 @@ class StudyPanel(Panel):
         self._show()
 
     def begin(self) -> None:
-        """Make the chosen file the protocol of the study, after asking."""
         question = _(
             "Begin the study with this protocol? A study keeps its protocol permanently; "
             "another protocol needs a new study file."
@@ -74,7 +72,6 @@ class StudyPanel(Panel):
             self._logic.begin(Path(self._ui.protocolPathLineEdit.currentPath))
 
     def skipStep(self) -> None:
-        """Skip the step, for a reason; a reason that is refused can be completed."""
         question = _("Why is it skipped? The reason goes into the report.")
         step = None if self._progress is None else self._progress.next_step
         if step is not None:
@@ -83,7 +80,6 @@ class StudyPanel(Panel):
             self._withReason(_("Skip the step"), question, skip)
 
     def _explainRepeat(self) -> None:
-        """Say why an aborted trial is played again; only then can it be started."""
         question = _("Why is the aborted trial repeated? The reason goes into the report.")
         self._withReason(_("Repeat the step"), question, self._logic.explainRepeat)
 
@@ -104,7 +100,6 @@ class StudyPanel(Panel):
                 return
 
     def _showTime(self) -> None:
-        """Show the time of a trial run or a break."""
         progress, text = self._progress, ""
         step = None if progress is None else progress.next_step
         if progress is not None and step is not None and step.kind in TIMED:
@@ -115,7 +110,6 @@ class StudyPanel(Panel):
         setText(self._ui.stepTimeText, text)
 
     def _followTrial(self) -> None:
-        """Warn of a trial that will not count."""
         self._showButtons()
         with contextlib.suppress(InputError):
             setText(self._ui.offProtocolText, self._logic.offProtocolSentence())
@@ -165,7 +159,7 @@ class StudyPanel(Panel):
         if self._progress is not None and self._progress.next_step is not None:
             reason = self._session.training.obstacle
             tip = instruction(self._progress.next_step)
-            setUsable(ui.startStepButton, not reason, tip, reason)
+            setEnabled(ui.startStepButton, not reason, reason, tip)
 
 
 def _row(progress: StepProgress, number: int) -> tuple[str, str, str]:
@@ -232,7 +226,6 @@ class QuestionnaireForm:
             self._boxes.append(box)
 
     def answers(self) -> tuple[int, ...]:
-        """Return the answers in the order of the items."""
         chosen = [chosenData(box) for box in self._boxes]
         open_ = [str(number) for number, mark in enumerate(chosen, start=1) if not mark]
         if open_ and self._questionnaire is not None:

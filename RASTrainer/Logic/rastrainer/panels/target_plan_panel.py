@@ -14,6 +14,7 @@ from rastrainer.panels.widgets import (
     GRAY,
     GREEN,
     RED,
+    CancelableWork,
     chosenData,
     fillComboBox,
     isFilled,
@@ -29,7 +30,6 @@ from rastrainer.slicer.logic.scenario_logic import planArguments
 from rastrainer.slicer.logic.target_plan_logic import PlanOnImages, targetsOf
 from rastrainer.slicer.scene.plan_points import startPlacing, whyNotRemoved
 from rastrainer.slicer.translation import _
-from rastrainer.work_progress import no_progress
 
 
 class PlanPanel(Panel):
@@ -38,7 +38,10 @@ class PlanPanel(Panel):
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
         self._logic = session.plan
-        self._keeping = self.cancelableWork(lambda _sentence: None, no_progress, self.showState)
+        failure = _("The plan was not saved.")
+        self._keeping = CancelableWork(
+            ui.keepPlanButton, self.save, failure, lambda _sentence: None, self.showState
+        )
         connectClick(
             ui.placeTargetButton,
             lambda: self._place(self._logic.points.newTarget()),
@@ -56,7 +59,6 @@ class PlanPanel(Panel):
             lambda: self._logic.send(self._ui.planComboBox.currentNode(), self._row()),
             _("The plan was not sent."),
         )
-        self._keeping.connectButton(ui.keepPlanButton, self.save, _("The plan was not saved."))
         ui.planComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._chooseNode)
         ui.planTargetComboBox.connect("activated(int)", self._chooseTarget)
         self.listen(

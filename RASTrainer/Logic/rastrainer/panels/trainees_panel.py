@@ -15,6 +15,7 @@ from rastrainer.panels.panel import Panel, connectClick
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.shown_errors import showErrors
 from rastrainer.panels.widgets import (
+    CancelableWork,
     chosenData,
     connectAsPressed,
     fillComboBox,
@@ -23,7 +24,6 @@ from rastrainer.panels.widgets import (
     setChecked,
     setEnabled,
     setText,
-    setUsable,
 )
 from rastrainer.protocol import Mode
 from rastrainer.slicer.logic.module_session import ModuleSession
@@ -44,9 +44,9 @@ class TraineesPanel(Panel):
         self._logic = session.trainees
         self._trainee: Trainee | None = None
         self._isStateShown = self._isErasing = False
-        self._deletion = self.cancelableWork(
-            self._showMessage, self._noteErasing, self._showDeleting
-        )
+        failure = _("The trainee was not deleted.")
+        shows = (self._showMessage, self._showDeleting, self._noteErasing)
+        self._deletion = CancelableWork(ui.deleteTraineeButton, self.deleteTrainee, failure, *shows)
         self._showPlace()
         ui.studyPathLineEdit.connect("currentPathChanged(QString)", self.chooseStudy)
         ui.studyAddressLineEdit.connect("editingFinished()", self.chooseStudyAddress)
@@ -58,9 +58,6 @@ class TraineesPanel(Panel):
         ui.createTraineeButton.connect("clicked()", self.createTrainee)
         ui.traineesCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
         connectAsPressed(ui.archiveButton, lambda: partial(self.setArchived, not self._isArchived))
-        self._deletion.connectButton(
-            ui.deleteTraineeButton, self.deleteTrainee, _("The trainee was not deleted.")
-        )
         for button, action, failure in (
             (ui.exportTraineeButton, self.exportTrainee, _("The trainee was not exported.")),
             (ui.exportHistoryButton, self.exportHistory, _("The history was not exported.")),
@@ -129,7 +126,6 @@ class TraineesPanel(Panel):
         ui.studyPathLineEdit.currentPath = str(self._session.studyFile)
 
     def createTrainee(self) -> None:
-        """Add a trainee and choose them."""
         ui = self._ui
         with showErrors(_("The trainee was not created.")):
             self._logic.create(ui.pseudonymLineEdit.text, ui.newConsentCheckBox.checked)
@@ -137,7 +133,6 @@ class TraineesPanel(Panel):
             ui.newConsentCheckBox.checked = False
 
     def setConsent(self, consent: bool) -> None:
-        """Note whether the chosen trainee consents to research."""
         with showErrors(_("The consent was not saved.")):
             try:
                 self._logic.setConsent(consent)
@@ -154,7 +149,6 @@ class TraineesPanel(Panel):
             self._logic.setArchived(isArchived)
 
     def exportTrainee(self) -> None:
-        """Write everything about the chosen trainee into a file."""
         from rastrainer.study.trainee_data import export_trainee
 
         chosen = self._logic.chosen
@@ -176,7 +170,6 @@ class TraineesPanel(Panel):
         self._showMessage(text.format(count=count, path=path))
 
     def deleteTrainee(self) -> None:
-        """Delete the chosen trainee for good, after asking."""
         name, trials = self._logic.chosen, len(self._logic.history())
         question = _(
             "Delete {name} with {trials} trials from the study and from the journals on this "
@@ -200,7 +193,6 @@ class TraineesPanel(Panel):
             self._showDeleting()
 
     def _showDeleting(self) -> None:
-        """Show whether a trainee is being deleted, and whether that can be canceled."""
         ui, isAtWork = self._ui, self._deletion.isUnderWay
         self._isErasing = self._isErasing and isAtWork
         # Nobody else is chosen meanwhile. A file is chosen only if no address is.
@@ -211,13 +203,12 @@ class TraineesPanel(Panel):
         if isAtWork:
             tip = _("Delete nothing; the study is still being opened.")
             begun = _("The deletion has begun, and can no longer be canceled.")
-            setUsable(ui.deleteTraineeButton, not self._isErasing, tip, begun)
+            setEnabled(ui.deleteTraineeButton, not self._isErasing, begun, tip)
         else:
             reason = _("Choose a trainee first.")
             setEnabled(ui.deleteTraineeButton, self._trainee is not None, reason)
 
     def showCurve(self) -> None:
-        """Show score and time over the trials as a plot, or restore the user's layout."""
         if not self._ui.learningCurveButton.checked:
             self._session.layout.giveBack(CURVE)
             return

@@ -25,7 +25,6 @@ from rastrainer.panels.widgets import (
     setLight,
     setProperty,
     setText,
-    setUsable,
 )
 from rastrainer.protocol import (
     PROCEDURE_PHASES,
@@ -99,11 +98,7 @@ class TrainingPanel(Panel):
             lambda: self.resume if logic.status.phase == Phase.PAUSED.value else self.pause,
         )
         connectClick(ui.abortButton, self.abort, _("The trial was not aborted."))
-        sayings = (
-            self._logic.answered,
-            session.trials.problemFound,
-            session.aborted.problemFound,
-        )
+        sayings = (self._logic.answered, session.trials.problemFound, session.aborted.problemFound)
         self.listen(
             (self._logic.changed, self.showState),
             *((signal, partial(setText, ui.trainingMessageText)) for signal in sayings),
@@ -127,7 +122,6 @@ class TrainingPanel(Panel):
         self._session.study.startTrial(task, mode, isTutorialFirst, procedure, method)
 
     def abort(self) -> None:
-        """End the trial without registering it, after asking."""
         trial = self._logic.status
         question = _("Abort the trial of {name}? Its touches will not be registered.").format(
             name=shortName(trial.trainee)
@@ -139,11 +133,11 @@ class TrainingPanel(Panel):
         """Offer what the chosen scenario has; another scenario begins with fiducials alone."""
         box, methods = self._ui.methodComboBox, self._session.methods
         offerEntries(box, [(METHODS[each], each) for each in methods], chosenData(box))
-        setUsable(
+        setEnabled(
             box,
             len(methods) > 1,
-            _("What the trainee touches, and how the head is registered. A study decides this."),
             _("The chosen scenario has no landmarks: only its fiducials can be touched."),
+            _("What the trainee touches, and how the head is registered. A study decides this."),
         )
         entries = [(_("none: only touches"), "")]
         entries += [(title, name) for name, title in self._session.procedures]
@@ -158,7 +152,6 @@ class TrainingPanel(Panel):
         self._session.woken.emit()
 
     def showState(self, *_arguments: Any) -> None:
-        """Show the state of the trial."""
         ui, trial, session = self._ui, self._logic.status, self._session
         nobody = _("None: choose one in the section Trainees.")
         setText(ui.trainingTraineeText, session.trainees.chosen or nobody)

@@ -83,15 +83,12 @@ def connectAsPressed(button: Any, action: Callable[[], Callable[[], None]]) -> N
     button.connect("clicked()", lambda: (pressed.pop() if pressed else action())())
 
 
-def setUsable(button: Any, usable: bool, tip: str, reason: str = "") -> None:
+def setEnabled(button: Any, isEnabled: bool, reason: str, tip: str = "") -> None:
+    """Enable a button with a tool tip, by default that of its `.ui` file, or say why it is not."""
     # In a closed group, each button says that it is disabled.
-    button.enabled = usable
-    setProperty(button, "toolTip", toolTip(tip if usable or not reason else reason))
-
-
-def setEnabled(button: Any, isEnabled: bool, reason: str) -> None:
-    """Enable a button with the tool tip of its `.ui` file, or disable it for a reason."""
-    setUsable(button, isEnabled, button.whatsThis, reason)
+    button.enabled = isEnabled
+    shown = reason if reason and not isEnabled else tip or button.whatsThis
+    setProperty(button, "toolTip", toolTip(shown))
 
 
 def fillTable(table: Any, rows: Iterable[Sequence[str]], tips: Sequence[str] = ()) -> bool:
@@ -214,20 +211,26 @@ class CancelableWork:
 
     def __init__(
         self,
+        button: Any,
+        start: Callable[[], None],
+        failure: str,
         showSentence: Callable[[str], None],
-        show: Progress | None,
-        showUsable: Callable[[], None],
+        showUsable: Callable[[], None] = lambda: None,
+        show: Progress | None = None,
     ) -> None:
-        """Prepare for work.
+        """Have a click start or cancel the work.
 
         Args:
+            start: calls `run`; where that fails, `failure` says what was not done.
             showSentence: shows a sentence, an empty one where the work has failed.
-            show: shows a step and the share of the work done; None shows the step as a sentence.
             showUsable: called when work begins and ends.
+            show: shows a step and the share of the work done; None shows the step as a sentence.
         """
         self.isUnderWay = self._isCanceled = False
-        self._button: Any = None
+        self._button = button
         self._showSentence, self._show, self._showUsable = showSentence, show, showUsable
+        guarded = guardedAction(start, failure)
+        connectAsPressed(button, lambda: self.cancel if self.isUnderWay else guarded)
 
     def run(self, work: Callable[[Progress], T]) -> T | None:
         """Return what the work returns, None where the user has canceled it."""
@@ -246,12 +249,6 @@ class CancelableWork:
             self.isUnderWay = False
             self._button.text = title
             self._showUsable()
-
-    def connectButton(self, button: Any, start: Callable[[], None], failure: str) -> None:
-        """Have a click start or cancel work; `failure` says what was not done where it fails."""
-        self._button = button
-        guarded = guardedAction(start, failure)
-        connectAsPressed(button, lambda: self.cancel if self.isUnderWay else guarded)
 
     def cancel(self) -> None:
         """Cancel the running work, when it next reports its progress."""

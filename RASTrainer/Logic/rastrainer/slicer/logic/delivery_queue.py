@@ -44,7 +44,6 @@ class DeliveryQueue(Listening):
     anything that arrives later."""
 
     def __init__(self, services: TrialServices, delivered: Signal, *others: Heard) -> None:
-        """`others` are listened to as long."""
         super().__init__((delivered, self._receive), *others)
         self.problemFound = Signal()
         self._services = services
@@ -53,7 +52,6 @@ class DeliveryQueue(Listening):
         self._lastProblem = ""
 
     def close(self) -> None:
-        """Stop listening to the link, and start nothing more."""
         super().close()
         self.forgetWaiting()
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from rastrainer.errors import InputError
 from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.program.child_process import Run
-from rastrainer.slicer.scene.nodes import Role, findNode, findOrAddNode
+from rastrainer.slicer.scene.nodes import Role, findNode, findOrAddNode, nodesOf
 from rastrainer.slicer.scene.scenario_nodes import SKIN_COLOR, meshPolyData
 from rastrainer.slicer.translation import _
 from rastrainer.work_progress import Progress
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from rastrainer.slicer.head.volume import HeadBody, HeadSettings, SegmentImage
 
 FIND_SKIN = "rastrainer.slicer.head.head_draft:findSkin"
+SEGMENTATION, MODEL = "vtkMRMLSegmentationNode", "vtkMRMLModelNode"
 PREVIEWED_ATTRIBUTE = "RASTrainer.previewed"
 SETTINGS_ATTRIBUTE = "RASTrainer.previewedWith"
 
@@ -42,9 +43,6 @@ def findSkin(
     return found
 
 
-_DRAFT = (("vtkMRMLSegmentationNode", Role.HEAD_SEGMENT), ("vtkMRMLModelNode", Role.HEAD_PREVIEW))
-
-
 class HeadPreview:
     """A model of the head that is found, and a segment of it that the Segment Editor may change."""
 
@@ -57,20 +55,26 @@ class HeadPreview:
         from rastrainer.slicer.head.volume import showSegment
 
         found, skin, warnings = findSkin(self._run, volumeNode, settings, progress)
-        node = self._node("vtkMRMLSegmentationNode", Role.HEAD_SEGMENT, "Head to be edited")
-        showSegment(node, found)
-        node.SetReferenceImageGeometryParameterFromVolumeNode(volumeNode)
-        node.SetAttribute(PREVIEWED_ATTRIBUTE, volumeNode.GetID())
-        node.SetAttribute(SETTINGS_ATTRIBUTE, repr(settings))
-        model = self._node("vtkMRMLModelNode", Role.HEAD_PREVIEW, "Head as found")
+        draft = findOrAddNode(self._scene, SEGMENTATION, Role.HEAD_SEGMENT, "Head to be edited")
+        model = findOrAddNode(self._scene, MODEL, Role.HEAD_PREVIEW, "Head as found")
+        for node in (draft, model):
+            # It is shown where it was found.
+            node.SetAndObserveTransformNodeID(None)
+        showSegment(draft, found)
+        draft.SetReferenceImageGeometryParameterFromVolumeNode(volumeNode)
+        draft.SetAttribute(PREVIEWED_ATTRIBUTE, volumeNode.GetID())
+        draft.SetAttribute(SETTINGS_ATTRIBUTE, repr(settings))
         model.SetAndObservePolyData(meshPolyData(skin))
         model.GetDisplayNode().SetColor(SKIN_COLOR)
-        self._setVisible(True)
+        for node in (draft, model):
+            node.SetDisplayVisibility(True)
         return warnings
 
     def hide(self, volumeNode: Any) -> None:
         """Hide the draft, and a rendering of its volume: the result is shown instead."""
-        self._setVisible(False)
+        for className, role in ((SEGMENTATION, Role.HEAD_SEGMENT), (MODEL, Role.HEAD_PREVIEW)):
+            for node in nodesOf(self._scene, className, role):
+                node.SetDisplayVisibility(False)
         for index in range(volumeNode.GetNumberOfDisplayNodes()):
             display = volumeNode.GetNthDisplayNode(index)
             if display is not None and display.IsA("vtkMRMLVolumeRenderingDisplayNode"):
@@ -80,7 +84,7 @@ class HeadPreview:
         """Return the segment of the head that is shown of a volume, None where none is."""
         from rastrainer.slicer.head.volume import SEGMENT_NAME, readSegment
 
-        node = findNode(self._scene, "vtkMRMLSegmentationNode", Role.HEAD_SEGMENT)
+        node = findNode(self._scene, SEGMENTATION, Role.HEAD_SEGMENT)
         if node is None or node.GetAttribute(PREVIEWED_ATTRIBUTE) != volumeNode.GetID():
             return None
         if node.GetAttribute(SETTINGS_ATTRIBUTE) != repr(settings):
@@ -92,15 +96,3 @@ class HeadPreview:
             )
         segment = node.GetSegmentation().GetSegmentIdBySegmentName(SEGMENT_NAME)
         return readSegment(node, segment)
-
-    def _setVisible(self, visible: bool) -> None:
-        for className, role in _DRAFT:
-            node = findNode(self._scene, className, role)
-            if node is not None and node.GetDisplayNode() is not None:
-                node.SetDisplayVisibility(visible)
-
-    def _node(self, className: str, role: str, name: str) -> Any:
-        """Return a node without a transform, so that it is shown where it was found."""
-        node = findOrAddNode(self._scene, className, role, name)
-        node.SetAndObserveTransformNodeID(None)
-        return node

@@ -8,7 +8,6 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from itertools import starmap
 from pathlib import Path
 from typing import Any
 
@@ -17,15 +16,16 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.files.point_files import read_markups, write_markups
 from rastrainer.files.point_list import PointList
-from rastrainer.scenario.points import FACE_LANDMARKS, Landmark
+from rastrainer.scenario.points import Landmark
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.logic.scenario_logic import ScenarioFiles
-from rastrainer.slicer.scene.nodes import Role, findNode, findOrAddNode, labelOf, worldPoints
+from rastrainer.slicer.scene.nodes import Role, findNode, findOrAddNode
 from rastrainer.slicer.scene.plan_points import (
     LIST,
-    PlacedPoints,
+    PlacedPoint,
     UndoablePoints,
-    placedRows,
+    placedPoints,
+    putPoints,
     startPlacing,
 )
 from rastrainer.slicer.translation import _
@@ -40,54 +40,38 @@ class LandmarkPoints(UndoablePoints):
     Points that are deselected in the module Markups are left out, but kept.
     """
 
-    @property
-    def landmarks(self) -> tuple[Landmark, ...]:
-        return tuple(starmap(Landmark, self._named(True)))
-
-    @property
-    def deselected(self) -> tuple[str, ...]:
-        return tuple(name for name, _place in self._named(False))
-
-    @property
-    def missing(self) -> tuple[str, ...]:
-        placed = [name for name, _place in self._named(True)]
-        return tuple(name for name in FACE_LANDMARKS if name not in placed)
+    def placed(self, areSelected: bool = True) -> tuple[Landmark, ...]:
+        """Return the landmarks that are selected, or the others, in the order of touching."""
+        points = placedPoints(findNode(self._scene, LIST, Role.LANDMARKS), inRas=True)
+        return tuple(
+            Landmark(point.label, np.array(point.position))
+            for point in points
+            if point.isSelected == areSelected
+        )
 
     def show(self, landmarks: Sequence[Landmark]) -> None:
         """Replace all landmarks."""
-        names = tuple(each.name for each in landmarks)
-        places = np.array([each.position_ras for each in landmarks], dtype=float).reshape(-1, 3)
         node = self._list()
         self.remember(node)
-        PlacedPoints(names, places, (True,) * len(names)).put(node)
+        putPoints(node, [PlacedPoint(each.name, each.position_ras.tolist()) for each in landmarks])
 
     def startPlacing(self, name: str) -> None:
         """Let the next click in a view place a landmark, in place of one of the same name."""
         node = self._list()
-        placed = self.remember(node)
-        if name in placed.labels:
-            while name in placed.labels:
-                placed = placed.without(placed.labels.index(name))
-            placed.put(node)
+        points = self.remember(node)
+        if name in [point.label for point in points]:
+            putPoints(node, [point for point in points if point.label != name])
         # The new point gets this as its label.
         node.SetControlPointLabelFormat(name.replace("%", "%%"))
         startPlacing(self._scene, node)
 
     def remove(self, row: int) -> None:
-        """Remove the landmark of a row of `landmarks`."""
-        if 0 <= row < len(self.landmarks):
+        """Remove the landmark of a row of those that are `placed` and selected."""
+        if 0 <= row < len(self.placed()):
             node = self._list()
-            placed = self.remember(node)
-            rows = [index for index, isSelected in enumerate(placed.selected) if isSelected]
-            placed.without(rows[row]).put(node)
-
-    def _named(self, areSelected: bool) -> Iterator[tuple[str, np.ndarray]]:
-        node = findNode(self._scene, LIST, Role.LANDMARKS)
-        if node is not None:
-            places = worldPoints(node)
-            for row in placedRows(node):
-                if bool(node.GetNthControlPointSelected(row)) == areSelected:
-                    yield labelOf(node, row), places[row]
+            points = self.remember(node)
+            points.remove([point for point in points if point.isSelected][row])
+            putPoints(node, points)
 
     def _list(self) -> Any:
         node = findOrAddNode(self._scene, LIST, Role.LANDMARKS, _("Landmarks"))
@@ -128,7 +112,7 @@ class LandmarkLogic:
 
     @contextmanager
     def _written(self) -> Iterator[Path]:
-        landmarks = self.points.landmarks
+        landmarks = self.points.placed()
         if not landmarks:
             raise InputError(_("Place landmarks first, or have them proposed."))
         names = tuple(landmark.name for landmark in landmarks)

@@ -91,7 +91,9 @@ class ModuleSession:
         self._scene = scene
         self._lockWait = LockWait.interactive()
         find_driver_in(places.simulator)
-        self.scenarios = cache = ScenarioCache.below(places.assets / "scenarios", places.library)
+        self.scenarios = cache = ScenarioCache(
+            places.assets / "scenarios", places.library, areLibraries=True
+        )
         self.procedures: tuple[tuple[str, str], ...] = ()
         self.methods: tuple[str, ...] = (RegistrationMethod.FIDUCIALS.value,)
         self.cohort = read_trials(places.assets.joinpath(*PUBLISHED_STUDY))
@@ -110,13 +112,7 @@ class ModuleSession:
         self.study = StudyLogic(self.trainees, self.training, self.link)
         self.curriculum = CurriculumLogic(self.trainees, self.link)
         services = TrialServices(
-            scene,
-            self.link,
-            cache.find,
-            self.openStudyPatiently,
-            self.work,
-            places.records,
-            run,
+            scene, self.link, cache.find, self.openStudyPatiently, self.work, places.records, run
         )
         self.trials = TrialLogic(services, self.cohort)
         self.aborted = AbortedTrialLogic(services)
@@ -149,17 +145,11 @@ class ModuleSession:
         self.link.stateChanged.connect(self._noticeNewTrial)
         self.replay.shown.connect(self.registration.reset)
         self.replay.procedureShown.connect(self.procedure.showOutcome)
-        for signal in (
-            self._watch.noticed,
-            self.link.woken,
-            self.link.statusChanged,
-            self.simulator.program.changed,
-            self.simulator.setup.changed,
-            self.simulator.running.changed,
-            self.trainees.changed,
-            self.trials.trialScored,
-            self.trials.problemFound,
-        ):
+        own = self.simulator
+        changes = [self._watch.noticed, self.link.woken, self.link.statusChanged]
+        changes += [own.program.changed, own.setup.changed, own.running.changed]
+        changes += [self.trainees.changed, self.trials.trialScored, self.trials.problemFound]
+        for signal in changes:
             signal.connect(lambda *_values: self.woken.emit())
 
     def openStudy(self) -> Study:
@@ -176,7 +166,6 @@ class ModuleSession:
         return Study.open(self.studyPlace, make_folder=True)
 
     def chooseStudy(self, place: StudyPlace) -> None:
-        """Continue with another study, which is created if missing."""
         Study.open(place, self._lockWait, make_folder=True).close()
         self.study.leaveStudy()
         self.studyPlace = place
@@ -187,7 +176,6 @@ class ModuleSession:
         self.trainees.reopen()
 
     def chooseTask(self, task: Task, scenario: Scenario) -> None:
-        """Choose the task that is started next, in its scenario."""
         self.task, self.taskTitle = task.name, task.title
         self.procedures = tuple((each.name, each.title) for each in scenario.procedures)
         self.methods = tuple(each.value for each in playable_methods(scenario))
@@ -247,31 +235,16 @@ class ModuleSession:
         self.work.later(self.layout.giveBack)
         self.plan.points.forget()
         self.landmarks.points.forget()
-        for part in (
-            self.work,
-            self.replay,
-            self.slices,
-            self.scenario,
-            self.registration,
-            self.traces,
-            self.training,
-        ):
+        shown = (self.work, self.replay, self.slices, self.scenario, self.registration)
+        for part in (*shown, self.traces, self.training):
             part.forgetScene()
 
     def close(self) -> None:
         """Disconnect, close the study, and end the simulator that was started from here."""
         self._watch.close()
         self.layout.giveBack()
-        for part in (
-            self.study,
-            self.curriculum,
-            self.procedure,
-            self.traces,
-            self.training,
-            self.trials,
-            self.aborted,
-            self.work,
-        ):
+        listening = (self.study, self.curriculum, self.procedure, self.traces, self.training)
+        for part in (*listening, self.trials, self.aborted, self.work):
             part.close()
         self.link.disconnect()
         self.trainees.close()

@@ -64,7 +64,6 @@ class ProcedureStatus:
 
     @property
     def isUnderWay(self) -> bool:
-        """Whether the touches are done, and the procedure continues."""
         return bool(self.name) and self.phase in PROCEDURE_PHASES
 
 

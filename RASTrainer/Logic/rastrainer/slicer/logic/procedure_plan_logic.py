@@ -37,7 +37,7 @@ from rastrainer.procedure.plan import (
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.logic.scenario_logic import ScenarioFiles
 from rastrainer.slicer.scene.nodes import labelsOf, worldPoints
-from rastrainer.slicer.scene.plan_points import ENDS, placedRows
+from rastrainer.slicer.scene.plan_points import ENDS, placedPoints
 from rastrainer.slicer.scene.procedure_lines import instrumentOf, noGoNodes, planLines, showPlan
 from rastrainer.slicer.translation import _
 from rastrainer.work_progress import Progress, no_progress
@@ -164,7 +164,7 @@ class ProcedurePlanLogic:
 
 def _trajectory(line: Any) -> ProcedureTrajectory:
     name = line.GetName()
-    if len(placedRows(line)) != ENDS:
+    if len(placedPoints(line)) != ENDS:
         text = _("{name} needs two points: its entry and its target.")
         raise InputError(text.format(name=name))
     entry, target = (np.array(point) for point in worldPoints(line))

@@ -110,7 +110,6 @@ class ReplayLogic:
         self._outdated = itertools.chain(self._outdated, emptyReplay(self._services.scene))
 
     def forgetScene(self) -> None:
-        """Forget where the replay is to stop: the scene was cleared."""
         self._until = None
 
     def show(self, trial: StoredTrial, progress: Progress = no_progress) -> None:

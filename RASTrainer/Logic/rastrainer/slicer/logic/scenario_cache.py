@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable
+from functools import partial
 from itertools import count
 from pathlib import Path
 
@@ -29,21 +29,13 @@ class ScenarioCache:
     `refresh` finds new ones. May be used in any thread.
     """
 
-    def __init__(self, *folders: Path) -> None:
-        """Offer the scenarios of these folders."""
-        self._list: Callable[[], Iterable[ListedScenario]] = lambda: list_folders(
-            folders, self._listOne
-        )
+    def __init__(self, *folders: Path, areLibraries: bool = False) -> None:
+        """Offer the scenarios of these folders, or of all folders in these libraries."""
+        list_ = list_scenarios if areLibraries else list_folders
+        self._list = partial(list_, folders, self._listOne)
         self._lines: dict[Path, tuple[tuple, ListedScenario]] = {}
         self._listed: tuple[ListedScenario, ...] | None = None
         self._scenarios: dict[str, tuple[tuple[int, int], Scenario]] = {}
-
-    @classmethod
-    def below(cls, *libraries: Path) -> ScenarioCache:
-        """Return a cache of all scenarios in these folders of folders."""
-        cache = cls()
-        cache._list = lambda: list_scenarios(libraries, cache._listOne)
-        return cache
 
     def listed(self) -> tuple[ListedScenario, ...]:
         """Return the available scenarios; an unusable one says why."""

@@ -83,7 +83,7 @@ class ScenarioMaker:
 
         The Segment Editor may change its segment; `make` then takes it as it is.
         """
-        return self._preview.show(_chosen(volumeNode), _settings(options), progress)
+        return self._preview.show(volumeNode, _settings(options), progress)
 
     def make(
         self, volumeNode: Any, options: NewScenarioOptions, progress: Progress
@@ -92,7 +92,7 @@ class ScenarioMaker:
 
         `progress` may raise to cancel: then nothing is left behind.
         """
-        title = options.title.strip() or _chosen(volumeNode).GetName()
+        title = options.title.strip() or volumeNode.GetName()
         warnings: list[str] = []
         scenario = self._files.add(
             title,
@@ -116,7 +116,7 @@ class ScenarioMaker:
         """Make a scenario in a folder, or only check what it is to be made of; return warnings."""
         from rastrainer.slicer.head.volume import imageOfNode
 
-        image, settings = imageOfNode(_chosen(volumeNode)), _settings(options)
+        image, settings = imageOfNode(volumeNode), _settings(options)
         segment = self._preview.segment(volumeNode, settings)
         title = options.title.strip() or volumeNode.GetName()
         source = options.source.strip() or SOURCE.format(name=volumeNode.GetName())
@@ -150,12 +150,6 @@ class ScenarioMaker:
             command = self._files.simulator.command([])
             folder = folder or Path(temporary, "none")
             return [*leftOut, *planScenario(make, folder, words, command, progress)]
-
-
-def _chosen(volumeNode: Any) -> Any:
-    if volumeNode is None:
-        raise InputError(_("Choose a volume first."))
-    return volumeNode
 
 
 def _settings(options: NewScenarioOptions) -> HeadSettings:

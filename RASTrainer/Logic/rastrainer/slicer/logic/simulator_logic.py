@@ -170,11 +170,12 @@ class SimulatorLogic:
     def start(self, port: int, hasWindow: bool = False, hasNetwork: bool = False) -> None:
         """Start the simulator on this computer, or find one that runs already; see `running`.
 
-        Port 0 takes any free one; by `hasNetwork` views of the local network come in, by https.
+        Where another program listens on the port, any free one is taken. By `hasNetwork` views of
+        the local network come in, by https.
         """
         if not self.program.isRunning and self.running.look():
             return
-        arguments = ["simulator", "--port", str(port), "--records", str(self._records)]
+        arguments = ["simulator", "--port", str(freePort(port)), "--records", str(self._records)]
         arguments += ["--lan"] if hasNetwork else []
         arguments += ["--desktop"] if hasWindow else []
         self.program.start(self.command(arguments))

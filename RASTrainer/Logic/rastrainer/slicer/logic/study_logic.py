@@ -92,7 +92,6 @@ class StudyLogic(Listening):
             self.leadOn(name)
 
     def begin(self, path: Path) -> None:
-        """Make a file's protocol that of the study, permanently."""
         self.study.set_protocol(read_study_protocol(path))
         self.changed.emit()
 
@@ -187,14 +186,12 @@ class StudyLogic(Listening):
         return ""
 
     def startStep(self) -> None:
-        """Start the trial that comes next."""
         step = self._next()
         if step.kind not in TRIALS:
             raise InputError(_("No trial comes next. {step}").format(step=instruction(step)))
         self.startTrial(step.task, step.mode)
 
     def answer(self, answers: Sequence[int]) -> None:
-        """Store the answers to the questionnaire that comes next."""
         self.study.finish(self._trainees.chosen, self._next().name, {"answers": list(answers)})
         self.leadOn(self._trainees.chosen)
 

@@ -15,8 +15,7 @@ from rastrainer.igtl.client import Reply
 from rastrainer.registration.target_error import TargetError
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
-from rastrainer.slicer.scene.nodes import labelOf, worldPoints
-from rastrainer.slicer.scene.plan_points import LINE, PlanPoints, placedRows
+from rastrainer.slicer.scene.plan_points import LINE, PlanPoints, placedPoints
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.trial.analysis import TrialAnalysis
@@ -77,10 +76,10 @@ class PlanLogic:
         """
         if node is None:
             raise InputError(_("Place a target or a trajectory, or choose one."))
-        rows = placedRows(node)
-        if not rows:
+        placed = placedPoints(node, inRas=True)
+        if not placed:
             raise InputError(_("{name} has no point yet: place one.").format(name=node.GetName()))
-        points = worldPoints(node)[rows]
+        points = np.array([point.position for point in placed])
         comparison = self._registration.comparison
         if comparison is None:
             raise InputError(
@@ -92,8 +91,7 @@ class PlanLogic:
         expected = None
         with contextlib.suppress(InputError):
             expected = comparison.targetError(ends[-1])
-        names = targetsOf(node)
-        name = names[row] if len(names) > 1 else node.GetName()
+        name = placed[row].label if len(targetsOf(node)) > 1 else node.GetName()
         return PlanOnImages(
             name=(name or _("target"))[:LONGEST_NAME],
             ends=ends,
@@ -159,4 +157,4 @@ class PlanLogic:
 def targetsOf(node: Any | None) -> tuple[str, ...]:
     if node is None or node.IsA(LINE):
         return ()
-    return tuple(labelOf(node, row) for row in placedRows(node))
+    return tuple(point.label for point in placedPoints(node))

@@ -76,7 +76,6 @@ class TraceLogic(Listening):
         self._scenario, self._follower, self._shown = scenario, None, None
 
     def forgetScene(self) -> None:
-        """Show the trace again: the scene was cleared."""
         self._scenario = None
 
     def process(self) -> None:
@@ -175,7 +174,6 @@ def showTrace(scene: Any, trace: FollowedTrace, isGuided: bool) -> None:
 
 
 def forgetTrace(scene: Any) -> None:
-    """Remove everything shown of a trace."""
     removeNode(scene, MODEL, Role.TRACED_POINTS)
     removeNode(scene, MARKUPS, Role.NEXT_PLACE)
     head = findNode(scene, MODEL, Role.HEAD_MODEL)

@@ -96,7 +96,6 @@ class TraineeLogic:
         return version is not None and version != before
 
     def trainees(self, archived: bool = False) -> tuple[Trainee, ...]:
-        """Return the trainees, optionally with the archived ones, by pseudonym."""
         listed = self.study.trainees()
         return (*listed, *self.study.trainees(archived=True)) if archived else listed
 

@@ -164,7 +164,6 @@ class TrainingLogic(Listening):
         self._link.send(name, arguments, lambda reply: self.answered.emit(reply.error))
 
     def abort(self, trialId: str) -> None:
-        """End the open trial without registering it."""
         if self.status.trialId != trialId:
             raise InputError(_("This trial is over. The trial that is open now was not aborted."))
         self.command(CommandName.ABORT, {"trialId": trialId})
@@ -262,7 +261,6 @@ class TrainingLogic(Listening):
 
 
 def tutorialSentence(trainee: str) -> str:
-    """Return a sentence on a trainee who does the tutorial before the trial run."""
     return _(
         "{trainee} does the tutorial first, at the simulator: about two minutes. Then start the "
         "trial run here, or let the trainee start it."

@@ -70,12 +70,24 @@ class AlongInstrument:
             tip: (3,) float, RAS mm.
             direction: (3,) float, RAS, unit vector into the head.
         """
-        axes = instrumentAxes(direction)
+        outward, left, front = -direction, np.array([-1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
+        across = left - (left @ outward) * outward
+        if np.linalg.norm(across) < LEAST_ACROSS:
+            across = front - (front @ outward) * outward
+        across /= np.linalg.norm(across)
+        upward = np.cross(across, outward)
+        # To the right of the view, up in it, and its normal: they go round as in Slicer's axial,
+        # coronal and sagittal views.
+        axes = {
+            PROBES_EYE: (across, upward, outward),
+            IN_LINE: (across, outward, upward),
+            ACROSS: (-upward, outward, across),
+        }
         for view in nodesOfClass(self._scene, "vtkMRMLSliceNode"):
             if view.GetName() in axes:
                 matrix = view.GetSliceToRAS()
                 self.former.setdefault(view.GetID(), slicer.util.arrayFromVTKMatrix(matrix))
-                aligned = transforms.rigid(axes[view.GetName()].T, tip)
+                aligned = transforms.rigid(np.column_stack(axes[view.GetName()]), tip)
                 slicer.util.updateVTKMatrixFromArray(matrix, aligned)
                 view.UpdateMatrices()
 
@@ -86,30 +98,6 @@ class AlongInstrument:
                 slicer.util.updateVTKMatrixFromArray(view.GetSliceToRAS(), former)
                 view.UpdateMatrices()
         self.former.clear()
-
-
-def instrumentAxes(direction: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the axes of the slice views along an instrument, by the view's name.
-
-    Each is (3, 3) float, RAS: to the right of the view, up in it, and its normal, which go round as
-    in Slicer's axial, coronal and sagittal views.
-
-    Args:
-        direction: (3,) float, RAS, unit vector into the head.
-    """
-    outward = -direction
-    left = np.array([-1.0, 0.0, 0.0])
-    across = left - (left @ outward) * outward
-    if np.linalg.norm(across) < LEAST_ACROSS:
-        front = np.array([0.0, 1.0, 0.0])
-        across = front - (front @ outward) * outward
-    across /= np.linalg.norm(across)
-    upward = np.cross(across, outward)
-    return {
-        PROBES_EYE: np.array([across, upward, outward]),
-        IN_LINE: np.array([across, outward, upward]),
-        ACROSS: np.array([-upward, outward, across]),
-    }
 
 
 class BorrowedLayout:
@@ -208,7 +196,6 @@ class SliceFollower:
         jumpTo(self._scene, self._place.tolist(), later)
 
     def showAgain(self) -> None:
-        """Show the last point again, after the views were moved."""
         if self._place is not None:
             self.show(self._place)
 
@@ -226,7 +213,6 @@ class SliceFollower:
         return DEVICES.get(self._training.status.phase) if self.liesAlong else None
 
     def process(self) -> None:
-        """Follow what has moved."""
         device = self._device
         if device is None and self._along.former:
             if self._training.status.phase == Phase.PAUSED.value:

@@ -101,7 +101,7 @@ class ChildProcess:
             self.end()
         if self._killAt is None or time.monotonic() < self._killAt:
             return False
-        self._group.kill()
+        self._group.end(isAsked=False)
         # A process that has left the group may keep the output open forever.
         return hasEnded and time.monotonic() > self._killAt + LAST_OUTPUT_S
 
@@ -113,14 +113,14 @@ class ChildProcess:
         """Ask the program and all that it has started to end, once; see `poll`."""
         if self._killAt is None:
             self._killAt = time.monotonic() + KILL_AFTER_S
-            self._group.end()
+            self._group.end(isAsked=True)
 
     def close(self) -> None:
         """End it and all that it has started, in order where that takes half a second at most."""
         self.end()
         self._reader.join(CLOSING_S)
         if not self.poll():
-            self._group.kill()
+            self._group.end(isAsked=False)
             with contextlib.suppress(subprocess.TimeoutExpired):
                 self._process.wait(LAST_OUTPUT_S)
 
@@ -188,7 +188,6 @@ def runChild(command: Sequence[str | Path], progress: Progress, firstStep: str =
 Run = Callable[..., Any]
 """Runs a function: `run(function, progress, *arguments, **named)`; see `OwnProcess`."""
 
-PROTOCOL = pickle.HIGHEST_PROTOCOL
 TASK, OUTCOME = "task.pickle", "outcome.pickle"
 PROGRAM = """
 import sys
@@ -224,7 +223,7 @@ class OwnProcess:
                 logging.warning("%s %s runs in Slicer itself.", error, function)
                 return runHere(function, progress, *arguments, **named)
             outcome = folder / OUTCOME
-            if not outcome.is_file():
+            if ended.exitStatus != 0 or not outcome.is_file():
                 reason = ended.lastLine or "it wrote nothing"
                 raise InputError(f"A process of Slicer's Python ended before it was done: {reason}")
             kind, value = _read(outcome)
@@ -255,26 +254,15 @@ def main(folder: str) -> None:
     except Exception:
         traceback.print_exc()
         sys.exit(1)
-    partial = path / f"{OUTCOME}.partial"
-    _write(partial, outcome)
-    partial.replace(path / OUTCOME)
+    _write(path / OUTCOME, outcome)
 
 
 def _write(path: Path, value: Any) -> None:
-    """Write a value; arrays go to the file as they are, which leaves Python's lock to others."""
-    buffers: list[pickle.PickleBuffer] = []
-    head = pickle.dumps(value, PROTOCOL, buffer_callback=buffers.append)
+    """Write a value; arrays go straight to the file, which leaves Python's lock to others."""
     with path.open("wb") as file:
-        views = [memoryview(head), *(buffer.raw() for buffer in buffers)]
-        pickle.dump([view.nbytes for view in views], file, PROTOCOL)
-        for view in views:
-            file.write(view)
+        pickle.dump(value, file, pickle.HIGHEST_PROTOCOL)
 
 
 def _read(path: Path) -> Any:
-    """Return the value that `_write` has written."""
     with path.open("rb") as file:
-        head, *buffers = [bytearray(size) for size in pickle.load(file)]
-        for buffer in (head, *buffers):
-            file.readinto(buffer)
-    return pickle.loads(head, buffers=buffers)
+        return pickle.load(file)

@@ -83,15 +83,12 @@ class WindowsJob:
             process.kill()
             raise OSError("Windows has started it, but does not let it run")
 
-    def kill(self) -> None:
-        """End them at once."""
+    def end(self, isAsked: bool) -> None:  # noqa: ARG002
+        """End them at once: nothing on Windows can ask a program without a window."""
         if self._isInJob:
             self._kernel.TerminateJobObject(self._job, 1)
         else:
             endTree(self._pid)
-
-    end = kill
-    """Nothing on Windows can ask a program without a window."""
 
     def _resume(self) -> bool:
         """Resume each thread of the process; return whether one was resumed."""
@@ -152,16 +149,10 @@ else:
         def __init__(self, process: subprocess.Popen[str]) -> None:
             self._id = process.pid
 
-        def end(self) -> None:
-            self._send(signal.SIGTERM)
-
-        def kill(self) -> None:
-            """End them at once."""
-            self._send(signal.SIGKILL)
-
-        def _send(self, number: int) -> None:
+        def end(self, isAsked: bool) -> None:
+            """Ask them to end, or kill them."""
             # Where they have all ended, or (macOS) those that have wait to be noticed.
             with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.killpg(self._id, number)
+                os.killpg(self._id, signal.SIGTERM if isAsked else signal.SIGKILL)
 
     ProcessGroup = PosixProcessGroup

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import slicer
@@ -43,41 +43,36 @@ LIST, LINE = "vtkMRMLMarkupsFiducialNode", "vtkMRMLMarkupsLineNode"
 ENDS = 2
 
 
-@dataclass(frozen=True, eq=False)
-class PlacedPoints:
-    """Labels, positions (n, 3) float, mm, and which points are selected, of a list or a line."""
+class PlacedPoint(NamedTuple):
+    """A point of a list or a line, mm, in its own frame or RAS."""
 
-    labels: tuple[str, ...]
-    points: np.ndarray
-    selected: tuple[bool, ...]
+    label: str
+    position: Sequence[float]
+    isSelected: bool = True
 
-    @classmethod
-    def of(cls, node: Any) -> PlacedPoints:
-        rows = placedRows(node)
-        return cls(
-            tuple(labelOf(node, row) for row in rows),
-            slicer.util.arrayFromMarkupsControlPoints(node)[rows],
-            tuple(bool(node.GetNthControlPointSelected(row)) for row in rows),
-        )
 
-    def isLike(self, other: PlacedPoints) -> bool:
-        isSame = (self.labels, self.selected) == (other.labels, other.selected)
-        return isSame and np.array_equal(self.points, other.points)
+def placedPoints(node: Any | None, inRas: bool = False) -> list[PlacedPoint]:
+    """Return the points of a node that are placed, and not only under the mouse."""
+    points: list[PlacedPoint] = []
+    if node is None:
+        return points
+    for row in range(node.GetNumberOfControlPoints()):
+        if node.GetNthControlPointPositionStatus(row) == node.PositionDefined:
+            place = node.GetNthControlPointPosition(row)
+            if inRas:
+                place = node.GetNthControlPointPositionWorld(row)
+            isSelected = bool(node.GetNthControlPointSelected(row))
+            points.append(PlacedPoint(labelOf(node, row), place, isSelected))
+    return points
 
-    def without(self, row: int) -> PlacedPoints:
-        kept = [each for each in range(len(self.labels)) if each != row % len(self.labels)]
-        return PlacedPoints(
-            tuple(self.labels[each] for each in kept),
-            self.points[kept],
-            tuple(self.selected[each] for each in kept),
-        )
 
-    def put(self, node: Any) -> None:
-        """Replace the points of a list or a line by these."""
-        with slicer.util.NodeModify(node):
-            setPoints(node, self.labels, self.points)
-            for row, isSelected in enumerate(self.selected):
-                node.SetNthControlPointSelected(row, isSelected)
+def putPoints(node: Any, points: Sequence[PlacedPoint]) -> None:
+    """Replace the points of a list or a line."""
+    with slicer.util.NodeModify(node):
+        places = np.array([point.position for point in points], dtype=float).reshape(-1, 3)
+        setPoints(node, [point.label for point in points], places)
+        for row, point in enumerate(points):
+            node.SetNthControlPointSelected(row, point.isSelected)
 
 
 class UndoablePoints:
@@ -85,14 +80,13 @@ class UndoablePoints:
 
     def __init__(self, scene: Any) -> None:
         self._scene = scene
-        self._before: list[tuple[str, PlacedPoints]] = []
+        self._before: list[tuple[str, list[PlacedPoint]]] = []
 
-    def remember(self, node: Any) -> PlacedPoints:
-        """Return the points that are placed, for `undo` to restore; the next click places none."""
+    def remember(self, node: Any) -> list[PlacedPoint]:
+        """Return the placed points, which `undo` will restore; the next click places none."""
         stopPlacing(self._scene)
-        present = PlacedPoints.of(node)
-        self._before.append((node.GetID(), present))
-        return present
+        self._before.append((node.GetID(), placedPoints(node)))
+        return placedPoints(node)
 
     @property
     def canUndo(self) -> bool:
@@ -106,17 +100,17 @@ class UndoablePoints:
             nodeId, before = self._before.pop()
             node = self._changed(nodeId, before)
             if node is not None:
-                before.put(node)
+                putPoints(node, before)
                 return
 
     def forget(self) -> None:
         """Forget what could be undone: the scene was closed."""
         self._before.clear()
 
-    def _changed(self, nodeId: str, before: PlacedPoints) -> Any | None:
+    def _changed(self, nodeId: str, before: list[PlacedPoint]) -> Any | None:
         """Return a node whose points are different now."""
         node = self._scene.GetNodeByID(nodeId)
-        return None if node is None or before.isLike(PlacedPoints.of(node)) else node
+        return None if node is None or placedPoints(node) == before else node
 
 
 class PlanPoints(UndoablePoints):
@@ -129,7 +123,7 @@ class PlanPoints(UndoablePoints):
     def newTrajectory(self) -> Any:
         """Return a line that lacks its entry or target, for the next clicks."""
         lines = nodesOf(self._scene, LINE, Role.PLAN_TRAJECTORY)
-        node = next((line for line in lines if len(placedRows(line)) < ENDS), None)
+        node = next((line for line in lines if len(placedPoints(line)) < ENDS), None)
         if node is None:
             name = self._scene.GenerateUniqueName(_("Planned trajectory"))
             node = self._scene.AddNewNodeByClass(LINE, name)
@@ -142,7 +136,9 @@ class PlanPoints(UndoablePoints):
         problem = whyNotRemoved(node)
         if node is None or problem:
             raise InputError(problem)
-        self.remember(node).without(row).put(node)
+        points = self.remember(node)
+        del points[row]
+        putPoints(node, points)
 
     def _readyToPlace(self, node: Any) -> Any:
         node.GetDisplayNode().SetSelectedColor(TARGET_COLOR)
@@ -151,20 +147,9 @@ class PlanPoints(UndoablePoints):
         return node
 
 
-def placedRows(node: Any | None) -> list[int]:
-    """Return which points of a node are placed, and not only under the mouse."""
-    if node is None:
-        return []
-    return [
-        row
-        for row in range(node.GetNumberOfControlPoints())
-        if node.GetNthControlPointPositionStatus(row) == node.PositionDefined
-    ]
-
-
 def whyNotRemoved(node: Any | None) -> str:
     """Return why no point of a node can be removed, empty where one can."""
-    if node is None or not placedRows(node):
+    if node is None or not placedPoints(node):
         return _("No point is placed.")
     if node.GetLocked():
         return _("These points belong to the scenario; unlock the list in the module Markups.")

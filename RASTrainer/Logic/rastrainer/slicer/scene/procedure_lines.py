@@ -34,7 +34,7 @@ from rastrainer.slicer.scene.nodes import (
     setPoints,
     worldPoints,
 )
-from rastrainer.slicer.scene.plan_points import ENDS, LINE, LIST, TARGET_COLOR, placedRows
+from rastrainer.slicer.scene.plan_points import ENDS, LINE, LIST, TARGET_COLOR, placedPoints
 from rastrainer.slicer.scene.scenario_nodes import meshPolyData
 from rastrainer.slicer.scene.tables import showTable
 from rastrainer.slicer.translation import _
@@ -64,7 +64,7 @@ def raiseLine(scene: Any, line: Any) -> None:
 
 def newPlanLine(scene: Any) -> Any:
     """Return a line of the plan that lacks its entry or target, for the next clicks."""
-    unfinished = [line for line in planLines(scene) if len(placedRows(line)) < ENDS]
+    unfinished = [line for line in planLines(scene) if len(placedPoints(line)) < ENDS]
     if unfinished:
         return unfinished[0]
     return _newLine(scene, Role.PLAN_LINE, scene.GenerateUniqueName(_("Line")))
@@ -99,7 +99,7 @@ def setInstrument(line: Any, diameterMm: float, safetyMm: float) -> None:
 
 def lengthMm(line: Any) -> float | None:
     """Return the length of a line; None while one of its ends is missing."""
-    if len(placedRows(line)) < ENDS:
+    if len(placedPoints(line)) < ENDS:
         return None
     ends = worldPoints(line)
     return float(np.linalg.norm(ends[1] - ends[0]))
