@@ -132,7 +132,8 @@ def led(tmp_path_factory):
             leader.until(leader.is_aligned)
             leader.session.procedure.command(CommandName.LOCK_GUIDE)
             leader.until_in(Phase.DRILLING)
-            leader.session.procedure.feed(True)
+            once = {"velocityMmS": 2.0, "durationS": 0.5}
+            leader.session.procedure.command(CommandName.FEED, once)
             leader.until(lambda: leader.status.feedMm > 0.9)
             leader.feed_to(55.0)
             seen["along"] = leader.slices()
