@@ -22,8 +22,7 @@ from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.trial_screen import TrialScreen
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
 from rastrainer_simulator.flow.tutorial_screen import TutorialScreen
-from rastrainer_simulator.input.inputs import ControlContext, ControlName
-from rastrainer_simulator.loop.control_loop import ControlLoop
+from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.feedback_event import feedback_event, touch_feedback
 from rastrainer_simulator.presentation.screen import Hint, Menu, Screen, ScreenMessage, Tone
 from rastrainer_simulator.record.trial_context import GhostReport, GuidanceReport
@@ -46,9 +45,9 @@ class Flow:
     starts, pauses or aborts leads to the same screen as one of the trainee's.
     """
 
-    def __init__(self, session: TrainingSession, control_loop: ControlLoop) -> None:
+    def __init__(self, session: TrainingSession) -> None:
         self._session = session
-        self._control_loop = control_loop
+        self._control_loop = session.control_loop
         self._arm = ArmEvents()
         self._trial_screen = TrialScreen(session, self._arm)
         self._procedure_screen = ProcedureScreen(session, self._trial_screen)
@@ -62,10 +61,6 @@ class Flow:
         self._unseen = ""
         session.pages.home = lambda: start_page(session)
         session.pages.show_start()
-
-    @property
-    def situation(self) -> ControlContext:
-        return ControlContext.WORK if self._session.pages.top is None else ControlContext.MENU
 
     @property
     def playback(self) -> Playback | None:
@@ -230,9 +225,6 @@ class Flow:
                 return Answer(0, True, data={"isNeeded": False})
             session.begin_tutorial()
         return Answer(0, True, data={"isNeeded": True})
-
-    def close(self) -> None:
-        self._session.pages.show(None)
 
     @property
     def _screen_of_work(self) -> TrialScreen | ProcedureScreen | TutorialScreen:

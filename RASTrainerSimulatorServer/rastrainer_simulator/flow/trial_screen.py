@@ -35,7 +35,6 @@ from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage
 from rastrainer_simulator.state import TouchStage
 from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.vectors import ZERO, Vector, distance, in_meters
-from rastrainer_simulator.viewpoint.view_control import orbit_to
 
 TRIAL_RUN_S = 300.0
 """How long the trial run is free (the paper's flow, figure 4)."""
@@ -119,10 +118,9 @@ class TrialScreen(ArmScreen):
         if control is ControlName.CAMERA:
             self._change_camera()
         elif control is ControlName.BEST_VIEW and session.training.is_tracing:
-            camera = session.scenario.cameras[session.state.camera]
-            eye, place = session.places.eye(camera), session.places.in_world()
-            if eye is not None and place is not None:
-                session.view.control.go(orbit_to(camera, eye, place))
+            orbit = session.places.orbit(session.scenario.cameras[session.state.camera])
+            if orbit is not None:
+                session.view.control.go(orbit)
         elif control is ControlName.BEST_VIEW:
             session.view.want_best()
         elif control is ControlName.UNDO:

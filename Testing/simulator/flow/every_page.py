@@ -20,7 +20,6 @@ from rastrainer_simulator.flow.pages import (
     controls,
     experiment,
     introduction,
-    own_trials,
     procedure,
     result,
     start,
@@ -28,10 +27,10 @@ from rastrainer_simulator.flow.pages import (
     trial,
     trial_review,
 )
-from rastrainer_simulator.flow.pages.own_trials import MOST_TRIALS
 from rastrainer_simulator.flow.pages.session_page import PageKind, SessionPage
 from rastrainer_simulator.flow.pages.trainee_id import QuestionnairePage
 from rastrainer_simulator.flow.pages.trial import MatchReport
+from rastrainer_simulator.flow.pages.trial_review import MOST_TRIALS
 from rastrainer_simulator.flow.session.open_pages import OpenPages
 from rastrainer_simulator.flow.session.preferences import InstructorLock
 from rastrainer_simulator.flow.session.trainee_history import OwnTrial
@@ -292,5 +291,5 @@ def _pages(session) -> Iterator[SessionPage]:
     yield introduction.tutorial_done_page(session, LEARNED)
     yield introduction.practiced_page(session, LEARNED)
     session.history.own = lambda _trainee: OWN_TRIALS
-    yield own_trials.own_trials_page(session)
+    yield trial_review.own_trials_page(session)
     yield trial_review.ReplayPage(session, _Loading(), begins_at_worst=False)

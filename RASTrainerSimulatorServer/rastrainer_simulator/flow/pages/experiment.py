@@ -8,19 +8,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
-from rastrainer.errors import InputError
 from rastrainer.protocol import TRIAL_RUN, Mode, StepKind, TutorialRule
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.scenario import method_of, playable_methods
 from rastrainer.study_messages import AssignmentStanding, StudyStep
 from rastrainer.trial.scoring import PASS_MARK
-from rastrainer_simulator.flow.pages.own_trials import own_trials_page
 from rastrainer_simulator.flow.pages.session_page import SessionPage, stepped
 from rastrainer_simulator.flow.pages.trainee_id import (
     KeyboardPage,
     QuestionnairePage,
     clicked_id_page,
 )
+from rastrainer_simulator.flow.pages.trial_review import own_trials_page
 from rastrainer_simulator.flow.session.chosen_trial import (
     assignment_obstacle,
     has_learned,
@@ -204,10 +203,8 @@ class ExperimentPage(SessionPage):
         return "mode" if trainee else ""
 
     def _open_questionnaire(self, step: StudyStep) -> None:
-        try:
+        with self.session.complaining():
             self.session.pages.open(QuestionnairePage(self.session, step))
-        except InputError as error:
-            self.session.complain(str(error))
 
 
 def open_experiment(

@@ -28,7 +28,7 @@ from rastrainer_simulator.flow.session.plan_marks import (
     placed_line,
 )
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.flow.session.verdict import detail_number
+from rastrainer_simulator.flow.session.trainee_history import detail_number
 from rastrainer_simulator.presentation.screen import (
     ErrorArrow,
     Fact,

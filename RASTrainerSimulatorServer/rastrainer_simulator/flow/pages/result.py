@@ -8,7 +8,6 @@ from dataclasses import replace
 from functools import partial
 from typing import Any, TypeGuard
 
-from rastrainer.errors import InputError
 from rastrainer.json_checks import is_number
 from rastrainer.trial.scoring import (
     COMMON_BIAS_LIMIT_MM,
@@ -29,7 +28,7 @@ from rastrainer_simulator.flow.pages.trial_review import ErrorsPage, ReplayPage
 from rastrainer_simulator.flow.session.local_scorer import SCORED_BY_SIMULATOR
 from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.flow.session.verdict import (
+from rastrainer_simulator.flow.session.trainee_history import (
     beyond_limits,
     detail_number,
     is_passed,
@@ -205,11 +204,8 @@ class ResultPage(SessionPage):
     def show_again(self, begins_at_worst: bool = False) -> None:
         """Load the trial once, when it is first asked for."""
         session = self.session
-        try:
+        with session.complaining():
             self._loading = self._loading or session.load_trial(session.training.trial_id)
-        except InputError as error:
-            session.complain(str(error))
-        else:
             session.pages.open(ReplayPage(session, self._loading, begins_at_worst))
 
 

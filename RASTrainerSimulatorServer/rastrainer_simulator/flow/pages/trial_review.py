@@ -1,15 +1,17 @@
-"""Reviewing a scored trial: the errors of its touches on the head, and its replay."""
+"""Reviewing scored trials: the errors of touches on the head, replays, and the list of trials."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 from rastrainer.errors import InputError
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.flow.pages.session_page import SessionPage, clickable_hint
-from rastrainer_simulator.flow.session.open_pages import PageContent
+from rastrainer_simulator.flow.pages.session_page import SessionPage, clickable_hint, page_kind
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.plan_marks import plan_marks
 from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.flow.session.trainee_history import OwnTrial
 from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice, SourceKind
 from rastrainer_simulator.presentation.feedback_event import feedback_event
 from rastrainer_simulator.presentation.screen import (
@@ -189,3 +191,37 @@ class ReplayPage(SessionPage):
             felt = feedback_event(event, result.state.touch)
             if felt is not None:
                 self.session.happened(felt)
+
+
+MOST_TRIALS = 12
+_VERDICTS = {True: "experiment.passed", False: "experiment.failed", None: "experiment.done"}
+
+
+@page_kind("own-trials")
+def own_trials_page(page: SessionPage) -> PageContent:
+    """List the newest trials first; choosing one shows it again."""
+    session, say = page.session, page.say
+
+    def show(trial_id: str) -> None:
+        with session.complaining():
+            loading = session.load_trial(trial_id)
+            session.pages.open(ReplayPage(session, loading, begins_at_worst=False))
+
+    def row(each: OwnTrial) -> PageRow:
+        past = each.past
+        is_shown = each.scenario == session.scenario.name and not past.is_aborted
+        verdict = say(_VERDICTS[each.is_passed])
+        when = each.started_utc[:16].replace("T", " ")
+        return page.button(
+            f"trial {past.trial_id}",
+            partial(show, past.trial_id),
+            f"{session.task_title(past.task)} ({when} UTC)",
+            value=verdict if past.is_aborted else f"{past.score:.0f} / 100, {verdict}",
+            is_enabled=is_shown,
+            help=say("own-trials.help" if is_shown else "own-trials.not shown"),
+        )
+
+    trainee = session.trainee_id
+    trials = reversed(session.history.own(trainee)[-MOST_TRIALS:])
+    back = page.button("back", label=say("experiment.back"))
+    return PageContent(say("own-trials.title", trainee=trainee), rows=(*map(row, trials), back))

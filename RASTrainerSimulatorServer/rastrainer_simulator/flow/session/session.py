@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -190,11 +191,8 @@ class TrainingSession:
     def do(self, command: str, arguments: Mapping[str, Any] | None = None) -> None:
         holder = self.controls.holder
         sender = "" if holder is None else holder.kind.value
-        try:
+        with self.complaining():
             checked = check_arguments(command, arguments or {})
-        except InputError as error:
-            self.complain(str(error))
-        else:
             self._asked.append((command, self.control_loop.submit(command, checked, sender)))
 
     def begin_tutorial(self, task: str = TRIAL_RUN, point: str = "") -> None:
@@ -206,19 +204,15 @@ class TrainingSession:
             self.complain(self.texts.say("being set up"))
             return
         wanted = {"task": task, "trainee": self.trainee_id, "mode": self.mode}
-        try:
+        with self.complaining():
             arguments = check_arguments(CommandName.START_TASK, wanted)
-        except InputError as error:
-            self.complain(str(error))
-            return
-        self.tutorial = Tutorial(self.control_loop.setup, self.state, arguments, point)
-        self.practiced = task, point
-        practice = self.tutorial.practice
-        self.view.begin(
-            self.control_loop.setup, practice.training.truth, practice.shown(self.state)
-        )
-        self.view.control.go(TUTORIAL_VIEW)
-        self.pages.show(None)
+            setup = self.control_loop.setup
+            self.tutorial = Tutorial(setup, self.state, arguments, point)
+            self.practiced = task, point
+            practice = self.tutorial.practice
+            self.view.begin(setup, practice.training.truth, practice.shown(self.state))
+            self.view.control.go(TUTORIAL_VIEW)
+            self.pages.show(None)
 
     def end_tutorial(self) -> TutorialOutcome | None:
         """Leave the tutorial; if all of it is done, keep its outcome and return it."""
@@ -230,7 +224,8 @@ class TrainingSession:
             return None
         outcome = tutorial.outcome(self.operator.learned(self.mode))
         if not tutorial.practiced:
-            self._save(lambda: self.tutorials.keep(outcome))
+            with self.complaining():
+                self.tutorials.keep(outcome)
         return outcome
 
     def prefer(self, preferences: Preferences) -> None:
@@ -238,7 +233,8 @@ class TrainingSession:
         self.preferences = preferences
         self.texts = self.operator.texts = Texts(LANGUAGES[preferences.language])
         self.reload.request(before, preferences.applied_to(before))
-        self._save(lambda: write_preferences(self.services.config / PREFERENCES_FILE, preferences))
+        with self.complaining():
+            write_preferences(self.services.config / PREFERENCES_FILE, preferences)
 
     def truly_in_world(self, point: np.ndarray) -> Vector:
         """Return where a point of the MRI (RAS mm) truly is, World, m: only after the score."""
@@ -272,7 +268,16 @@ class TrainingSession:
 
     def rebind(self, bindings: Bindings) -> None:
         self.controls.bindings = bindings
-        self._save(lambda: write_bindings(self.services.config / BINDINGS_FILE, bindings))
+        with self.complaining():
+            write_bindings(self.services.config / BINDINGS_FILE, bindings)
+
+    @contextmanager
+    def complaining(self) -> Iterator[None]:
+        """Tell the trainee why something is impossible."""
+        try:
+            yield
+        except InputError as error:
+            self.complain(str(error))
 
     def complain(self, text: str) -> None:
         self.notices.add(self.texts.again(text), Tone.ERROR)
@@ -332,9 +337,3 @@ class TrainingSession:
                 title = self.assignment_texts.title(each)
                 said = self.texts.say("assignments.just reached", assignment=title)
                 self.notices.add(said, Tone.GOOD, REACHED_S)
-
-    def _save(self, write: Callable[[], None]) -> None:
-        try:
-            write()
-        except InputError as error:
-            self.complain(str(error))

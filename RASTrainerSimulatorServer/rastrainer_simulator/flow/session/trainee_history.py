@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import re
 import uuid
 from collections import defaultdict
@@ -11,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from pathlib import Path
+from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
@@ -24,12 +26,13 @@ from rastrainer.journal.journal_file import (
     file_stamp,
     iso,
 )
+from rastrainer.json_checks import is_number
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import TRIAL_RUN, AbortReason, Phase, RegistrationMethod
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.scoring import PASS_MARK, passes
 from rastrainer.trial.trial_feedback import PastTrial
-from rastrainer_simulator.flow.session.verdict import beyond_limits, is_passed
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 
@@ -256,3 +259,39 @@ def _own_trial(journal: Path) -> OwnTrial | None:
         return OwnTrial(past, record.scenario, record.started_utc, verdict, journal)
     except (OSError, DamagedLineError, InputError, KeyError, TypeError, ValueError):
         return None
+
+
+_LIMITS = (
+    ("isAccurate", "result.not accurate"),
+    ("isUnbiased", "result.not unbiased"),
+    ("isSafe", "result.not safe"),
+)
+
+
+def detail_number(details: Mapping[str, Any], name: str) -> float | None:
+    """Return a number of a score's details; None for anything else."""
+    value = details.get(name)
+    return float(value) if is_number(value) and math.isfinite(value) else None
+
+
+def pass_mark(task: str, details: Mapping[str, Any]) -> float | None:
+    """Return the score that passes; None in a trial run, and in a study without a mark."""
+    if task == TRIAL_RUN:
+        return None
+    return detail_number({"passMark": PASS_MARK, **details}, "passMark")
+
+
+def beyond_limits(details: Mapping[str, Any]) -> list[str]:
+    """Return the keys of the sentences that say why a trial is not acceptable."""
+    return [key for name, key in _LIMITS if details.get(name) is False]
+
+
+def is_passed(task: str, score: float, details: Mapping[str, Any]) -> bool | None:
+    """Return whether a trial is passed, with its procedure; None without a pass mark."""
+    procedure = details.get("procedure")
+    is_placed = not isinstance(procedure, dict) or procedure.get("acceptable") is not False
+    is_acceptable = is_placed and not beyond_limits(details)
+    mark = pass_mark(task, details)
+    if mark is None:
+        return None if is_acceptable else False
+    return passes(score, is_acceptable, mark)
