@@ -168,7 +168,7 @@ class ArmScreen:
                 hints.append(clickable_hint(session, control, key))
             else:
                 hints.append(Hint(operator.label(control), say("hint.fine")))
-        if operator.is_one_of((SourceKind.MOUSE,)):
+        if operator.is_one_of(SourceKind.MOUSE):
             action = say("hint.hide sticks" if sticks.is_shown else "hint.sticks")
             hints.append(Hint(say("hint.mouse"), action, PRESS + SHOW))
             if can_tilt and sticks.is_shown:

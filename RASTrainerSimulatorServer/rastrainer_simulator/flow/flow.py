@@ -292,7 +292,7 @@ class Flow:
             self._trial_screen.begin(truth)
             guidance = self._trial_screen.guidance
             self._control_loop.note_display(GuidanceReport(guidance.value))
-            learned = session.tutorials.latest.get(training.trainee)
+            learned = session.history.learned.get(training.trainee)
             if training.task == TRIAL_RUN and learned is not None:
                 self._control_loop.note_display(learned)
             session.view.begin(session.control_loop.setup, truth, session.state)

@@ -190,7 +190,7 @@ class ProcedureScreen(ArmScreen):
         up_and_down = session.operator.pair_label(ControlName.MOVE_DOWN, ControlName.MOVE_UP)
         if phase in FED:
             return (Hint(up_and_down, say("hint.feed")),)
-        if session.operator.is_one_of((SourceKind.XR,)):
+        if session.operator.is_one_of(SourceKind.XR):
             is_aligning = phase is Phase.ALIGNING
             return (Hint(say("headset.tilt"), say("hint.tilt")),) if is_aligning else ()
         if phase is not Phase.ALIGNING:

@@ -187,7 +187,12 @@ class TrialScreen(ArmScreen):
         if training.is_tracing and trace is not None:
             limits = {"least": MIN_TRACE_POINTS, "most": MAX_TRACE_POINTS}
             done = say("status.traced", traced=len(trace.points), **limits)
-        facts = [session.task_title(training.task), done, self._clock()]
+        clock = session.duration(session.state.completion_time)
+        if training.task == TRIAL_RUN:
+            # Rounding first: an error in a float's last digit must not add a second.
+            left = math.ceil(max(0.0, round(self._practice_s - session.state.elapsed, 6)))
+            clock = say("status.left", time=session.duration(left))
+        facts = [session.task_title(training.task), done, clock]
         target = self._points.get(training.next_point or "")
         name = say("status.point", point=training.next_point)
         if training.is_tracing:
@@ -212,20 +217,12 @@ class TrialScreen(ArmScreen):
             ControlName.MENU: "hint.menu",
         }
         movement: tuple[Hint, ...] = ()
-        if session.operator.is_one_of((SourceKind.XR,)):
+        if session.operator.is_one_of(SourceKind.XR):
             # In a headset the head turns the view, and the sticks are drawn in the hands.
             del names[ControlName.BEST_VIEW]
         elif not is_complete:
             movement = self._movement_hints()
         return self._hints(movement, names)
-
-    def _clock(self) -> str:
-        session = self._session
-        if session.training.task != TRIAL_RUN:
-            return session.duration(session.state.completion_time)
-        # Rounding first: an error in a float's last digit must not add a second.
-        left = math.ceil(max(0.0, round(self._practice_s - session.state.elapsed, 6)))
-        return session.texts.say("status.left", time=session.duration(left))
 
     def _is_off_the_path(self) -> bool:
         """Return whether the tip is off the path between the last point and the next.

@@ -116,10 +116,10 @@ class ExperimentPage(SessionPage):
         label = self.say("experiment.trainee")
         item = MenuItem("trainee", label, ItemKind.TEXT, session.trainee, help=help_)
         enter = self.open_page(KeyboardPage, self._write_id)
-        if session.operator.is_one_of((SourceKind.KEYBOARD, SourceKind.MOUSE)):
+        if session.operator.is_one_of(SourceKind.KEYBOARD, SourceKind.MOUSE):
             enter = partial(session.pages.move, 1)
         yield PageRow(item, enter, write=self._write_id)
-        if session.operator.is_one_of((SourceKind.MOUSE,)):
+        if session.operator.is_one_of(SourceKind.MOUSE):
             yield self.button("clicked", self.open_page(clicked_id_page, self._write_id))
 
     def _write_id(self, value: str) -> None:
@@ -160,9 +160,9 @@ class ExperimentPage(SessionPage):
     def _skip(self, what: str) -> None:
         session = self.session
         if what == "tutorial":
-            session.tutorials.skipped.add(session.trainee_id)
+            session.history.skipped_tutorials.add(session.trainee_id)
         else:
-            session.progress.skipped.add((session.trainee_id, session.scenario.name))
+            session.history.skipped_runs.add((session.trainee_id, session.scenario.name))
         session.pages.focus(self._next_task())
 
     def _task(self, name: str) -> PageRow:
@@ -196,7 +196,7 @@ class ExperimentPage(SessionPage):
         outcomes = ("", "failed") if step is None else ("",)
         trainee, head = session.trainee_id, session.scenario.name
         for name in (task.name for task in session.scenario.tasks):
-            is_left_out = name == TRIAL_RUN and session.progress.needs_no_trial_run(trainee, head)
+            is_left_out = name == TRIAL_RUN and session.history.needs_no_trial_run(trainee, head)
             is_to_do = session.outcome_of(name) in outcomes and not is_left_out
             if is_to_do and not obstacle(session, name):
                 return name

@@ -62,7 +62,7 @@ class ErrorsPage(SessionPage):
         )
         back = Hint(session.operator.label(ControlName.BACK), self.say("hint.result"), "back")
         hints: tuple[Hint, ...] = (back,)
-        if not session.operator.is_one_of((SourceKind.XR,)):
+        if not session.operator.is_one_of(SourceKind.XR):
             # In a headset the trainee looks around by turning the head.
             pairs = (ControlName.LEFT, ControlName.RIGHT), (ControlName.UP, ControlName.DOWN)
             turn = self.say("hint.turn_view")

@@ -30,9 +30,7 @@ from rastrainer_simulator.flow.session.preferences import (
 from rastrainer_simulator.flow.session.services import FlowServices, SimulationReload
 from rastrainer_simulator.flow.session.trace_places import TracePlaces
 from rastrainer_simulator.flow.session.trainee_history import (
-    DoneTasks,
-    FinishedTutorials,
-    ScoreHistory,
+    TraineeHistory,
 )
 from rastrainer_simulator.flow.session.trial_view import TrialView
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
@@ -87,8 +85,7 @@ class TrainingSession:
         self.has_read_introduction = False
         self.preferences = preferences
         self.texts = Texts(LANGUAGES[preferences.language])
-        self.progress = DoneTasks(services.records)
-        self.history = ScoreHistory(services.records, self.progress.journals)
+        self.history = TraineeHistory(services.records)
         self.local_scorer = (
             LocalScorer(
                 control_loop.submit, services.records, services.is_slicer_connected, self.history.of
@@ -103,7 +100,6 @@ class TrainingSession:
         self.ghost = TrialGhost()
         self.places = TracePlaces()
         self.tutorial: Tutorial | None = None
-        self.tutorials = FinishedTutorials(services.records)
         self.screen_sticks = self.operator.screen_sticks
         self.lock = InstructorLock(services.pin)
         self.reload = SimulationReload(services, control_loop, self.complain)
@@ -155,9 +151,10 @@ class TrainingSession:
 
         None without one, in a study, which comes before it, and while no Slicer is connected.
         """
-        if self.step is not None or not self.services.is_slicer_connected():
+        assigned, trainee = self.services.assigned, self.trainee_id
+        if trainee in assigned.steps or not self.services.is_slicer_connected():
             return None
-        return self.services.assigned.curricula.get(self.trainee_id)
+        return assigned.curricula.get(trainee)
 
     @property
     def next_assignment(self) -> AssignmentStanding | None:
@@ -225,7 +222,7 @@ class TrainingSession:
         outcome = tutorial.outcome(self.operator.learned(self.mode))
         if not tutorial.practiced:
             with self.complaining():
-                self.tutorials.keep(outcome)
+                self.history.keep_tutorial(outcome)
         return outcome
 
     def prefer(self, preferences: Preferences) -> None:
@@ -250,7 +247,7 @@ class TrainingSession:
         return load_trial(found[0], self.control_loop.setup)
 
     def note_done(self) -> None:
-        self.progress.note(self.training.trainee, self.scenario.name, self.training.task)
+        self.history.note_done(self.training.trainee, self.scenario.name, self.training.task)
 
     def outcome_of(self, task: str) -> str:
         """Return "passed", "failed" or "done" of the trainee's trials of a task; "" of none."""
@@ -264,7 +261,7 @@ class TrainingSession:
             return "passed"
         if trials and trials[-1].is_passed is False:
             return "failed"
-        return "done" if self.progress.has_done(trainee, scenario, task) else ""
+        return "done" if self.history.has_done(trainee, scenario, task) else ""
 
     def rebind(self, bindings: Bindings) -> None:
         self.controls.bindings = bindings
