@@ -13,17 +13,21 @@ from rastrainer_simulator.flow.pages.introduction import practiced_page, tutoria
 from rastrainer_simulator.flow.pages.result import ResultPage, waiting_page
 from rastrainer_simulator.flow.pages.session_page import SessionPage, clickable_hint
 from rastrainer_simulator.flow.pages.start import start_page
-from rastrainer_simulator.flow.pages.trial import PreparingPage, practice_page, trial_page
 from rastrainer_simulator.flow.pages.trial_review import ReplayPage
 from rastrainer_simulator.flow.procedure_screen import ProcedureScreen
 from rastrainer_simulator.flow.session.chosen_trial import begin_ghost, needs_tutorial
 from rastrainer_simulator.flow.session.open_pages import Page
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.flow.trial_screen import TrialScreen
+from rastrainer_simulator.flow.trial_screen import (
+    PreparingPage,
+    TrialScreen,
+    practice_page,
+    trial_page,
+)
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
 from rastrainer_simulator.flow.tutorial_screen import TutorialScreen
 from rastrainer_simulator.input.inputs import ControlName
-from rastrainer_simulator.presentation.feedback_event import feedback_event, touch_feedback
+from rastrainer_simulator.presentation.feedback_event import touch_feedback
 from rastrainer_simulator.presentation.screen import Hint, Menu, Screen, ScreenMessage, Tone
 from rastrainer_simulator.record.trial_context import GhostReport, GuidanceReport
 from rastrainer_simulator.replay.playback import Playback
@@ -72,14 +76,12 @@ class Flow:
         tutorial = self._session.tutorial
         return state if tutorial is None else tutorial.practice.shown(state)
 
-    def take(self, result: StepResult) -> None:
+    def process_tick(self, result: StepResult) -> None:
         touch = self.shown(result.state).touch
+        is_back = key_of(result.state.training.instruction) == NOT_RECORDED
+        self._session.feel(result.events, touch, is_back)
         for event in result.events:
-            is_back = key_of(result.state.training.instruction) == NOT_RECORDED
-            felt = feedback_event(event, touch, is_back)
-            if felt is not None:
-                self._session.happened(felt)
-            self._arm.take(event, self._session.tip)
+            self._arm.note_event(event, self._session.tip)
         self._touch = touch
 
     def advance(self, dt: float, state: SimulationState) -> None:

@@ -118,7 +118,7 @@ class FlowPresenter(Presenter):
             results, self._results = self._results, []
             newest = self._newest
         for result in results:
-            self._flow.take(result)
+            self._flow.process_tick(result)
             self._is_changed = True
         self.controls.advance(dt)
         self._await_picture(dt, newest)

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import contextlib
-import math
 from dataclasses import replace
 from functools import partial
-from typing import Any, TypeGuard
+from typing import Any
 
 from rastrainer.json_checks import is_number
 from rastrainer.trial.scoring import (
@@ -253,7 +252,7 @@ def _worded(texts: Texts, said: Any) -> str:
 
 
 def _value(texts: Texts, value: Any) -> Any:
-    if _is_number(value):
+    if is_number(value):
         return value
     if isinstance(value, dict):
         # A part has no parts itself, however deep the message may be.
@@ -263,8 +262,4 @@ def _value(texts: Texts, value: Any) -> Any:
 
 def _plain(values: Any) -> dict[str, Any]:
     items = values.items() if isinstance(values, dict) else ()
-    return {name: value for name, value in items if isinstance(value, str) or _is_number(value)}
-
-
-def _is_number(value: object) -> TypeGuard[float]:
-    return is_number(value) and math.isfinite(value)
+    return {name: value for name, value in items if isinstance(value, str) or is_number(value)}

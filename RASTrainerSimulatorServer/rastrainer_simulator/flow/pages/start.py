@@ -25,7 +25,7 @@ from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 
 @page_kind("start", leave=lambda _session: None)
 def start_page(page: SessionPage) -> PageContent:
-    """Show the first menu. Who has not read the introduction is led through it once."""
+    """Show the first menu. It leads new trainees through the introduction once."""
     has_read = page.session.has_read_introduction
     rows = (
         page.button("train", page.open_page(ExperimentPage if has_read else IntroductionPage)),

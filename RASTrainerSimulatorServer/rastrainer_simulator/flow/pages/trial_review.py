@@ -13,7 +13,6 @@ from rastrainer_simulator.flow.session.plan_marks import plan_marks
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.session.trainee_history import OwnTrial
 from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice, SourceKind
-from rastrainer_simulator.presentation.feedback_event import feedback_event
 from rastrainer_simulator.presentation.screen import (
     ErrorArrow,
     Hint,
@@ -24,7 +23,6 @@ from rastrainer_simulator.presentation.screen import (
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
 from rastrainer_simulator.replay.replay_presenter import ACTIONS, Player, PlayerAction
-from rastrainer_simulator.state import StepResult
 from rastrainer_simulator.vectors import Vector, add, length, scale, subtract
 
 GOOD_MM = 2.0
@@ -175,7 +173,7 @@ class ReplayPage(SessionPage):
             return
         self.playback = Playback(trial, session.control_loop.setup)
         self._player = Player(self.playback, self.back)
-        self.playback.subscribe(self._feel)
+        self.playback.subscribe(lambda result: session.feel(result.events, result.state.touch))
         if self._begins_at_worst and trial.worst is None:
             session.complain(self.say("replay.no worst"))
         elif self._begins_at_worst:
@@ -185,12 +183,6 @@ class ReplayPage(SessionPage):
         player.do(action)
         if action is PlayerAction.WORST and player.playback.trial.worst is not None:
             self.session.view.want_best()
-
-    def _feel(self, result: StepResult) -> None:
-        for event in result.events:
-            felt = feedback_event(event, result.state.touch)
-            if felt is not None:
-                self.session.happened(felt)
 
 
 MOST_TRIALS = 12

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import Future
 from contextlib import contextmanager
 from typing import Any
@@ -37,12 +37,18 @@ from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, Bindings, write_bindings
 from rastrainer_simulator.input.controls import Controls
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
+from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_event
 from rastrainer_simulator.presentation.screen import Notices, Tone
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.replay.ghost import TrialGhost
 from rastrainer_simulator.replay.recorded_trial import TrialLoading, load_trial
-from rastrainer_simulator.state import Answer, SimulationState, TrainingState
+from rastrainer_simulator.state import (
+    Answer,
+    Event,
+    SimulationState,
+    TouchStage,
+    TrainingState,
+)
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from rastrainer_simulator.vectors import Vector, in_meters
 from rastrainer_simulator.viewpoint.view_control import Orbit
@@ -275,6 +281,13 @@ class TrainingSession:
             yield
         except InputError as error:
             self.complain(str(error))
+
+    def feel(self, events: Iterable[Event], touch: TouchStage, not_recorded: bool = False) -> None:
+        """Give the feedback to events, as `feedback_event` has it."""
+        for event in events:
+            felt = feedback_event(event, touch, not_recorded)
+            if felt is not None:
+                self.happened(felt)
 
     def complain(self, text: str) -> None:
         self.notices.add(self.texts.again(text), Tone.ERROR)

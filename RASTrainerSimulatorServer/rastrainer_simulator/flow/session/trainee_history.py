@@ -79,7 +79,7 @@ class OwnTrial:
 class TraineeHistory:
     """Tells what each trainee has done, by the journals and the tutorials in a folder.
 
-    A task counts as done when it was registered; whether it was passed is told by its score. The
+    A task counts as done when it was registered; its score says whether it was passed. The
     trial run also counts when all its points were touched, or when it was ended after its time was
     over, as the paper's procedure has it (figure 4).
 
@@ -103,7 +103,7 @@ class TraineeHistory:
         self._devices: dict[str, set[str]] = defaultdict(set)
         self._own: dict[Path, OwnTrial | None] = {}
         for path in sorted(records.glob("*.journal")):
-            self._take(path)
+            self._note_journal(path)
         for path in sorted(records.glob(f"*{TUTORIAL_SUFFIX}")):
             with contextlib.suppress(InputError, OSError):
                 outcome = read_json(path, _MAX_TUTORIAL_BYTES)
@@ -193,7 +193,7 @@ class TraineeHistory:
         ]
         return tuple(scores[-MAX_SHOWN:])
 
-    def _take(self, path: Path) -> None:
+    def _note_journal(self, path: Path) -> None:
         """Note what a journal says; ignore it if it cannot be read."""
         try:
             with path.open("rb") as file:
