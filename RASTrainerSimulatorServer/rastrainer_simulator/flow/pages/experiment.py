@@ -190,7 +190,8 @@ class ExperimentPage(SessionPage):
             return "answer"
         if needs_tutorial(session) and not tutorial_obstacle(session):
             return "tutorial"
-        best = session.next_assignment
+        curriculum = session.curriculum
+        best = None if curriculum is None else curriculum.find(curriculum.next)
         if best is not None and not assignment_obstacle(session, best):
             return "assignments"
         outcomes = ("", "failed") if step is None else ("",)

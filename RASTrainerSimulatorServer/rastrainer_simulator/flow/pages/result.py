@@ -69,7 +69,8 @@ def _following(session: TrainingSession) -> str:
 
 def _onward(page: SessionPage) -> tuple[PageRow, ...]:
     session = page.session
-    best, words = session.next_assignment, session.assignment_texts
+    curriculum, words = session.curriculum, session.assignment_texts
+    best = None if curriculum is None else curriculum.find(curriculum.next)
     following, task = _following(session), session.training.task
     title = session.task_title(following) if best is None else words.label(best)
     again = page.say("result.again", task=session.task_title(task))

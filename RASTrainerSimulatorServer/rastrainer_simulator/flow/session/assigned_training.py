@@ -77,10 +77,8 @@ class AssignedTraining:
         """Keep the answers to the questionnaire that comes next, until Slicer has received them."""
         step = self.steps.get(trainee)
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
-            step_data = {"number": step.number, "questionnaire": step.questionnaire}
-            self.answers[trainee] = StepAnswers.from_json(
-                {"trainee": trainee, "answers": list(answers), **step_data}
-            )
+            given = StepAnswers(trainee, step.number, step.questionnaire, tuple(answers))
+            self.answers[trainee] = given
             self.steps[trainee] = replace(step, kind=ANSWERED)
 
 

@@ -16,7 +16,7 @@ from rastrainer.procedure.geometry import BoneAhead
 from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Mode, RegistrationMethod
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
-from rastrainer.study_messages import AssignmentStanding, CurriculumMessage, StudyStep
+from rastrainer.study_messages import CurriculumMessage, StudyStep
 from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
 from rastrainer_simulator.flow.session.local_scorer import LocalScorer
 from rastrainer_simulator.flow.session.open_pages import OpenPages
@@ -161,12 +161,6 @@ class TrainingSession:
         if trainee in assigned.steps or not self.services.is_slicer_connected():
             return None
         return assigned.curricula.get(trainee)
-
-    @property
-    def next_assignment(self) -> AssignmentStanding | None:
-        """The assignment to practice next; None if all are reached, or without a curriculum."""
-        curriculum = self.curriculum
-        return None if curriculum is None else curriculum.find(curriculum.next)
 
     @property
     def assignment_texts(self) -> AssignmentTexts:
