@@ -38,7 +38,7 @@ from rastrainer_simulator.flow.session.local_scorer import (
     registered_alone,
     score_alone,
 )
-from rastrainer_simulator.flow.session.trainee_history import ScoreHistory
+from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
 from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.virtual.scripted_trial import play_trial, send_hello
 from Testing.end_to_end.faulty_proxy import SlicerSide
@@ -72,7 +72,7 @@ class Alone:
         folder.mkdir()
         self.folder = folder
         self.trials = write_finished_trials(folder, range(count))
-        self.history = ScoreHistory(folder, {TRAINEE: sorted(folder.iterdir())})
+        self.history = TraineeHistory(folder)
         self._archive = TrialArchive(folder)
         for trial in self.trials:
             analysis = registered_alone(self.ask, trial, scenario)

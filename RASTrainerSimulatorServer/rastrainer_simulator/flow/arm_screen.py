@@ -47,7 +47,7 @@ _LEVEL = (
 
 @dataclass
 class ArmEvents:
-    """What events have said of the arm.
+    """The latest news of the arm, by the events of the simulation.
 
     Attributes:
         obstacle: that stops it; "" for none.
@@ -62,7 +62,7 @@ class ArmEvents:
     refused_at: Vector = ZERO
     layer: str = ""
 
-    def take(self, event: Event, tip: Vector) -> None:
+    def note_event(self, event: Event, tip: Vector) -> None:
         if event.kind is EventKind.REJECTED:
             self.refusal, self.refused_at = event.data["message"], tip
         elif event.kind is EventKind.REACH:
@@ -163,12 +163,12 @@ class ArmScreen:
             if control is not ControlName.FINE:
                 hints.append(clickable_hint(session, control, key))
             elif operator.steers_by_mouse:
-                # What others hold is switched on and off by a mouse.
+                # A mouse switches on and off the control that other devices hold.
                 key = "hint.on" if sticks.is_slow else "hint.off"
                 hints.append(clickable_hint(session, control, key))
             else:
                 hints.append(Hint(operator.label(control), say("hint.fine")))
-        if operator.is_one_of((SourceKind.MOUSE,)):
+        if operator.is_one_of(SourceKind.MOUSE):
             action = say("hint.hide sticks" if sticks.is_shown else "hint.sticks")
             hints.append(Hint(say("hint.mouse"), action, PRESS + SHOW))
             if can_tilt and sticks.is_shown:

@@ -13,18 +13,21 @@ from rastrainer_simulator.flow.pages.introduction import practiced_page, tutoria
 from rastrainer_simulator.flow.pages.result import ResultPage, waiting_page
 from rastrainer_simulator.flow.pages.session_page import SessionPage, clickable_hint
 from rastrainer_simulator.flow.pages.start import start_page
-from rastrainer_simulator.flow.pages.trial import PreparingPage, practice_page, trial_page
 from rastrainer_simulator.flow.pages.trial_review import ReplayPage
 from rastrainer_simulator.flow.procedure_screen import ProcedureScreen
 from rastrainer_simulator.flow.session.chosen_trial import begin_ghost, needs_tutorial
 from rastrainer_simulator.flow.session.open_pages import Page
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.flow.trial_screen import TrialScreen
+from rastrainer_simulator.flow.trial_screen import (
+    PreparingPage,
+    TrialScreen,
+    practice_page,
+    trial_page,
+)
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
 from rastrainer_simulator.flow.tutorial_screen import TutorialScreen
-from rastrainer_simulator.input.inputs import ControlContext, ControlName
-from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.presentation.feedback_event import feedback_event, touch_feedback
+from rastrainer_simulator.input.inputs import ControlName
+from rastrainer_simulator.presentation.feedback_event import touch_feedback
 from rastrainer_simulator.presentation.screen import Hint, Menu, Screen, ScreenMessage, Tone
 from rastrainer_simulator.record.trial_context import GhostReport, GuidanceReport
 from rastrainer_simulator.replay.playback import Playback
@@ -46,9 +49,9 @@ class Flow:
     starts, pauses or aborts leads to the same screen as one of the trainee's.
     """
 
-    def __init__(self, session: TrainingSession, control_loop: ControlLoop) -> None:
+    def __init__(self, session: TrainingSession) -> None:
         self._session = session
-        self._control_loop = control_loop
+        self._control_loop = session.control_loop
         self._arm = ArmEvents()
         self._trial_screen = TrialScreen(session, self._arm)
         self._procedure_screen = ProcedureScreen(session, self._trial_screen)
@@ -64,10 +67,6 @@ class Flow:
         session.pages.show_start()
 
     @property
-    def situation(self) -> ControlContext:
-        return ControlContext.WORK if self._session.pages.top is None else ControlContext.MENU
-
-    @property
     def playback(self) -> Playback | None:
         page = self._session.pages.top
         return page.playback if isinstance(page, ReplayPage) else None
@@ -77,14 +76,12 @@ class Flow:
         tutorial = self._session.tutorial
         return state if tutorial is None else tutorial.practice.shown(state)
 
-    def take(self, result: StepResult) -> None:
+    def process_tick(self, result: StepResult) -> None:
         touch = self.shown(result.state).touch
+        is_back = key_of(result.state.training.instruction) == NOT_RECORDED
+        self._session.feel(result.events, touch, is_back)
         for event in result.events:
-            is_back = key_of(result.state.training.instruction) == NOT_RECORDED
-            felt = feedback_event(event, touch, is_back)
-            if felt is not None:
-                self._session.happened(felt)
-            self._arm.take(event, self._session.tip)
+            self._arm.note_event(event, self._session.tip)
         self._touch = touch
 
     def advance(self, dt: float, state: SimulationState) -> None:
@@ -231,9 +228,6 @@ class Flow:
             session.begin_tutorial()
         return Answer(0, True, data={"isNeeded": True})
 
-    def close(self) -> None:
-        self._session.pages.show(None)
-
     @property
     def _screen_of_work(self) -> TrialScreen | ProcedureScreen | TutorialScreen:
         if self._session.tutorial is not None:
@@ -300,7 +294,7 @@ class Flow:
             self._trial_screen.begin(truth)
             guidance = self._trial_screen.guidance
             self._control_loop.note_display(GuidanceReport(guidance.value))
-            learned = session.tutorials.latest.get(training.trainee)
+            learned = session.history.learned.get(training.trainee)
             if training.task == TRIAL_RUN and learned is not None:
                 self._control_loop.note_display(learned)
             session.view.begin(session.control_loop.setup, truth, session.state)

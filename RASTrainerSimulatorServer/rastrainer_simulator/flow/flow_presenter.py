@@ -10,7 +10,8 @@ import numpy as np
 from rastrainer.protocol import Mode
 from rastrainer_simulator.flow.flow import Flow
 from rastrainer_simulator.flow.operated_views import OperatedView, OperatedViews
-from rastrainer_simulator.flow.seat import instruct, seat_of
+from rastrainer_simulator.flow.pages.result import ResultPage
+from rastrainer_simulator.flow.pages.trial_review import ReplayPage
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.flow.session.services import FlowServices
 from rastrainer_simulator.flow.session.session import TrainingSession
@@ -51,6 +52,8 @@ from rastrainer_simulator.viewpoint.view_control import Pictures, ViewMotion
 REFRESH_S = 0.1
 """How often a screen is rebuilt though nothing was pressed: its clock, distances and axes."""
 
+SENTENCE_S = 20.0
+"""How long the trainee sees a teacher's message: longer than a notice, as it is unexpected."""
 NOTED_S = 0.2
 """How often a moving view is noted in the journal."""
 
@@ -85,7 +88,7 @@ class FlowPresenter(Presenter):
         self._session = TrainingSession(
             control_loop, self.controls, services, preferences, self.happened
         )
-        self._flow = Flow(self._session, control_loop)
+        self._flow = Flow(self._session)
         self.rumble: Callable[[float, float], None] = lambda _strength, _seconds: None
         self._arriving = threading.Lock()
         self._newest = control_loop.latest
@@ -102,7 +105,7 @@ class FlowPresenter(Presenter):
 
     def close(self) -> None:
         self._unsubscribe()
-        self._flow.close()
+        self._session.pages.show(None)
         self._session.view.close()
         self._session.ghost.close()
         self._session.places.close()
@@ -115,7 +118,7 @@ class FlowPresenter(Presenter):
             results, self._results = self._results, []
             newest = self._newest
         for result in results:
-            self._flow.take(result)
+            self._flow.process_tick(result)
             self._is_changed = True
         self.controls.advance(dt)
         self._await_picture(dt, newest)
@@ -142,13 +145,42 @@ class FlowPresenter(Presenter):
         return TraceGuidance() if is_replayed else self._session.places.guidance(now)
 
     def seat(self) -> Seat:
-        count = len(self._control_loop.simulation.truth.fiducials_ras)
-        return seat_of(self._session, self.screen, self.control.holder, count)
+        session, screen = self._session, self.screen
+        training, curriculum = session.training, session.curriculum
+        is_open, assignment_texts = session.has_open_trial, session.assignment_texts
+        trainee = training.trainee if is_open else session.trainee_id
+        scores = [trial.score for trial in session.history.of(trainee) if not trial.is_aborted]
+        wrong = (each for each in screen.warnings if each.tone in (Tone.WARNING, Tone.ERROR))
+        return Seat(
+            trainee=trainee,
+            task=session.task_title(training.task) if is_open else "",
+            count=len(self._control_loop.simulation.truth.fiducials_ras) if is_open else 0,
+            screen="" if screen.menu is None else screen.menu.title,
+            instruction=screen.instruction.text,
+            warnings=tuple(each.text for each in wrong),
+            score=scores[-1] if scores else None,
+            holder=self.control.holder,
+            slicer=session.services.is_slicer_connected(),
+            language=screen.language,
+            assignments="" if curriculum is None else assignment_texts.in_brief(curriculum),
+        )
 
     def instruct(self, order: InstructorOrder, text: str) -> str:
-        problem = instruct(self._session, self._flow, order, text)
-        self._is_changed = True
-        self._settle()
+        say, page = self._session.texts.say, self._session.pages.top
+        is_running = self._session.training.is_running or self._session.tutorial is not None
+        problem = ""
+        if order is InstructorOrder.SAY:
+            said = say("instructor.says", text=text)
+            self._session.notices.add(said, seconds=SENTENCE_S)
+        elif order is InstructorOrder.PAUSE and (is_running or self._flow.playback is not None):
+            self._flow.pause("unseen.instructor")
+        elif order is InstructorOrder.PAUSE:
+            problem = say("instructor.nothing runs")
+        elif isinstance(page, ResultPage):
+            page.show_again()
+        elif not isinstance(page, ReplayPage):
+            problem = say("instructor.no result")
+        self._settle(is_changed=True)
         return problem
 
     @property
@@ -158,8 +190,7 @@ class FlowPresenter(Presenter):
 
     def start_tutorial(self, trainee: str, mode: str) -> Answer:
         answer = self._flow.start_tutorial(trainee, mode)
-        self._is_changed = True
-        self._settle()
+        self._settle(is_changed=True)
         return answer
 
     def view_joined(self, view: int, hello: Hello) -> None:
@@ -228,7 +259,7 @@ class FlowPresenter(Presenter):
         if control not in ControlName._value2member_map_:
             return
         name = ControlName(control)
-        if self._flow.situation is ControlContext.MENU:
+        if self._session.pages.top is not None:
             name = _IN_MENUS.get(name, name)
         self.controls.press(
             self._views.sticks_source(view, self._session.screen_sticks.is_shown), name
@@ -245,8 +276,7 @@ class FlowPresenter(Presenter):
             self._session.pages.choose(name)
         elif not self._session.screen_sticks.pressed(pressed) and control is not None:
             self._flow.pressed(ControlName(pressed))
-        self._is_changed = True
-        self._settle()
+        self._settle(is_changed=True)
 
     def on_text(self, view: int, name: str, value: str) -> None:
         if self.controls.allows(self._views.hand_source(SourceKind.KEYBOARD, view)):
@@ -286,8 +316,7 @@ class FlowPresenter(Presenter):
 
     def pressed(self, control: ControlName) -> None:
         self._flow.pressed(control)
-        self._is_changed = True
-        self._settle()
+        self._settle(is_changed=True)
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
         page = self._session.pages.top
@@ -403,10 +432,12 @@ class FlowPresenter(Presenter):
             if result.events:
                 self._results.append(result)
 
-    def _settle(self) -> None:
+    def _settle(self, is_changed: bool = False) -> None:
+        self._is_changed = self._is_changed or is_changed
         self.shown.show(self._flow.playback)
         self.shown.alter = None if self._session.tutorial is None else self._flow.shown
-        self.controls.enter(self._flow.situation)
+        is_at_work = self._session.pages.top is None
+        self.controls.enter(ControlContext.WORK if is_at_work else ControlContext.MENU)
         holder, setup = self.controls.holder, self._control_loop.setup
         camera = setup.scenario.cameras[self._control_loop.latest.camera]
         yaw_deg, axes = self._views.yaw_deg(holder), setup.settings.axes

@@ -32,7 +32,7 @@ class OperatedView:
     waited_s: float = 0.0
 
     def awaited_share(self, dt: float, task: str) -> float | None:
-        """Return what it has loaded, 0 to 1, while its picture of a task is to be awaited."""
+        """Return its share of a task's picture, 0 to 1; None if nothing needs to be awaited."""
         if self.task is None or (self.task, self.share) == (task, 1.0):
             return None
         self.waited_s += dt

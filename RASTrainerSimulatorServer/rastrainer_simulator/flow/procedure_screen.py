@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import partial
 
 from rastrainer.commands import CommandName
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.arm_screen import ArmScreen
-from rastrainer_simulator.flow.pages.procedure import procedure_page
+from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.plan_marks import ball, depth_ruler, plan_marks
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.trial_screen import TrialScreen
@@ -119,7 +121,7 @@ class ProcedureScreen(ArmScreen):
         return self._hints(self._moving_hints(phase), names, can_tilt=phase is Phase.ALIGNING)
 
     def screen(self) -> Screen:
-        """From the alignment on, the trainee looks into the head."""
+        """The trainee looks into the head as soon as the guide is being aligned."""
         session = self._session
         text = session.texts.again(session.training.instruction)
         return self._shown(
@@ -190,7 +192,7 @@ class ProcedureScreen(ArmScreen):
         up_and_down = session.operator.pair_label(ControlName.MOVE_DOWN, ControlName.MOVE_UP)
         if phase in FED:
             return (Hint(up_and_down, say("hint.feed")),)
-        if session.operator.is_one_of((SourceKind.XR,)):
+        if session.operator.is_one_of(SourceKind.XR):
             is_aligning = phase is Phase.ALIGNING
             return (Hint(say("headset.tilt"), say("hint.tilt")),) if is_aligning else ()
         if phase is not Phase.ALIGNING:
@@ -199,3 +201,43 @@ class ProcedureScreen(ArmScreen):
         tilt = session.operator.pair_label(ControlName.TURN_DOWN, ControlName.TURN_UP)
         turning = (Hint(turn, say("hint.turn")), Hint(tilt, say("hint.tilt")))
         return (*self._movement_hints(), *turning)
+
+
+STAND_OFF_MM = 30.0
+"""Distance of the guide's tip from the entry when the robot aligns it: near, but off the skin."""
+_STEPS: Mapping[Phase, Mapping[str, str]] = {
+    Phase.VERIFYING: {
+        "accept": CommandName.ACCEPT_REGISTRATION,
+        "again": CommandName.REGISTER_AGAIN,
+    },
+    Phase.ALIGNING: {"lock": CommandName.LOCK_GUIDE, "align": CommandName.ALIGN_GUIDE},
+    Phase.DRILLING: {"insert": CommandName.START_INSERTION, "retract": CommandName.RETRACT_DRILL},
+    Phase.INSERTING: {"release": CommandName.RELEASE_INSTRUMENT},
+}
+"""Commands of each phase by the names of their items."""
+
+
+@page_kind("procedure")
+def procedure_page(page: SessionPage) -> PageContent:
+    """Show the actions of the present phase besides moving the tool; none where it has ended."""
+    session, training = page.session, page.session.training
+    steps = _STEPS.get(training.phase, {})
+    can_align = session.control_loop.setup.settings.procedure.self_alignment
+
+    def carry_out(name: str) -> None:
+        page.back()
+        session.do(steps[name], {"standOffMm": STAND_OFF_MM} if name == "align" else {})
+
+    def step(name: str) -> PageRow:
+        procedure = training.procedure
+        waits = name == "accept" and (procedure is None or procedure.registration is None)
+        help_ = page.say("procedure.waits" if waits else f"procedure.{name} help")
+        return page.button(name, partial(carry_out, name), is_enabled=not waits, help=help_)
+
+    names = [name for name in steps if name != "align" or can_align]
+    alignment = session.state.alignment
+    is_far = alignment is not None and not alignment.is_exact
+    title = page.say(f"procedure.title.{training.phase.value}") if names else ""
+    said = (session.texts.again(training.instruction),)
+    rows = (*map(step, names), page.button("work"))
+    return PageContent(title, said, rows=rows, first="align" if is_far else "")

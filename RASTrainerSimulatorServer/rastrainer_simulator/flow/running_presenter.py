@@ -57,7 +57,12 @@ class RunningPresenter:
         for reason in filter(None, (complaint, other)):
             self.presenter.warn(reason, "warning.settings", reason=reason)
         if has_gamepad:
-            self._gamepads = self._started()
+            try:
+                self._gamepads = Gamepads(self)
+                self.presenter.rumble = self._gamepads.rumble
+            except RASTrainerError as error:
+                _log.warning("Gamepads cannot be read: %s.", error)
+                self.presenter.warn("gamepad", "warning.no SDL", reason=str(error))
 
     async def run(self) -> None:
         before = time.monotonic()
@@ -94,16 +99,6 @@ class RunningPresenter:
 
     def gamepad_unknown(self, name: str) -> None:
         self.presenter.warn("gamepad", "warning.unmapped", name=name)
-
-    def _started(self) -> Gamepads | None:
-        try:
-            gamepads = Gamepads(self)
-        except RASTrainerError as error:
-            _log.warning("Gamepads cannot be read: %s.", error)
-            self.presenter.warn("gamepad", "warning.no SDL", reason=str(error))
-            return None
-        self.presenter.rumble = gamepads.rumble
-        return gamepads
 
 
 def _read(path: Path, read: Callable[[Path], T], default: T) -> tuple[T, str]:

@@ -18,7 +18,7 @@ from rastrainer_simulator.flow.tutorial.steps import (
 )
 from rastrainer_simulator.flow.tutorial.tutorial import CENTERED_M, Tutorial
 from rastrainer_simulator.input.inputs import ControlName
-from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_event
+from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 from rastrainer_simulator.presentation.screen import ErrorArrow, Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.record.trial_context import GUIDED_TOUCHES
 from rastrainer_simulator.state import SimulationState, TouchStage
@@ -101,9 +101,9 @@ class TutorialScreen(ArmScreen):
         elif control is ControlName.BEST_VIEW and tutorial.practice.has_points:
             session.view.want_best()
         elif control is ControlName.TOUCH and tutorial.may_touch:
-            self._take(tutorial.touch(session.state))
+            self._play_reply(tutorial.touch(session.state))
         elif control is ControlName.UNDO and tutorial.step in _WITH_UNDO:
-            self._take(tutorial.practice.handle(CommandName.UNDO, session.state))
+            self._play_reply(tutorial.practice.handle(CommandName.UNDO, session.state))
         elif control in (ControlName.MENU, ControlName.PAUSE):
             self.open_menu()
 
@@ -197,14 +197,11 @@ class TutorialScreen(ArmScreen):
             has_paused=self._has_paused,
         )
 
-    def _take(self, reply: TrainingReply) -> None:
+    def _play_reply(self, reply: TrainingReply) -> None:
         """Play the sound of a touch's outcome, and show why it was refused."""
-        session = self._session
         for event in reply.events:
-            self._arm.take(event, session.tip)
-            felt = feedback_event(event, self._state.touch)
-            if felt is not None:
-                session.happened(felt)
+            self._arm.note_event(event, self._session.tip)
+        self._session.feel(reply.events, self._state.touch)
 
     def _sentence(self, step: TutorialStep | None) -> str:
         """Return what to do in a step, as it is done with the device in use."""

@@ -76,6 +76,12 @@ def feedback_of(what: FeedbackEvent, number: int, volume: float = 1.0) -> Feedba
     return Feedback(number, what.value, effect.sound, volume, effect.rumble, rumble_ms)
 
 
+_OF_A_KIND = {
+    EventKind.TOUCH: FeedbackEvent.TOUCH,
+    EventKind.UNDO: FeedbackEvent.UNDO,
+    EventKind.REJECTED: FeedbackEvent.ERROR,
+    EventKind.CHECKPOINT: FeedbackEvent.CHECKPOINT,
+}
 _OF_A_LAYER = {
     FeedLayer.BONE.value: FeedbackEvent.BONE,
     FeedLayer.THROUGH.value: FeedbackEvent.THROUGH,
@@ -92,25 +98,17 @@ def feedback_event(
     `touch` is how the touch is going when it happens: a contact where a touch counts is no alarm.
     `not_recorded` says that a change of the phase undid what the disk had refused.
     """
-    if event.kind is EventKind.TOUCH:
-        return FeedbackEvent.TOUCH
-    if event.kind is EventKind.UNDO:
-        return FeedbackEvent.UNDO
-    if event.kind is EventKind.REJECTED:
-        return FeedbackEvent.ERROR
-    if event.kind is EventKind.CHECKPOINT:
-        return FeedbackEvent.CHECKPOINT
     if event.kind is EventKind.FEED:
         return _OF_A_LAYER.get(event.data["layer"])
     if event.kind is EventKind.PROXIMITY:
         return _of_proximity(Proximity(event.data["from"]), Proximity(event.data["to"]), touch)
-    if event.kind is EventKind.PHASE and not_recorded:
+    if event.kind is not EventKind.PHASE:
+        return _OF_A_KIND.get(event.kind)
+    if not_recorded:
         return FeedbackEvent.ERROR
-    if event.kind is EventKind.PHASE and event.data["phase"] == Phase.REGISTERED:
+    if event.data["phase"] == Phase.REGISTERED:
         return FeedbackEvent.FINISH
-    if event.kind is EventKind.PHASE and event.data["phase"] in PROCEDURE_PHASES:
-        return FeedbackEvent.STEP
-    return None
+    return FeedbackEvent.STEP if event.data["phase"] in PROCEDURE_PHASES else None
 
 
 def touch_feedback(before: TouchStage, after: TouchStage) -> FeedbackEvent | None:

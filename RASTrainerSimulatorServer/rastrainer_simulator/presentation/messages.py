@@ -15,7 +15,6 @@ from typing import Annotated, Any, ClassVar, Literal, cast, get_args
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import (
-    MAX_RECORD_VALUES,
     decode_message_object,
     number,
     numbers,
@@ -529,7 +528,6 @@ ViewInput = (
     | Alive
 )
 """Everything that a view may send."""
-NEWS: Mapping[str, type[News]] = {each.type: each for each in get_args(News)}
 INPUTS: Mapping[str, type[ViewInput]] = {each.type: each for each in get_args(ViewInput)}
 
 
@@ -606,10 +604,3 @@ def read_view_input(content: str) -> ViewInput:
     if not isinstance(kind, str) or kind not in INPUTS:
         raise InputError(f"The type of a message must be one of {', '.join(INPUTS)}.")
     return record_from_json(INPUTS[kind], values, f"The message {kind}", only_known=True)
-
-
-def read_news(content: str) -> News | None:
-    """Return the message of a simulator that a text holds; None for one of a type unknown here."""
-    values = decode_message_object(content, "A message", MAX_RECORD_VALUES)
-    kind = NEWS.get(str(values.get("type")))
-    return None if kind is None else record_from_json(kind, values, f"The message {kind.type}")

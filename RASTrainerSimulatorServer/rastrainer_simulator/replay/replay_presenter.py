@@ -17,7 +17,13 @@ from rastrainer_simulator.replay.playback import PERIOD_S, Playback
 from rastrainer_simulator.state import SimulationState, StepResult
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label, pair_label
 from rastrainer_simulator.viewpoint.best_view import BestView
-from rastrainer_simulator.viewpoint.view_control import STILL, Pictures, ViewControl, orbit_to
+from rastrainer_simulator.viewpoint.view_control import (
+    STILL,
+    Pictures,
+    ViewControl,
+    camera_pose,
+    orbit_to,
+)
 from rastrainer_simulator.viewpoint.view_search import BestViews
 
 STEP_S = 5.0
@@ -177,7 +183,8 @@ class ReplayPresenter(Presenter):
 
     def pictures(self, now: SimulationState) -> Pictures:
         self._view.use(now.camera)
-        return Pictures(self._view.pose(self._playback.setup.scenario.cameras[now.camera]))
+        camera = self._playback.setup.scenario.cameras[now.camera]
+        return Pictures(camera_pose(camera, self._view.orbit))
 
     def instruct(self, order: InstructorOrder, text: str) -> str:  # noqa: ARG002
         """Refuse: a recorded trial takes no orders."""

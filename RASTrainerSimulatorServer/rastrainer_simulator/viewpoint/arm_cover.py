@@ -59,7 +59,10 @@ class ArmCover:
 
         World, m; an eye that is None, as of nobody, sees nothing covered.
         """
-        ends = self._posed(now)
+        poses = {
+            name: now.link_to_world[joint] @ offset for name, (joint, offset) in self._fixed.items()
+        }
+        ends = self._arm.pose({**poses, self._tip: now.tool_tip_to_world}).ends
         for name, eye in eyes.items():
             known = self._covering.get(name, frozenset())
             if eye is None or not len(places):
@@ -80,12 +83,6 @@ class ArmCover:
         off = sight_clearances(eyes, lines, ends, self._arm.radii).min(axis=0) - self._margins
         near, nearer = (set(self._nodes[off < more].tolist()) for more in (self._flicker, 0.0))
         return known & near | nearer
-
-    def _posed(self, now: SimulationState) -> np.ndarray:
-        poses = {
-            name: now.link_to_world[joint] @ offset for name, (joint, offset) in self._fixed.items()
-        }
-        return self._arm.pose({**poses, self._tip: now.tool_tip_to_world}).ends
 
 
 def places_to_see(

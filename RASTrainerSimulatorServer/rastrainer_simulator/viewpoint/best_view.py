@@ -268,7 +268,7 @@ class TouchViews:
         )
         lifted = OFF_SKIN_M * normals
         self._points = {
-            label: ViewedPoint(_vector(place), _vector(normal), (_vector(mark), _vector(number)))
+            label: ViewedPoint(vector(place), vector(normal), (vector(mark), vector(number)))
             for label, place, normal, mark, number in zip(
                 task.labels, places, normals, places + lifted, numbers + lifted, strict=True
             )
@@ -283,7 +283,7 @@ class TouchViews:
             held = None if planned is None else self._held(planned.q)
             sight = self._held(self._robot.home).sight
             camera = self._scenario.cameras["close-up"]
-            front = unit(subtract(_vector(camera.position_mm), _vector(camera.focal_point_mm)))
+            front = unit(subtract(vector(camera.position_mm), vector(camera.focal_point_mm)))
             eyes = [
                 eye
                 for eye in _eyes(point, front)
@@ -318,7 +318,7 @@ class TouchViews:
         links = self._kinematics.links(q)
         tip = links[self._robot.tip.name]
         sight = self._collision.line_of_sight(links)
-        return HeldTool(_vector(tip[:3, 3]), _vector(tip[:3, 2]), sight)
+        return HeldTool(vector(tip[:3, 3]), vector(tip[:3, 2]), sight)
 
     def _on_skin(self, task: Task) -> tuple[np.ndarray, Placement]:
         """Return the skin's normals at a task's fiducials, (n, 3), and where its marks are."""
@@ -328,7 +328,3 @@ class TouchViews:
             placement = place_marks(Skin(self._head), task.fiducials, task.labels)
             self._known[key] = normals, placement
         return self._known[key]
-
-
-def _vector(array: np.ndarray) -> Vector:
-    return vector(array.tolist())

@@ -280,10 +280,6 @@ class ViewControl:
         else:
             self.orbit, self._travel = travel.goal, None
 
-    def pose(self, camera: Camera) -> CameraPose:
-        """Return where the picture's camera stands; `camera` is the scenario's of that name."""
-        return camera_pose(camera, self.orbit)
-
 
 SIDEWAYS = 0.2
 """Sine of the angle between the guide and the picture's right, below which up decides."""
@@ -302,7 +298,12 @@ class Aim(NamedTuple):
 
 def aim(guide: GuideAxis, line: PlannedLine, pictures: Pictures) -> Aim:
     """Return how a planned line lies to the guide."""
-    to_the_right, upward = _axes(pictures)
+    main = pictures.main
+    to_the_right = unit(cross(subtract(main.focal_point, main.position), main.view_up))
+    upward = main.view_up
+    if pictures.yaw_deg is not None:
+        yaw = math.radians(pictures.yaw_deg)
+        to_the_right, upward = (math.sin(yaw), -math.cos(yaw), 0.0), UP
     across = reject(to_the_right, guide.direction)
     if length(across) < SIDEWAYS:
         across = cross(guide.direction, reject(upward, guide.direction))
@@ -314,12 +315,3 @@ def aim(guide: GuideAxis, line: PlannedLine, pictures: Pictures) -> Aim:
         return dot(offset, right), dot(offset, up)
 
     return Aim(beside(line.entry), beside(line.target))
-
-
-def _axes(pictures: Pictures) -> tuple[Vector, Vector]:
-    """Return right and up of the main picture, or of the eyes in a headset."""
-    if pictures.yaw_deg is not None:
-        yaw = math.radians(pictures.yaw_deg)
-        return (math.sin(yaw), -math.cos(yaw), 0.0), UP
-    main = pictures.main
-    return unit(cross(subtract(main.focal_point, main.position), main.view_up)), main.view_up

@@ -57,19 +57,14 @@ class BestViews:
         if trial is None or trial is not self._trial:
             return None
         try:
-            views = self._views_of(trial)
+            known = self._views
+            is_same_robot = known is not None and known[0].setup is trial.setup
+            views = known[1] if known is not None and is_same_robot else TouchViews(trial.setup)
+            if known is None or known[0] is not trial:
+                views.begin(trial.task, trial.head_to_world)
+                self._views = trial, views
             views.views(label)
         except (RASTrainerError, OSError):
             _log.exception("The best views of %s cannot be found", trial.task.name)
             return None
         return None if q is None else views.best(label, q)
-
-    def _views_of(self, trial: _ViewedTrial) -> TouchViews:
-        known = self._views
-        if known is not None and known[0] is trial:
-            return known[1]
-        is_same_robot = known is not None and known[0].setup is trial.setup
-        views = known[1] if known is not None and is_same_robot else TouchViews(trial.setup)
-        views.begin(trial.task, trial.head_to_world)
-        self._views = trial, views
-        return views

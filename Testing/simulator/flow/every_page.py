@@ -14,27 +14,25 @@ from rastrainer.protocol import MAX_ASSIGNMENTS, AssignmentState, GoalKind, Phas
 from rastrainer.study.ratings import FORMS
 from rastrainer.study_messages import AssignmentStanding, CurriculumMessage, StudyStep
 from rastrainer.trial.trial_feedback import PastTrial
-from rastrainer_simulator.flow import pages
+from rastrainer_simulator.flow import pages, procedure_screen, trial_screen
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.pages import (
     controls,
     experiment,
     introduction,
-    own_trials,
     procedure,
     result,
     start,
     trainee_id,
-    trial,
     trial_review,
 )
-from rastrainer_simulator.flow.pages.own_trials import MOST_TRIALS
 from rastrainer_simulator.flow.pages.session_page import PageKind, SessionPage
 from rastrainer_simulator.flow.pages.trainee_id import QuestionnairePage
-from rastrainer_simulator.flow.pages.trial import MatchReport
+from rastrainer_simulator.flow.pages.trial_review import MOST_TRIALS
 from rastrainer_simulator.flow.session.open_pages import OpenPages
 from rastrainer_simulator.flow.session.preferences import InstructorLock
 from rastrainer_simulator.flow.session.trainee_history import OwnTrial
+from rastrainer_simulator.flow.trial_screen import MatchReport
 from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.presentation.screen import Screen, without_secrets
 from rastrainer_simulator.rating.rating_presenter import DomainPage, LoadingPage, RatedPage
@@ -222,9 +220,8 @@ def _screens_of_raters(texts, language: str) -> dict[str, Screen]:
 
 def names_of_pages() -> set[str]:
     """Return the names of all existing pages."""
-    modules = (
-        import_module(each.name) for each in iter_modules(pages.__path__, f"{pages.__name__}.")
-    )
+    names = (each.name for each in iter_modules(pages.__path__, f"{pages.__name__}."))
+    modules = (trial_screen, procedure_screen, *map(import_module, names))
     found = [value for module in modules for value in vars(module).values()]
     kinds = [value for value in found if isinstance(value, PageKind)]
     classes = [v for v in found if isinstance(v, type) and issubclass(v, SessionPage) and v.name]
@@ -270,21 +267,21 @@ def _pages(session) -> Iterator[SessionPage]:
     yield experiment.ScenarioPage(session)
     yield QuestionnairePage(session, QUESTIONNAIRE)
     for over_a_trial in (
-        trial.trial_page,
-        trial.PreparingPage,
-        trial.abort_page,
-        trial.practice_page,
-        trial.complete_page,
+        trial_screen.trial_page,
+        trial_screen.PreparingPage,
+        trial_screen.abort_page,
+        trial_screen.practice_page,
+        trial_screen.complete_page,
     ):
         yield over_a_trial(session)
-    yield trial.match_page(session, _matched())
+    yield trial_screen.match_page(session, _matched())
     yield result.waiting_page(session)
     yield result.ResultPage(session)
     # No trial has been played here in which the point could lie.
     session.state = replace(session.state, training=replace(SCORED, touches=()))
     yield trial_review.ErrorsPage(session)
     session.state = replace(session.state, training=AT_PROCEDURE)
-    yield procedure.procedure_page(session)
+    yield procedure_screen.procedure_page(session)
     session.state = replace(session.state, training=PROCEDURE_SCORED)
     yield procedure.ProcedureErrorsPage(session)
     yield procedure.ProcedureLinesPage(session)
@@ -293,5 +290,5 @@ def _pages(session) -> Iterator[SessionPage]:
     yield introduction.tutorial_done_page(session, LEARNED)
     yield introduction.practiced_page(session, LEARNED)
     session.history.own = lambda _trainee: OWN_TRIALS
-    yield own_trials.own_trials_page(session)
+    yield trial_review.own_trials_page(session)
     yield trial_review.ReplayPage(session, _Loading(), begins_at_worst=False)

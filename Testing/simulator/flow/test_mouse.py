@@ -11,7 +11,7 @@ from rastrainer.journal.journal_file import read_journal
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
-from rastrainer_simulator.flow.session.trainee_history import DoneTasks, FinishedTutorials
+from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
 from rastrainer_simulator.flow.tutorial.steps import TutorialStep
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
@@ -53,7 +53,7 @@ def test_a_previously_used_id_is_one_click_away(clicking, outside):
     clicking.start("task-1", "P21")
     clicking.submit("Abort")
     clicking.until_menu("experiment")
-    clicking.presenter._session.progress = DoneTasks(outside.services.records)
+    clicking.presenter._session.history = TraineeHistory(outside.services.records)
     clicking.hands.click("mode")
     clicking.hands.click("clicked")
     clicking.hands.click("known P21")
@@ -173,7 +173,7 @@ def test_the_tutorial_and_a_scored_trial_are_done_with_the_mouse_alone(newcomer,
     player.play()
     assert {step for step, _ in player.read} >= {TutorialStep.UNDO, TutorialStep.PAUSE}
     assert newcomer.menu.name == "tutorial-done"
-    finished = FinishedTutorials(outside.services.records).latest("P7")
+    finished = TraineeHistory(outside.services.records).learned.get("P7")
     assert (finished.device, finished.mode) == ("mouse", "desktop")
     assert max(finished.errors_mm) < 3.0
     newcomer.choose("trial-run")

@@ -58,6 +58,7 @@ def test_every_way_to_steer_the_tool_can_be_chosen():
     [
         ("7", "must be a JSON object"),
         ('{"color": "red"}', 'there is no "color"; use language, volume, muted'),
+        ('{"self_alignment": true}', 'there is no "self_alignment"; use .*, selfAlignment, view'),
         ('{"volume": 55}', "volume must be one of 0, 10, "),
         ('{"volume": true}', "volume must be one of 0, 10, "),
         ('{"muted": 1}', "muted must be one of false, true"),

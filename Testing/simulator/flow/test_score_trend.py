@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rastrainer_simulator.flow.session.trainee_history import DoneTasks, ScoreHistory
+from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
 from Testing.domain.trial.trial_records import make_traced
 from Testing.simulator.flow.scored_journals import (
     SCORES,
@@ -18,7 +18,7 @@ from Testing.simulator.flow.scored_journals import (
 @pytest.fixture
 def history_of(tmp_path):
     """Return what reads a folder's history as a session does."""
-    return lambda: ScoreHistory(tmp_path, DoneTasks(tmp_path).journals)
+    return lambda: TraineeHistory(tmp_path)
 
 
 def test_only_scores_of_the_same_mode_by_fiducials_are_compared(tmp_path, history_of):

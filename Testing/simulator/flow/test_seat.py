@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rastrainer_simulator.flow.seat import SENTENCE_S
+from rastrainer_simulator.flow.flow_presenter import SENTENCE_S
 from rastrainer_simulator.presentation.messages import InstructorOrder
 from rastrainer_simulator.presentation.screen import Tone
 from Testing.simulator.flow.trainee import STEP_S

@@ -13,8 +13,8 @@ from rastrainer.protocol import MIN_TRACE_POINTS, Phase, RegistrationMethod
 from rastrainer.registration.surface_error import COVERED_MM
 from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.flow.pages.trial import MatchReport, match_page, match_report
 from rastrainer_simulator.flow.session.chosen_trial import registration_method, start_task
+from rastrainer_simulator.flow.trial_screen import MatchReport, match_page, match_report
 from rastrainer_simulator.presentation.presenter import TraceGuidance
 from rastrainer_simulator.state import TrainingState
 from rastrainer_simulator.training.replies import given

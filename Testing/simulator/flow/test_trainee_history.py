@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from rastrainer.journal.journal_file import NO_LINE, encode_line
-from rastrainer_simulator.flow.session.trainee_history import DoneTasks
+from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
 
 HEAD = "colin27"
 ORDER = ("trial-run", "task-1", "task-2")
@@ -36,7 +36,7 @@ def test_the_trial_run_counts_once_all_points_were_touched_or_its_time_was_up(
 ):
     write_journal(tmp_path, "1", "P01", "trial-run", entry)
     write_journal(tmp_path, "2", "P01", "task-2", entry)
-    progress = DoneTasks(tmp_path)
+    progress = TraineeHistory(tmp_path)
     assert progress.has_done("P01", HEAD, "trial-run") is is_done
     assert not progress.has_done("P01", HEAD, "task-2")
 
@@ -46,7 +46,7 @@ def test_a_task_counts_once_registered(tmp_path):
     write_journal(tmp_path, "2", "P01", "task-1", "registered", "scored")
     write_journal(tmp_path, "3", "P01", "task-2", "aborted")
     write_journal(tmp_path, "4", "P02", "task-1", "registered")
-    progress = DoneTasks(tmp_path)
+    progress = TraineeHistory(tmp_path)
     assert [progress.has_done("P01", HEAD, task) for task in ORDER] == [True, True, False]
     assert progress.missing_before("P01", HEAD, "task-2", ORDER) is None
     # Who has done a task skipped the trial run.
@@ -57,8 +57,8 @@ def test_a_task_counts_once_registered(tmp_path):
 
 def test_a_task_on_one_head_does_not_count_for_another(tmp_path):
     write_journal(tmp_path, "1", "P01", "trial-run", "registered", scenario="other")
-    progress = DoneTasks(tmp_path)
-    progress.note("P01", "other", "task-1")
+    progress = TraineeHistory(tmp_path)
+    progress.note_done("P01", "other", "task-1")
     assert progress.missing_before("P01", "other", "task-2", ORDER) is None
     assert progress.missing_before("P01", HEAD, "task-2", ORDER) == "trial-run"
 
@@ -72,10 +72,10 @@ def test_files_that_are_not_journals_count_for_nothing(tmp_path):
     (tmp_path / "noise.journal").write_bytes(bytes(range(256)) * 100)
     (tmp_path / "folder.journal").mkdir()
     write_journal(tmp_path, "odd", ["P03"], {"task": 1}, "registered")
-    progress = DoneTasks(tmp_path)
+    progress = TraineeHistory(tmp_path)
     assert progress.has_done("P01", HEAD, "task-1")
     assert not progress.has_done("P02", HEAD, "task-1")
 
 
 def test_a_missing_folder_counts_for_nothing(tmp_path):
-    assert not DoneTasks(tmp_path / "later").has_done("P01", HEAD, "task-1")
+    assert not TraineeHistory(tmp_path / "later").has_done("P01", HEAD, "task-1")

@@ -12,7 +12,7 @@ from rastrainer.study_messages import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow import trial_screen
-from rastrainer_simulator.flow.session.trainee_history import DoneTasks
+from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
 from rastrainer_simulator.presentation.screen import ScreenMessage, Tone
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from Testing.simulator.flow.trainee import STEP_S
@@ -101,7 +101,7 @@ def test_completed_tasks_are_still_known_after_a_restart_of_the_simulator(traine
     assert trainee.item("trial-run").value == "done"
     trainee.close()
     loop.stop()
-    progress, scenario = DoneTasks(outside.services.records), loop.setup.scenario.name
+    progress, scenario = TraineeHistory(outside.services.records), loop.setup.scenario.name
     assert progress.has_done("P07", scenario, "trial-run")
     assert not progress.has_done("P07", scenario, "task-1")
     assert not progress.has_done("P08", scenario, "trial-run")

@@ -15,7 +15,7 @@ from rastrainer.study_messages import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.arm import start_tip
 from rastrainer_simulator.flow.session.session import TUTORIAL_VIEW
-from rastrainer_simulator.flow.session.trainee_history import FinishedTutorials
+from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
 from rastrainer_simulator.flow.tutorial.steps import TutorialStep
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.record.trial_context import TutorialOutcome
@@ -108,7 +108,7 @@ def test_the_tutorial_is_played_and_leads_to_the_trial_run(who, device, says, re
     assert says[0] in read[TutorialStep.RIGHT]
     assert says[1] in read[TutorialStep.TURN_VIEW]
     assert trainee.menu.name == "tutorial-done"
-    finished = FinishedTutorials(outside.services.records).latest.get("P07")
+    finished = TraineeHistory(outside.services.records).learned.get("P07")
     assert (finished.device, finished.mode, finished.trainee) == (device.value, "desktop", "P07")
     assert 5.0 < finished.duration_s < 60.0
     assert set(finished.step_times_s) == {step.value for step, _ in player.read}
@@ -323,7 +323,7 @@ def test_a_study_decides_by_its_protocol_whether_the_tutorial_is_required(menu, 
 
 
 def test_in_another_mode_another_device_must_be_learned(menu):
-    session_of(menu).tutorials._note(LEARNED)
+    session_of(menu).history.note_tutorial(LEARNED)
     menu.step(20)
     assert menu.item("trial-run").is_enabled
     session_of(menu).mode = "hmd"
@@ -343,7 +343,7 @@ def test_slicer_opens_the_tutorial_before_the_trial_run(trainee):
     other = presenter.start_tutorial("P08", "desktop")
     assert (other.ok, other.message[:3]) == (False, "P07")
     session.end_tutorial()
-    session.tutorials._note(LEARNED)
+    session.history.note_tutorial(LEARNED)
     assert presenter.start_tutorial("P07", "desktop").data == {"isNeeded": False}
     trainee.start("task-1")
     trainee.until(lambda: instruction(trainee) == "P07, touch point 1.", "the trial")
@@ -389,16 +389,16 @@ def test_the_tutorial_pauses_while_nobody_sees_it(learner):
 
 
 def test_a_finished_tutorial_is_remembered_per_device(tmp_path):
-    tutorials = FinishedTutorials(tmp_path / "records")
-    tutorials.keep(LEARNED)
-    tutorials.keep(replace(LEARNED, trainee="P08", device="gamepad"))
-    again = FinishedTutorials(tmp_path / "records")
-    assert again.latest.get("P07") == LEARNED
+    tutorials = TraineeHistory(tmp_path / "records")
+    tutorials.keep_tutorial(LEARNED)
+    tutorials.keep_tutorial(replace(LEARNED, trainee="P08", device="gamepad"))
+    again = TraineeHistory(tmp_path / "records")
+    assert again.learned.get("P07") == LEARNED
     known = [
         (name, device.value)
         for name in ("P07", "P08", "P09")
         for device in SourceKind
-        if again.has_done(name, device)
+        if again.has_learned(name, device)
     ]
     assert known == [("P07", "keyboard"), ("P08", "gamepad"), ("P08", "keyboard")]
 
@@ -420,7 +420,7 @@ def test_a_file_that_does_not_hold_a_tutorial_counts_for_nothing(tmp_path, chang
     (tmp_path / "1.tutorial").write_text(json.dumps(values))
     (tmp_path / "2.tutorial").write_text("[")
     (tmp_path / "3.tutorial").mkdir()
-    assert FinishedTutorials(tmp_path).latest.get(values["trainee"]) is None
+    assert TraineeHistory(tmp_path).learned.get(values["trainee"]) is None
 
 
 def test_a_tutorial_that_cannot_be_saved_counts_until_the_simulator_ends(learner, outside):

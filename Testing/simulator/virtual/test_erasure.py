@@ -9,7 +9,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
 from rastrainer.study.trainee_data import erase_trainee
 from rastrainer_simulator.cli.main import main
-from rastrainer_simulator.flow.session.trainee_history import FinishedTutorials
+from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.report.report import report_html
@@ -25,7 +25,7 @@ def test_no_byte_of_the_trainees_data_is_left(copied, tmp_path, capsys):
         ids = [trial.record.trial_id.encode() for trial in study.history("V0002")]
     for name in ("V0001", "V0002"):
         learned = TutorialOutcome(name, "keyboard", "desktop", 112.0, 2.3, (1.2, 0.8, 0.6))
-        FinishedTutorials(copied / RECORDS).keep(learned)
+        TraineeHistory(copied / RECORDS).keep_tutorial(learned)
     assert all(word in bytes_below(copied) for word in (b"V0002", *ids))
     words = ["delete-trainee", copied / DATABASE, "V0002", "--records", copied / RECORDS]
     assert main([str(word) for word in words]) == 2
@@ -40,8 +40,8 @@ def test_no_byte_of_the_trainees_data_is_left(copied, tmp_path, capsys):
     for word in (b"V0002", *ids):
         assert word not in left
     assert b"V0001" in left
-    again = FinishedTutorials(copied / RECORDS)
-    assert (again.latest.get("V0001") is None, again.latest.get("V0002")) == (False, None)
+    again = TraineeHistory(copied / RECORDS)
+    assert (again.learned.get("V0001") is None, again.learned.get("V0002")) == (False, None)
     assert len(journals(copied / RECORDS)) == 2
 
 

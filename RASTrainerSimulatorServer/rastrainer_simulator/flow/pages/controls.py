@@ -88,8 +88,12 @@ class PadTestPage(SessionPage):
             )
             for number, (controls, position) in enumerate(pairs)
         )
-        fine = Fact(self.say("control.fine"), self.say("test.yes" if held.fine else "test.no"))
-        facts = (fine, *(self._input(*pressed) for pressed in self._pressed))
+        facts = [Fact(self.say("control.fine"), self.say("test.yes" if held.fine else "test.no"))]
+        for device, name in self._pressed:
+            table = self.session.controls.bindings.table(device)
+            works = [self.say(f"control.{each.value}") for each in table if name in table[each]]
+            label = self.session.operator.input_label(device, name)
+            facts.append(Fact(label, self.session.texts.listed(works) or self.say("test.nothing")))
         text = self.say("test.text", menu=self.session.operator.label(ControlName.MENU))
         return PageContent(self.say("test.title"), (text,), facts, (*axes, self.button("back")))
 
@@ -99,13 +103,6 @@ class PadTestPage(SessionPage):
         self._pressed = [(device, name), *self._pressed][:REMEMBERED]
         self.session.happened(FeedbackEvent.TEST)
         return True
-
-    def _input(self, device: InputDevice, name: str) -> Fact:
-        table = self.session.controls.bindings.table(device)
-        works = [control for control, inputs in table.items() if name in inputs]
-        names = self.session.texts.listed(self.say(f"control.{each.value}") for each in works)
-        label = self.session.operator.input_label(device, name)
-        return Fact(label, names or self.say("test.nothing"))
 
 
 GROUPS = {

@@ -8,19 +8,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
-from rastrainer.errors import InputError
 from rastrainer.protocol import TRIAL_RUN, Mode, StepKind, TutorialRule
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.scenario import method_of, playable_methods
 from rastrainer.study_messages import AssignmentStanding, StudyStep
 from rastrainer.trial.scoring import PASS_MARK
-from rastrainer_simulator.flow.pages.own_trials import own_trials_page
 from rastrainer_simulator.flow.pages.session_page import SessionPage, stepped
 from rastrainer_simulator.flow.pages.trainee_id import (
     KeyboardPage,
     QuestionnairePage,
     clicked_id_page,
 )
+from rastrainer_simulator.flow.pages.trial_review import own_trials_page
 from rastrainer_simulator.flow.session.chosen_trial import (
     assignment_obstacle,
     has_learned,
@@ -117,10 +116,10 @@ class ExperimentPage(SessionPage):
         label = self.say("experiment.trainee")
         item = MenuItem("trainee", label, ItemKind.TEXT, session.trainee, help=help_)
         enter = self.open_page(KeyboardPage, self._write_id)
-        if session.operator.is_one_of((SourceKind.KEYBOARD, SourceKind.MOUSE)):
+        if session.operator.is_one_of(SourceKind.KEYBOARD, SourceKind.MOUSE):
             enter = partial(session.pages.move, 1)
         yield PageRow(item, enter, write=self._write_id)
-        if session.operator.is_one_of((SourceKind.MOUSE,)):
+        if session.operator.is_one_of(SourceKind.MOUSE):
             yield self.button("clicked", self.open_page(clicked_id_page, self._write_id))
 
     def _write_id(self, value: str) -> None:
@@ -161,9 +160,9 @@ class ExperimentPage(SessionPage):
     def _skip(self, what: str) -> None:
         session = self.session
         if what == "tutorial":
-            session.tutorials.skipped.add(session.trainee_id)
+            session.history.skipped_tutorials.add(session.trainee_id)
         else:
-            session.progress.skipped.add((session.trainee_id, session.scenario.name))
+            session.history.skipped_runs.add((session.trainee_id, session.scenario.name))
         session.pages.focus(self._next_task())
 
     def _task(self, name: str) -> PageRow:
@@ -191,23 +190,22 @@ class ExperimentPage(SessionPage):
             return "answer"
         if needs_tutorial(session) and not tutorial_obstacle(session):
             return "tutorial"
-        best = session.next_assignment
+        curriculum = session.curriculum
+        best = None if curriculum is None else curriculum.find(curriculum.next)
         if best is not None and not assignment_obstacle(session, best):
             return "assignments"
         outcomes = ("", "failed") if step is None else ("",)
         trainee, head = session.trainee_id, session.scenario.name
         for name in (task.name for task in session.scenario.tasks):
-            is_left_out = name == TRIAL_RUN and session.progress.needs_no_trial_run(trainee, head)
+            is_left_out = name == TRIAL_RUN and session.history.needs_no_trial_run(trainee, head)
             is_to_do = session.outcome_of(name) in outcomes and not is_left_out
             if is_to_do and not obstacle(session, name):
                 return name
         return "mode" if trainee else ""
 
     def _open_questionnaire(self, step: StudyStep) -> None:
-        try:
+        with self.session.complaining():
             self.session.pages.open(QuestionnairePage(self.session, step))
-        except InputError as error:
-            self.session.complain(str(error))
 
 
 def open_experiment(

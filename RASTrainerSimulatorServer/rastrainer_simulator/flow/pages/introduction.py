@@ -71,7 +71,7 @@ def tutorial_page(page: SessionPage) -> PageContent:
 
     def leave() -> None:
         if is_skipped:
-            session.tutorials.skipped.add(session.trainee_id)
+            session.history.skipped_tutorials.add(session.trainee_id)
         session.end_tutorial()
         open_experiment(session)
 

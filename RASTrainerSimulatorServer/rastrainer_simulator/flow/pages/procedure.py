@@ -1,25 +1,22 @@
-"""The pages of a procedure: the menu of each phase, and after the score its errors and lines."""
+"""The pages of a scored procedure: its errors and lines."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
-from rastrainer.commands import CommandName
 from rastrainer.procedure.plan import MAX_TRAJECTORIES
-from rastrainer.protocol import Phase
 from rastrainer.trial.procedure_outcome import (
     ANGLE_LIMIT_DEG,
     ENTRY_LIMIT_MM,
     PLUNGE_LIMIT_MM,
     TARGET_LIMIT_MM,
 )
-from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind
+from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.trial_review import ErrorsPage
-from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
+from rastrainer_simulator.flow.session.open_pages import PageContent
 from rastrainer_simulator.flow.session.plan_marks import (
     PLACED,
     PLANNED,
@@ -28,7 +25,7 @@ from rastrainer_simulator.flow.session.plan_marks import (
     placed_line,
 )
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.flow.session.verdict import detail_number
+from rastrainer_simulator.flow.session.trainee_history import detail_number
 from rastrainer_simulator.presentation.screen import (
     ErrorArrow,
     Fact,
@@ -37,50 +34,6 @@ from rastrainer_simulator.presentation.screen import (
 )
 from rastrainer_simulator.state import TrialResult
 from rastrainer_simulator.trial_state import PlannedLine
-
-STAND_OFF_MM = 30.0
-"""Distance of the guide's tip from the entry when the robot aligns it: near, but off the skin."""
-_COMMANDS: Mapping[str, str] = {
-    "accept": CommandName.ACCEPT_REGISTRATION,
-    "again": CommandName.REGISTER_AGAIN,
-    "lock": CommandName.LOCK_GUIDE,
-    "align": CommandName.ALIGN_GUIDE,
-    "insert": CommandName.START_INSERTION,
-    "retract": CommandName.RETRACT_DRILL,
-    "release": CommandName.RELEASE_INSTRUMENT,
-}
-_ITEMS: Mapping[Phase, tuple[str, ...]] = {
-    Phase.VERIFYING: ("accept", "again"),
-    Phase.ALIGNING: ("lock", "align"),
-    Phase.DRILLING: ("insert", "retract"),
-    Phase.INSERTING: ("release",),
-}
-
-
-@page_kind("procedure")
-def procedure_page(page: SessionPage) -> PageContent:
-    """Show the actions of the present phase besides moving the tool; none where it has ended."""
-    session, training = page.session, page.session.training
-    can_align = session.control_loop.setup.settings.procedure.self_alignment
-
-    def carry_out(name: str) -> None:
-        page.back()
-        session.do(_COMMANDS[name], {"standOffMm": STAND_OFF_MM} if name == "align" else {})
-
-    def step(name: str) -> PageRow:
-        procedure = training.procedure
-        waits = name == "accept" and (procedure is None or procedure.registration is None)
-        help_ = page.say("procedure.waits" if waits else f"procedure.{name} help")
-        return page.button(name, partial(carry_out, name), is_enabled=not waits, help=help_)
-
-    names = [n for n in _ITEMS.get(training.phase, ()) if n != "align" or can_align]
-    alignment = session.state.alignment
-    is_far = alignment is not None and not alignment.is_exact
-    title = page.say(f"procedure.title.{training.phase.value}") if names else ""
-    said = (session.texts.again(training.instruction),)
-    rows = (*map(step, names), page.button("work"))
-    return PageContent(title, said, rows=rows, first="align" if is_far else "")
-
 
 LONGEST_NAME = 60
 _SPLIT = (

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import contextlib
-import math
 from dataclasses import replace
 from functools import partial
-from typing import Any, TypeGuard
+from typing import Any
 
-from rastrainer.errors import InputError
 from rastrainer.json_checks import is_number
 from rastrainer.trial.scoring import (
     COMMON_BIAS_LIMIT_MM,
@@ -29,7 +27,7 @@ from rastrainer_simulator.flow.pages.trial_review import ErrorsPage, ReplayPage
 from rastrainer_simulator.flow.session.local_scorer import SCORED_BY_SIMULATOR
 from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.flow.session.verdict import (
+from rastrainer_simulator.flow.session.trainee_history import (
     beyond_limits,
     detail_number,
     is_passed,
@@ -71,7 +69,8 @@ def _following(session: TrainingSession) -> str:
 
 def _onward(page: SessionPage) -> tuple[PageRow, ...]:
     session = page.session
-    best, words = session.next_assignment, session.assignment_texts
+    curriculum, words = session.curriculum, session.assignment_texts
+    best = None if curriculum is None else curriculum.find(curriculum.next)
     following, task = _following(session), session.training.task
     title = session.task_title(following) if best is None else words.label(best)
     again = page.say("result.again", task=session.task_title(task))
@@ -205,11 +204,8 @@ class ResultPage(SessionPage):
     def show_again(self, begins_at_worst: bool = False) -> None:
         """Load the trial once, when it is first asked for."""
         session = self.session
-        try:
+        with session.complaining():
             self._loading = self._loading or session.load_trial(session.training.trial_id)
-        except InputError as error:
-            session.complain(str(error))
-        else:
             session.pages.open(ReplayPage(session, self._loading, begins_at_worst))
 
 
@@ -257,7 +253,7 @@ def _worded(texts: Texts, said: Any) -> str:
 
 
 def _value(texts: Texts, value: Any) -> Any:
-    if _is_number(value):
+    if is_number(value):
         return value
     if isinstance(value, dict):
         # A part has no parts itself, however deep the message may be.
@@ -267,8 +263,4 @@ def _value(texts: Texts, value: Any) -> Any:
 
 def _plain(values: Any) -> dict[str, Any]:
     items = values.items() if isinstance(values, dict) else ()
-    return {name: value for name, value in items if isinstance(value, str) or _is_number(value)}
-
-
-def _is_number(value: object) -> TypeGuard[float]:
-    return is_number(value) and math.isfinite(value)
+    return {name: value for name, value in items if isinstance(value, str) or is_number(value)}

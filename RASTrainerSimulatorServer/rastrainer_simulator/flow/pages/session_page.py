@@ -32,7 +32,7 @@ class SessionPage(Page):
 
 @dataclass(frozen=True)
 class PageKind:
-    """A kind of page without a state of its own.
+    """A kind of page that has no state.
 
     Attributes:
         show: makes what a page shows now; it is given the page, and the arguments of the call.

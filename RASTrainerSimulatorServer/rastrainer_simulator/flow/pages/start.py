@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from functools import partial
 
-from rastrainer.errors import InputError
 from rastrainer_simulator.flow.pages.controls import controls_page
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.introduction import IntroductionPage
@@ -26,7 +25,7 @@ from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
 
 @page_kind("start", leave=lambda _session: None)
 def start_page(page: SessionPage) -> PageContent:
-    """Show the first menu. Who has not read the introduction is led through it once."""
+    """Show the first menu. It leads new trainees through the introduction once."""
     has_read = page.session.has_read_introduction
     rows = (
         page.button("train", page.open_page(ExperimentPage if has_read else IntroductionPage)),
@@ -138,12 +137,9 @@ class PinPage(SessionPage):
 
     def advance(self, dt: float) -> None:  # noqa: ARG002
         """Unlock and go back, or say why not, once the PIN has been checked."""
-        session = self.session
-        try:
+        session, answer = self.session, None
+        with session.complaining():
             answer = session.lock.take_answer()
-        except InputError as error:
-            session.complain(str(error))
-            return
         if answer is None:
             return
         self._pin = ""

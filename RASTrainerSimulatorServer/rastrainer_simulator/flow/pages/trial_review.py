@@ -1,17 +1,18 @@
-"""Reviewing a scored trial: the errors of its touches on the head, and its replay."""
+"""Reviewing scored trials: the errors of touches on the head, replays, and the list of trials."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 from rastrainer.errors import InputError
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.flow.pages.session_page import SessionPage, clickable_hint
-from rastrainer_simulator.flow.session.open_pages import PageContent
+from rastrainer_simulator.flow.pages.session_page import SessionPage, clickable_hint, page_kind
+from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.plan_marks import plan_marks
 from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.flow.session.trainee_history import OwnTrial
 from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice, SourceKind
-from rastrainer_simulator.presentation.feedback_event import feedback_event
 from rastrainer_simulator.presentation.screen import (
     ErrorArrow,
     Hint,
@@ -22,7 +23,6 @@ from rastrainer_simulator.presentation.screen import (
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
 from rastrainer_simulator.replay.replay_presenter import ACTIONS, Player, PlayerAction
-from rastrainer_simulator.state import StepResult
 from rastrainer_simulator.vectors import Vector, add, length, scale, subtract
 
 GOOD_MM = 2.0
@@ -60,7 +60,7 @@ class ErrorsPage(SessionPage):
         )
         back = Hint(session.operator.label(ControlName.BACK), self.say("hint.result"), "back")
         hints: tuple[Hint, ...] = (back,)
-        if not session.operator.is_one_of((SourceKind.XR,)):
+        if not session.operator.is_one_of(SourceKind.XR):
             # In a headset the trainee looks around by turning the head.
             pairs = (ControlName.LEFT, ControlName.RIGHT), (ControlName.UP, ControlName.DOWN)
             turn = self.say("hint.turn_view")
@@ -173,7 +173,7 @@ class ReplayPage(SessionPage):
             return
         self.playback = Playback(trial, session.control_loop.setup)
         self._player = Player(self.playback, self.back)
-        self.playback.subscribe(self._feel)
+        self.playback.subscribe(lambda result: session.feel(result.events, result.state.touch))
         if self._begins_at_worst and trial.worst is None:
             session.complain(self.say("replay.no worst"))
         elif self._begins_at_worst:
@@ -184,8 +184,36 @@ class ReplayPage(SessionPage):
         if action is PlayerAction.WORST and player.playback.trial.worst is not None:
             self.session.view.want_best()
 
-    def _feel(self, result: StepResult) -> None:
-        for event in result.events:
-            felt = feedback_event(event, result.state.touch)
-            if felt is not None:
-                self.session.happened(felt)
+
+MOST_TRIALS = 12
+_VERDICTS = {True: "experiment.passed", False: "experiment.failed", None: "experiment.done"}
+
+
+@page_kind("own-trials")
+def own_trials_page(page: SessionPage) -> PageContent:
+    """List the newest trials first; choosing one shows it again."""
+    session, say = page.session, page.say
+
+    def show(trial_id: str) -> None:
+        with session.complaining():
+            loading = session.load_trial(trial_id)
+            session.pages.open(ReplayPage(session, loading, begins_at_worst=False))
+
+    def row(each: OwnTrial) -> PageRow:
+        past = each.past
+        is_shown = each.scenario == session.scenario.name and not past.is_aborted
+        verdict = say(_VERDICTS[each.is_passed])
+        when = each.started_utc[:16].replace("T", " ")
+        return page.button(
+            f"trial {past.trial_id}",
+            partial(show, past.trial_id),
+            f"{session.task_title(past.task)} ({when} UTC)",
+            value=verdict if past.is_aborted else f"{past.score:.0f} / 100, {verdict}",
+            is_enabled=is_shown,
+            help=say("own-trials.help" if is_shown else "own-trials.not shown"),
+        )
+
+    trainee = session.trainee_id
+    trials = reversed(session.history.own(trainee)[-MOST_TRIALS:])
+    back = page.button("back", label=say("experiment.back"))
+    return PageContent(say("own-trials.title", trainee=trainee), rows=(*map(row, trials), back))

@@ -141,7 +141,7 @@ def _missing_before(session: TrainingSession, task: str, is_assigned: bool) -> s
     order = [
         each.name for each in scenario.tasks if not is_assigned or each.name in (TRIAL_RUN, task)
     ]
-    missing = session.progress.missing_before(session.trainee_id, scenario.name, task, order)
+    missing = session.history.missing_before(session.trainee_id, scenario.name, task, order)
     if not missing:
         return ""
     key = "experiment.trial run first" if missing == TRIAL_RUN else "experiment.order"
@@ -199,7 +199,7 @@ def skippable(session: TrainingSession) -> str:
     order = [task.name for task in session.scenario.tasks]
     if _unready(session) or not may_skip(session) or session.preferences.order == "any":
         return ""
-    if session.progress.missing_before(trainee, head, order[-1], order) != TRIAL_RUN:
+    if session.history.missing_before(trainee, head, order[-1], order) != TRIAL_RUN:
         return ""
     return "tutorial" if needs_tutorial(session) else "trial run"
 
@@ -211,13 +211,13 @@ def usual_id(session: TrainingSession) -> str:
     """
     if session.services.is_slicer_connected() or session.lock.has_pin:
         return ""
-    known = session.progress.latest_trainees(2)
+    known = session.history.latest_trainees(2)
     return FIRST_ID if not known else known[0] if len(known) == 1 else ""
 
 
 def needs_tutorial(session: TrainingSession) -> bool:
     """Return whether the trial run waits for the tutorial with the device in use."""
-    is_skipped = may_skip(session) and session.trainee_id in session.tutorials.skipped
+    is_skipped = may_skip(session) and session.trainee_id in session.history.skipped_tutorials
     if is_skipped or tutorial_rule(session) is not TutorialRule.REQUIRED:
         return False
     return not has_learned(session)
@@ -226,4 +226,4 @@ def needs_tutorial(session: TrainingSession) -> bool:
 def has_learned(session: TrainingSession) -> bool:
     """Return whether the trainee has finished the tutorial with the device in use."""
     device = session.operator.learned(session.mode)
-    return session.tutorials.has_done(session.trainee_id, device)
+    return session.history.has_learned(session.trainee_id, device)

@@ -12,6 +12,7 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -42,11 +43,11 @@ SCORED_BY_SIMULATOR = "scoredBySimulator"
 RETURN_S = 5.0
 """A Slicer whose connection was lost is back after less, unless it has ended."""
 ANSWER_S = 60.0
-_REST_S = 0.001
 
 Submit = Callable[[str, Mapping[str, Any], str], "Future[Answer]"]
 Ask = Callable[[str, Mapping[str, Any]], Mapping[str, Any]]
 
+_rest = partial(time.sleep, 0.001)
 _log = logging.getLogger(__name__)
 
 
@@ -129,7 +130,10 @@ class LocalScorer:
     def _do(self, job: _Job, scenario: Scenario, earlier: Sequence[PastTrial]) -> None:
         try:
             if job.phase is Phase.VERIFYING:
-                register_open_trial(self._ask, job.trial_id, scenario)
+                # The procedure continues with that.
+                answer = self._ask(CommandName.GET_TRIAL, {"trialId": job.trial_id})
+                registered = register_trial(GivenPoints.of_answer(answer), scenario, pause=_rest)
+                self._ask(CommandName.USE_REGISTRATION, registered.arguments(job.trial_id))
                 return
             analysis = registered_alone(self._ask, job.trial_id, scenario)
             if not self._is_slicer_connected():
@@ -141,17 +145,12 @@ class LocalScorer:
                 self.problem = str(error)
 
     def _ask(self, command: str, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
-        answer = self._submit(command, arguments, SENDER).result(ANSWER_S)
+        """Have a command carried out after the checks that a client's has to pass."""
+        checked = check_arguments(command, arguments)
+        answer = self._submit(command, checked, SENDER).result(ANSWER_S)
         if not answer.ok:
             raise InputError(answer.message)
         return answer.data
-
-
-def register_open_trial(ask: Ask, trial_id: str, scenario: Scenario) -> None:
-    """Register the touches of an open trial, and have its procedure continue with that."""
-    answer = ask(CommandName.GET_TRIAL, {"trialId": trial_id})
-    registered = register_trial(GivenPoints.of_answer(answer), scenario, pause=_rest)
-    _asked(ask, CommandName.USE_REGISTRATION, registered.arguments(trial_id))
 
 
 def registered_alone(ask: Ask, trial_id: str, scenario: Scenario) -> TrialAnalysis:
@@ -185,26 +184,13 @@ def score_alone(
         earlier: the trainee's earlier scored trials and failures, oldest first.
         records: folder of the trials' journals.
     """
-    answer = _asked(ask, CommandName.SUBMIT_REGISTRATION, registration_arguments(analysis))
+    answer = ask(CommandName.SUBMIT_REGISTRATION, registration_arguments(analysis))
     truth = record_from_json(RevealedTruth, answer, "The simulator's answer")
     scored = scored_with_journal(analysis, truth, scenario, records=records, pause=_rest)
-    arguments = score_arguments(_with_progress(scored, earlier))
+    record, score = scored.record, scored.score
+    if score is not None and record.task != TRIAL_RUN:
+        this = PastTrial.scored(record, score.score, score.acceptable)
+        scored = with_progress_among(scored, (*earlier, this), PASS_MARK)
+    arguments = score_arguments(scored)
     arguments["details"][SCORED_BY_SIMULATOR] = True
-    _asked(ask, CommandName.TRIAL_SCORED, arguments)
-
-
-def _asked(ask: Ask, command: str, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Have a command carried out after the checks that a client's command has to pass."""
-    return ask(command, check_arguments(command, arguments))
-
-
-def _with_progress(analysis: TrialAnalysis, earlier: Sequence[PastTrial]) -> TrialAnalysis:
-    record, score = analysis.record, analysis.score
-    if score is None or record.task == TRIAL_RUN:
-        return analysis
-    this = PastTrial.scored(record, score.score, score.acceptable)
-    return with_progress_among(analysis, (*earlier, this), PASS_MARK)
-
-
-def _rest() -> None:
-    time.sleep(_REST_S)
+    ask(CommandName.TRIAL_SCORED, arguments)

@@ -242,7 +242,7 @@ class OpenPages:
         return row.item.name, value[:-1] if is_deleting else value + text
 
     def _row(self, name: str | None = None) -> PageRow | None:
-        """Return the row of that name, or the one with the focus."""
+        """Return a row by its name; without a name, the row that has the focus."""
         rows = () if self.top is None else self.top.content().rows
         if rows and name is None:
             name = self._focused(rows)

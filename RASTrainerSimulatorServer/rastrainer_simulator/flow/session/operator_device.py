@@ -65,15 +65,15 @@ class OperatorDevice:
 
     @property
     def steers_by_mouse(self) -> bool:
-        return self.screen_sticks.is_shown and self.is_one_of((SourceKind.MOUSE,))
+        return self.screen_sticks.is_shown and self.is_one_of(SourceKind.MOUSE)
 
     @property
     def picture(self) -> ControlsPicture:
-        if self.is_one_of((SourceKind.XR,)):
+        if self.is_one_of(SourceKind.XR):
             return "controllers"
         return "gamepad" if self.kind is InputDevice.GAMEPAD else "keyboard"
 
-    def is_one_of(self, kinds: tuple[SourceKind, ...]) -> bool:
+    def is_one_of(self, *kinds: SourceKind) -> bool:
         holder = self.controls.holder
         return holder is not None and holder.kind in kinds
 

@@ -43,14 +43,14 @@ def _any_of(kind: type[Enum]) -> _OneOf:
 
 @dataclasses.dataclass(frozen=True)
 class Preferences:
-    """What was chosen; each but the expert has `OPTIONS`.
+    """The choices of people at the simulator; all but the expert have `OPTIONS`.
 
     Attributes:
         language: of everything the trainee reads.
         volume: of the sounds, percent.
         muted: whether there are none.
         speech: whether page and headset read instructions, warnings and pages aloud.
-        order: "fixed" where a task waits for the one before it, "any" by the instructor's leave.
+        order: "fixed" where a task waits for the previous task, "any" by the instructor's leave.
         coarse: fastest travel of the tip, mm/s.
         fine: the same while the trigger for fine speed is held, mm/s.
         axes: whose right, forward and up the sticks follow.
@@ -133,7 +133,7 @@ def write_preferences(path: Path, preferences: Preferences) -> None:
 
 
 class InstructorLock:
-    """What a PIN locks: the settings, the order, and passing on the control.
+    """The lock of an instructor's PIN on settings, order, and passing on the control.
 
     It is locked wherever a PIN is set, until somebody enters it, and again when the trainee
     changes, and when a trial or a tutorial begins: whoever trains then is not whom the instructor

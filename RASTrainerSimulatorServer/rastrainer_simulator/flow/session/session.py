@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import Future
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from rastrainer.procedure.geometry import BoneAhead
 from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Mode, RegistrationMethod
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
-from rastrainer.study_messages import AssignmentStanding, CurriculumMessage, StudyStep
+from rastrainer.study_messages import CurriculumMessage, StudyStep
 from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
 from rastrainer_simulator.flow.session.local_scorer import LocalScorer
 from rastrainer_simulator.flow.session.open_pages import OpenPages
@@ -29,21 +30,25 @@ from rastrainer_simulator.flow.session.preferences import (
 from rastrainer_simulator.flow.session.services import FlowServices, SimulationReload
 from rastrainer_simulator.flow.session.trace_places import TracePlaces
 from rastrainer_simulator.flow.session.trainee_history import (
-    DoneTasks,
-    FinishedTutorials,
-    ScoreHistory,
+    TraineeHistory,
 )
 from rastrainer_simulator.flow.session.trial_view import TrialView
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, Bindings, write_bindings
 from rastrainer_simulator.input.controls import Controls
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
+from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_event
 from rastrainer_simulator.presentation.screen import Notices, Tone
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.replay.ghost import TrialGhost
 from rastrainer_simulator.replay.recorded_trial import TrialLoading, load_trial
-from rastrainer_simulator.state import Answer, SimulationState, TrainingState
+from rastrainer_simulator.state import (
+    Answer,
+    Event,
+    SimulationState,
+    TouchStage,
+    TrainingState,
+)
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from rastrainer_simulator.vectors import Vector, in_meters
 from rastrainer_simulator.viewpoint.view_control import Orbit
@@ -86,8 +91,7 @@ class TrainingSession:
         self.has_read_introduction = False
         self.preferences = preferences
         self.texts = Texts(LANGUAGES[preferences.language])
-        self.progress = DoneTasks(services.records)
-        self.history = ScoreHistory(services.records, self.progress.journals)
+        self.history = TraineeHistory(services.records)
         self.local_scorer = (
             LocalScorer(
                 control_loop.submit, services.records, services.is_slicer_connected, self.history.of
@@ -102,7 +106,6 @@ class TrainingSession:
         self.ghost = TrialGhost()
         self.places = TracePlaces()
         self.tutorial: Tutorial | None = None
-        self.tutorials = FinishedTutorials(services.records)
         self.screen_sticks = self.operator.screen_sticks
         self.lock = InstructorLock(services.pin)
         self.reload = SimulationReload(services, control_loop, self.complain)
@@ -154,15 +157,10 @@ class TrainingSession:
 
         None without one, in a study, which comes before it, and while no Slicer is connected.
         """
-        if self.step is not None or not self.services.is_slicer_connected():
+        assigned, trainee = self.services.assigned, self.trainee_id
+        if trainee in assigned.steps or not self.services.is_slicer_connected():
             return None
-        return self.services.assigned.curricula.get(self.trainee_id)
-
-    @property
-    def next_assignment(self) -> AssignmentStanding | None:
-        """The assignment to practice next; None if all are reached, or without a curriculum."""
-        curriculum = self.curriculum
-        return None if curriculum is None else curriculum.find(curriculum.next)
+        return assigned.curricula.get(trainee)
 
     @property
     def assignment_texts(self) -> AssignmentTexts:
@@ -190,11 +188,8 @@ class TrainingSession:
     def do(self, command: str, arguments: Mapping[str, Any] | None = None) -> None:
         holder = self.controls.holder
         sender = "" if holder is None else holder.kind.value
-        try:
+        with self.complaining():
             checked = check_arguments(command, arguments or {})
-        except InputError as error:
-            self.complain(str(error))
-        else:
             self._asked.append((command, self.control_loop.submit(command, checked, sender)))
 
     def begin_tutorial(self, task: str = TRIAL_RUN, point: str = "") -> None:
@@ -206,19 +201,15 @@ class TrainingSession:
             self.complain(self.texts.say("being set up"))
             return
         wanted = {"task": task, "trainee": self.trainee_id, "mode": self.mode}
-        try:
+        with self.complaining():
             arguments = check_arguments(CommandName.START_TASK, wanted)
-        except InputError as error:
-            self.complain(str(error))
-            return
-        self.tutorial = Tutorial(self.control_loop.setup, self.state, arguments, point)
-        self.practiced = task, point
-        practice = self.tutorial.practice
-        self.view.begin(
-            self.control_loop.setup, practice.training.truth, practice.shown(self.state)
-        )
-        self.view.control.go(TUTORIAL_VIEW)
-        self.pages.show(None)
+            setup = self.control_loop.setup
+            self.tutorial = Tutorial(setup, self.state, arguments, point)
+            self.practiced = task, point
+            practice = self.tutorial.practice
+            self.view.begin(setup, practice.training.truth, practice.shown(self.state))
+            self.view.control.go(TUTORIAL_VIEW)
+            self.pages.show(None)
 
     def end_tutorial(self) -> TutorialOutcome | None:
         """Leave the tutorial; if all of it is done, keep its outcome and return it."""
@@ -230,7 +221,8 @@ class TrainingSession:
             return None
         outcome = tutorial.outcome(self.operator.learned(self.mode))
         if not tutorial.practiced:
-            self._save(lambda: self.tutorials.keep(outcome))
+            with self.complaining():
+                self.history.keep_tutorial(outcome)
         return outcome
 
     def prefer(self, preferences: Preferences) -> None:
@@ -238,7 +230,8 @@ class TrainingSession:
         self.preferences = preferences
         self.texts = self.operator.texts = Texts(LANGUAGES[preferences.language])
         self.reload.request(before, preferences.applied_to(before))
-        self._save(lambda: write_preferences(self.services.config / PREFERENCES_FILE, preferences))
+        with self.complaining():
+            write_preferences(self.services.config / PREFERENCES_FILE, preferences)
 
     def truly_in_world(self, point: np.ndarray) -> Vector:
         """Return where a point of the MRI (RAS mm) truly is, World, m: only after the score."""
@@ -254,7 +247,7 @@ class TrainingSession:
         return load_trial(found[0], self.control_loop.setup)
 
     def note_done(self) -> None:
-        self.progress.note(self.training.trainee, self.scenario.name, self.training.task)
+        self.history.note_done(self.training.trainee, self.scenario.name, self.training.task)
 
     def outcome_of(self, task: str) -> str:
         """Return "passed", "failed" or "done" of the trainee's trials of a task; "" of none."""
@@ -268,11 +261,27 @@ class TrainingSession:
             return "passed"
         if trials and trials[-1].is_passed is False:
             return "failed"
-        return "done" if self.progress.has_done(trainee, scenario, task) else ""
+        return "done" if self.history.has_done(trainee, scenario, task) else ""
 
     def rebind(self, bindings: Bindings) -> None:
         self.controls.bindings = bindings
-        self._save(lambda: write_bindings(self.services.config / BINDINGS_FILE, bindings))
+        with self.complaining():
+            write_bindings(self.services.config / BINDINGS_FILE, bindings)
+
+    @contextmanager
+    def complaining(self) -> Iterator[None]:
+        """Tell the trainee why something is impossible."""
+        try:
+            yield
+        except InputError as error:
+            self.complain(str(error))
+
+    def feel(self, events: Iterable[Event], touch: TouchStage, not_recorded: bool = False) -> None:
+        """Give the feedback to events, as `feedback_event` has it."""
+        for event in events:
+            felt = feedback_event(event, touch, not_recorded)
+            if felt is not None:
+                self.happened(felt)
 
     def complain(self, text: str) -> None:
         self.notices.add(self.texts.again(text), Tone.ERROR)
@@ -332,9 +341,3 @@ class TrainingSession:
                 title = self.assignment_texts.title(each)
                 said = self.texts.say("assignments.just reached", assignment=title)
                 self.notices.add(said, Tone.GOOD, REACHED_S)
-
-    def _save(self, write: Callable[[], None]) -> None:
-        try:
-            write()
-        except InputError as error:
-            self.complain(str(error))

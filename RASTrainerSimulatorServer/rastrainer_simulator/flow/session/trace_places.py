@@ -22,6 +22,7 @@ from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.trial_state import TraceState
 from rastrainer_simulator.vectors import Vector, add, in_meters, scale, subtract, unit, vector
+from rastrainer_simulator.viewpoint.view_control import Orbit, orbit_to
 
 LOOK_S = 0.25
 """Time between two searches; a search takes about 10 ms."""
@@ -88,10 +89,10 @@ class TracePlaces:
         place = self._trial[2].in_world(np.array(self._place.position_mm))
         return in_meters(place)
 
-    def eye(self, camera: Camera) -> Vector | None:
-        """Return a viewpoint on the next place, World, m; None if there is no next place.
+    def orbit(self, camera: Camera) -> Orbit | None:
+        """Return a view of the next place; None if there is no next place.
 
-        It is between the skin's normal, along which the tool hides the tip, and the camera.
+        Its eye is between the skin's normal, along which the tool hides the tip, and the camera.
         """
         place = self.in_world()
         if self._trial is None or self._place is None or place is None:
@@ -99,12 +100,15 @@ class TracePlaces:
         outward = self._trial[2].head_to_world[:3, :3] @ np.array(self._place.normal)
         line = subtract(vector(camera.position_mm.tolist()), place)
         between = unit(add(vector(outward.tolist()), unit(line)))
-        return add(place, scale(between, EYE_M))
+        return orbit_to(camera, add(place, scale(between, EYE_M)), place)
 
     def _find(self, setup: SimulationSetup, truth: Truth, trace: TraceState) -> SkinPlace | None:
         """Return the next place; called in the thread."""
         try:
-            guide = self._guide_of(setup)
+            if self._guide is None or self._guide[0] is not setup:
+                mesh = read_head_mesh(setup.scenario.head_mesh)
+                self._guide = setup, trace_guide(setup.scenario, mesh)
+            guide = self._guide[1]
         except (RASTrainerError, OSError):
             _log.exception("The next place of a trace cannot be found")
             return None
@@ -115,9 +119,3 @@ class TracePlaces:
             return None
         position, normal = np.round(found.position, 2), np.round(guide.normal_at(found), 4)
         return SkinPlace(vector(position.tolist()), vector(normal.tolist()))
-
-    def _guide_of(self, setup: SimulationSetup) -> TraceGuide:
-        if self._guide is None or self._guide[0] is not setup:
-            mesh = read_head_mesh(setup.scenario.head_mesh)
-            self._guide = setup, trace_guide(setup.scenario, mesh)
-        return self._guide[1]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import re
 import uuid
 from collections import defaultdict
@@ -11,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from pathlib import Path
+from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
@@ -24,12 +26,13 @@ from rastrainer.journal.journal_file import (
     file_stamp,
     iso,
 )
+from rastrainer.json_checks import is_number
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import TRIAL_RUN, AbortReason, Phase, RegistrationMethod
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.scoring import PASS_MARK, passes
 from rastrainer.trial.trial_feedback import PastTrial
-from rastrainer_simulator.flow.session.verdict import beyond_limits, is_passed
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 
@@ -40,115 +43,14 @@ _PRACTICED = (
 )
 
 
-class DoneTasks:
-    """Counts a task as done when it was registered; whether it was passed is in the history.
-
-    The trial run also counts when all its points were touched, or when it was ended after its time
-    was over, as the paper's procedure has it (figure 4).
-
-    Attributes:
-        journals: of each trainee, oldest first; only those that were there at the beginning.
-        skipped: trainees and scenarios whose tasks do not wait for the trial run.
-    """
-
-    def __init__(self, records: Path) -> None:
-        """Look through the folder's journals: at the first line and the end of each."""
-        self.journals: dict[str, list[Path]] = defaultdict(list)
-        self._done: dict[tuple[str, str], set[str]] = defaultdict(set)
-        self.skipped: set[tuple[str, str]] = set()
-        for path in sorted(records.glob("*.journal")):
-            self._take(path)
-
-    def note(self, trainee: str, scenario: str, task: str) -> None:
-        self._done[trainee, scenario].add(task)
-
-    def has_done(self, trainee: str, scenario: str, task: str) -> bool:
-        return task in self._done.get((trainee, scenario), ())
-
-    def needs_no_trial_run(self, trainee: str, scenario: str) -> bool:
-        head = trainee, scenario
-        return head in self.skipped or bool(self._done.get(head))
-
-    def latest_trainees(self, count: int) -> tuple[str, ...]:
-        known = (trainee for trainee, journals in self.journals.items() if journals)
-        latest = sorted(known, key=lambda trainee: self.journals[trainee][-1].name, reverse=True)
-        return tuple(latest[:count])
-
-    def missing_before(
-        self, trainee: str, scenario: str, task: str, order: Sequence[str]
-    ) -> str | None:
-        """Return the first task that has to be done before another; None if all are done."""
-        done = {*self._done.get((trainee, scenario), ())}
-        done |= {TRIAL_RUN} if self.needs_no_trial_run(trainee, scenario) else set()
-        return next((name for name in order[: order.index(task)] if name not in done), None)
-
-    def _take(self, path: Path) -> None:
-        try:
-            with path.open("rb") as file:
-                header = decode_line(file.readline(MAX_LINE_BYTES).rstrip(b"\n"), 1, NO_LINE)
-                file.seek(max(0, path.stat().st_size - _TAIL_BYTES))
-                tail = file.read(_TAIL_BYTES)
-            what = header["trainee"], header["scenario"]["name"], header["task"]
-        except (OSError, KeyError, TypeError, DamagedLineError):
-            return
-        if not all(isinstance(word, str) for word in what):
-            return
-        self.journals[what[0]].append(path)
-        is_practiced = header["task"] == TRIAL_RUN and any(mark in tail for mark in _PRACTICED)
-        if _REGISTERED in tail or is_practiced:
-            self.note(*what)
-
-
 _COUNTS_FOR = {
     kind.value: (kind.value, SourceKind.KEYBOARD.value)
     for kind in (SourceKind.GAMEPAD, SourceKind.MOUSE)
 }
 """Keys also type an ID and go through menus: who has learned another device may come with them."""
-
-
-_MAX_TUTORIAL_BYTES = 1 << 20
-
-
-class FinishedTutorials:
-    """Knows the devices that each trainee has finished the tutorial with.
-
-    Attributes:
-        latest: outcome of each trainee.
-        skipped: trainees whose trial run does not wait for the tutorial until the simulator ends.
-    """
-
-    def __init__(self, records: Path) -> None:
-        """Read the files of the folder; ignore unusable files."""
-        self._records = records
-        self._devices: dict[str, set[str]] = defaultdict(set)
-        self.latest: dict[str, TutorialOutcome] = {}
-        self.skipped: set[str] = set()
-        for path in sorted(records.glob(f"*{TUTORIAL_SUFFIX}")):
-            with contextlib.suppress(InputError, OSError):
-                self._note(record_from_json(TutorialOutcome, read_json(path, _MAX_TUTORIAL_BYTES)))
-
-    def has_done(self, trainee: str, device: SourceKind) -> bool:
-        return device.value in self._devices.get(trainee, ())
-
-    def keep(self, outcome: TutorialOutcome) -> None:
-        self._note(outcome)
-        utc = iso(datetime.now(timezone.utc))
-        path = self._records / f"{file_stamp(utc)}_{uuid.uuid4()}{TUTORIAL_SUFFIX}"
-        make_folder(self._records, is_private=True)
-        # One line, as a journal's first: by it the file is found when the trainee is deleted.
-        write_text(
-            path,
-            json.dumps({"utc": utc, **record_to_json(outcome, with_defaults=True)}) + "\n",
-            is_private=True,
-        )
-
-    def _note(self, outcome: TutorialOutcome) -> None:
-        self._devices[outcome.trainee].update(_COUNTS_FOR.get(outcome.device, (outcome.device,)))
-        self.latest[outcome.trainee] = outcome
-
-
 MAX_SHOWN = 20
 """Number of trials in a trend."""
+_MAX_TUTORIAL_BYTES = 1 << 20
 _TAIL_BYTES = 1 << 17
 _START = re.compile(
     rb'\{"n":(\d+),"previous":"([0-9a-f]{64})","kind":"(registered|scored|attempt)"'
@@ -174,18 +76,83 @@ class OwnTrial:
     journal: Path = Path()
 
 
-class ScoreHistory:
-    """Reads a trainee's journals when first asked for, and a journal again when it has grown."""
+class TraineeHistory:
+    """Tells what each trainee has done, by the journals and the tutorials in a folder.
 
-    def __init__(self, records: Path, journals: Mapping[str, list[Path]]) -> None:
-        """Prepare; `journals` are those of each trainee that are there already, oldest first."""
+    A task counts as done when it was registered; its score says whether it was passed. The
+    trial run also counts when all its points were touched, or when it was ended after its time was
+    over, as the paper's procedure has it (figure 4).
+
+    Attributes:
+        skipped_runs: trainees and scenarios whose tasks do not wait for the trial run.
+        skipped_tutorials: trainees whose trial run does not wait for the tutorial.
+        learned: outcome of each trainee's latest tutorial.
+    """
+
+    def __init__(self, records: Path) -> None:
+        """Look at the first line and the end of each journal, and through the tutorials.
+
+        Unusable files are ignored. Scores are read when first asked for.
+        """
+        self.skipped_runs: set[tuple[str, str]] = set()
+        self.skipped_tutorials: set[str] = set()
+        self.learned: dict[str, TutorialOutcome] = {}
         self._records = records
-        self._journals = {trainee: list(paths) for trainee, paths in journals.items()}
+        self._journals: dict[str, list[Path]] = defaultdict(list)
+        self._done: dict[tuple[str, str], set[str]] = defaultdict(set)
+        self._devices: dict[str, set[str]] = defaultdict(set)
         self._own: dict[Path, OwnTrial | None] = {}
+        for path in sorted(records.glob("*.journal")):
+            self._note_journal(path)
+        for path in sorted(records.glob(f"*{TUTORIAL_SUFFIX}")):
+            with contextlib.suppress(InputError, OSError):
+                outcome = read_json(path, _MAX_TUTORIAL_BYTES)
+                self.note_tutorial(record_from_json(TutorialOutcome, outcome))
+        latest = {trainee: paths[-1].name for trainee, paths in self._journals.items()}
+        self._by_time = sorted(latest, key=lambda trainee: latest[trainee], reverse=True)
+
+    def note_done(self, trainee: str, scenario: str, task: str) -> None:
+        self._done[trainee, scenario].add(task)
+
+    def has_done(self, trainee: str, scenario: str, task: str) -> bool:
+        return task in self._done.get((trainee, scenario), ())
+
+    def needs_no_trial_run(self, trainee: str, scenario: str) -> bool:
+        head = trainee, scenario
+        return head in self.skipped_runs or bool(self._done.get(head))
+
+    def latest_trainees(self, count: int) -> tuple[str, ...]:
+        """Return those who trained here last before the simulator was started."""
+        return tuple(self._by_time[:count])
+
+    def missing_before(
+        self, trainee: str, scenario: str, task: str, order: Sequence[str]
+    ) -> str | None:
+        """Return the first task that has to be done before another; None if all are done."""
+        done = {*self._done.get((trainee, scenario), ())}
+        done |= {TRIAL_RUN} if self.needs_no_trial_run(trainee, scenario) else set()
+        return next((name for name in order[: order.index(task)] if name not in done), None)
+
+    def has_learned(self, trainee: str, device: SourceKind) -> bool:
+        return device.value in self._devices.get(trainee, ())
+
+    def keep_tutorial(self, outcome: TutorialOutcome) -> None:
+        """Count a finished tutorial, and write its file."""
+        self.note_tutorial(outcome)
+        utc = iso(datetime.now(timezone.utc))
+        path = self._records / f"{file_stamp(utc)}_{uuid.uuid4()}{TUTORIAL_SUFFIX}"
+        make_folder(self._records, is_private=True)
+        # One line, as a journal's first: by it the file is found when the trainee is deleted.
+        line = json.dumps({"utc": utc, **record_to_json(outcome, with_defaults=True)})
+        write_text(path, line + "\n", is_private=True)
+
+    def note_tutorial(self, outcome: TutorialOutcome) -> None:
+        self._devices[outcome.trainee].update(_COUNTS_FOR.get(outcome.device, (outcome.device,)))
+        self.learned[outcome.trainee] = outcome
 
     def changed(self, trainee: str, trial_id: str) -> None:
         """Note that a trial of a trainee has begun, ended or been scored."""
-        known = self._journals.setdefault(trainee, [])
+        known = self._journals[trainee]
         for path in journals_of(self._records, trial_id) if trial_id else ():
             self._own.pop(path, None)
             if path not in known:
@@ -226,6 +193,23 @@ class ScoreHistory:
         ]
         return tuple(scores[-MAX_SHOWN:])
 
+    def _note_journal(self, path: Path) -> None:
+        """Note what a journal says; ignore it if it cannot be read."""
+        try:
+            with path.open("rb") as file:
+                header = decode_line(file.readline(MAX_LINE_BYTES).rstrip(b"\n"), 1, NO_LINE)
+                file.seek(max(0, path.stat().st_size - _TAIL_BYTES))
+                tail = file.read(_TAIL_BYTES)
+            what = header["trainee"], header["scenario"]["name"], header["task"]
+        except (OSError, KeyError, TypeError, DamagedLineError):
+            return
+        if not all(isinstance(word, str) for word in what):
+            return
+        self._journals[what[0]].append(path)
+        is_practiced = header["task"] == TRIAL_RUN and any(mark in tail for mark in _PRACTICED)
+        if _REGISTERED in tail or is_practiced:
+            self.note_done(*what)
+
 
 def _own_trial(journal: Path) -> OwnTrial | None:
     """Return the scored or failed trial of a journal; None for other and damaged journals."""
@@ -256,3 +240,39 @@ def _own_trial(journal: Path) -> OwnTrial | None:
         return OwnTrial(past, record.scenario, record.started_utc, verdict, journal)
     except (OSError, DamagedLineError, InputError, KeyError, TypeError, ValueError):
         return None
+
+
+_LIMITS = (
+    ("isAccurate", "result.not accurate"),
+    ("isUnbiased", "result.not unbiased"),
+    ("isSafe", "result.not safe"),
+)
+
+
+def detail_number(details: Mapping[str, Any], name: str) -> float | None:
+    """Return a number of a score's details; None for anything else."""
+    value = details.get(name)
+    return float(value) if is_number(value) and math.isfinite(value) else None
+
+
+def pass_mark(task: str, details: Mapping[str, Any]) -> float | None:
+    """Return the score that passes; None in a trial run, and in a study without a mark."""
+    if task == TRIAL_RUN:
+        return None
+    return detail_number({"passMark": PASS_MARK, **details}, "passMark")
+
+
+def beyond_limits(details: Mapping[str, Any]) -> list[str]:
+    """Return the keys of the sentences that say why a trial is not acceptable."""
+    return [key for name, key in _LIMITS if details.get(name) is False]
+
+
+def is_passed(task: str, score: float, details: Mapping[str, Any]) -> bool | None:
+    """Return whether a trial is passed, with its procedure; None without a pass mark."""
+    procedure = details.get("procedure")
+    is_placed = not isinstance(procedure, dict) or procedure.get("acceptable") is not False
+    is_acceptable = is_placed and not beyond_limits(details)
+    mark = pass_mark(task, details)
+    if mark is None:
+        return None if is_acceptable else False
+    return passes(score, is_acceptable, mark)

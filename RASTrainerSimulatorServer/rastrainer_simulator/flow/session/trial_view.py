@@ -33,6 +33,7 @@ from rastrainer_simulator.viewpoint.view_control import (
     Pictures,
     ViewControl,
     ViewMotion,
+    camera_pose,
     heading_deg,
     orbit_to,
 )
@@ -96,16 +97,17 @@ class TrialView:
         label = state.training.next_point
         has_searched = self._look_for(state)
         view = self._view_of(state)
-        if view is not None and self._is_wanted and has_searched:
-            self._go(camera, view, label, is_automatic=False)
-        elif view is not None and follows and label != self._went_for:
-            self._go(camera, view, label, is_automatic=True)
+        is_wanted = self._is_wanted and has_searched
+        if view is not None and (is_wanted or (follows and label != self._went_for)):
+            self._went_for, self._is_wanted = label, False
+            orbit = orbit_to(camera, view.eye, view.fiducial)
+            self.control.go(orbit, is_automatic=not is_wanted)
         is_still = not any((*sticks.translation, *sticks.rotation))
         self.control.advance(dt, camera, motion, is_still)
 
     def pictures(self, now: SimulationState, cameras: Mapping[str, Camera]) -> Pictures:
         self.control.use(now.camera)
-        main = self.control.pose(cameras[now.camera])
+        main = camera_pose(cameras[now.camera], self.control.orbit)
         tip = vector(now.tool_tip_to_world[:3, 3].tolist())
         procedure = now.training.procedure
         if procedure is not None and procedure.present is not None:
@@ -159,10 +161,6 @@ class TrialView:
         label = state.training.next_point
         is_found = self._found is not None and self._found[0] == label and self._is_open(state)
         return self._found[1] if self._found is not None and is_found else None
-
-    def _go(self, camera: Camera, view: BestView, label: str | None, is_automatic: bool) -> None:
-        self._went_for, self._is_wanted = label, False
-        self.control.go(orbit_to(camera, view.eye, view.fiducial), is_automatic)
 
 
 def turned(sticks: OperatorInput, turn_deg: float) -> OperatorInput:

@@ -8,12 +8,9 @@ from __future__ import annotations
 import uuid
 from dataclasses import replace
 
-import numpy as np
-
 from rastrainer.commands import CommandName
 from rastrainer.head.trial_head import Perturbation
 from rastrainer.protocol import TRIAL_RUN
-from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.flow.tutorial.steps import (
@@ -72,9 +69,16 @@ class TouchPractice:
         self._rest = rest
         self._settings = replace(setup.settings.training, acceptance_radius=CENTERED_M)
         self._of_trials = setup.settings.training
-        scenario = _short_scenario(setup.scenario, task, state.head_to_world, points)
+        pose = state.head_to_world.copy()
+        pose[:3, 3] *= MM_PER_M
+        tasks = setup.scenario.tasks
+        whole = next((each for each in tasks if each.name == task), tasks[0])
+        short = replace(whole, labels=whole.labels[points], fiducials=whole.fiducials[points])
+        scenario = replace(
+            setup.scenario, tasks=(short,), head_to_world=pose, perturbation=_NOT_MOVED
+        )
         self.training = Training(scenario, 0, self._settings)
-        start = {**arguments, "task": scenario.tasks[0].name}
+        start = {**arguments, "task": short.name}
         self.training.handle(OperatorCommand(CommandName.START_TASK, start), _moment(state))
         self.has_points = False
         self._shown = self._present()
@@ -128,16 +132,6 @@ class TouchPractice:
         if self.has_points:
             return self.training.state, self.training.goal
         return replace(self.training.state, next_point=None), None
-
-
-def _short_scenario(
-    scenario: Scenario, name: str, head_to_world: np.ndarray, points: slice
-) -> Scenario:
-    pose = head_to_world.copy()
-    pose[:3, 3] *= MM_PER_M
-    task = next((task for task in scenario.tasks if task.name == name), scenario.tasks[0])
-    short = replace(task, labels=task.labels[points], fiducials=task.fiducials[points])
-    return replace(scenario, tasks=(short,), head_to_world=pose, perturbation=_NOT_MOVED)
 
 
 def _moment(state: SimulationState) -> TouchMoment:
