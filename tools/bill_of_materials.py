@@ -40,7 +40,14 @@ def write_page_bill(output: Path = PAGE_BILL) -> int:
     with tempfile.TemporaryDirectory() as temporary:
         # Its name is part of the bill.
         folder = Path(temporary) / "rastrainer-page"
-        _with_a_version(build_page.WEB, folder)
+        # Copies with a version, which npm needs for a bill and the page lacks.
+        folder.mkdir()
+        for name in ("package.json", "package-lock.json"):
+            content = json.loads((build_page.WEB / name).read_text(encoding="utf-8"))
+            content["version"] = NO_VERSION
+            if "packages" in content:
+                content["packages"][""]["version"] = NO_VERSION
+            (folder / name).write_text(json.dumps(content), encoding="utf-8")
         text = _run([*npm, *words], cwd=folder, env={**os.environ, "PATH": path})
     bill = json.loads(text)
     # Differs from run to run.
@@ -48,17 +55,6 @@ def write_page_bill(output: Path = PAGE_BILL) -> int:
     bill["metadata"].pop("timestamp", None)
     output.write_text(json.dumps(bill, indent=2) + "\n", encoding="utf-8")
     return _count(output)
-
-
-def _with_a_version(web: Path, folder: Path) -> None:
-    """Copy the package files with a version, which npm needs for a bill and the page lacks."""
-    folder.mkdir()
-    for name in ("package.json", "package-lock.json"):
-        content = json.loads((web / name).read_text(encoding="utf-8"))
-        content["version"] = NO_VERSION
-        if "packages" in content:
-            content["packages"][""]["version"] = NO_VERSION
-        (folder / name).write_text(json.dumps(content), encoding="utf-8")
 
 
 def _count(bill: Path) -> int:

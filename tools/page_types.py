@@ -75,7 +75,8 @@ class PageTypes:
         if hint in ALIASES:
             text = f"export type {ALIASES[hint]} = {self._list(get_args(hint))};"
         elif _is_enum(hint):
-            text = _enum(hint)
+            values = " | ".join(json.dumps(each.value) for each in hint)
+            text = f"{_comment(hint)}\nexport type {hint.__name__} = {values};"
         else:
             text = self._interface(hint)
         self.declarations[hint] = text
@@ -90,11 +91,6 @@ class PageTypes:
 
 def _is_enum(hint: Any) -> bool:
     return isinstance(hint, type) and issubclass(hint, Enum)
-
-
-def _enum(kind: type[Enum]) -> str:
-    values = " | ".join(json.dumps(each.value) for each in kind)
-    return f"{_comment(kind)}\nexport type {kind.__name__} = {values};"
 
 
 def _comment(kind: type) -> str:

@@ -39,6 +39,8 @@ from rastrainer_simulator.net.views.access_control import (
     ROLE,
     PairingCode,
     Sessions,
+    fresh_json,
+    open_socket,
     read_body,
 )
 from rastrainer_simulator.net.views.guarded_server import GuardedServer, page_answer
@@ -150,8 +152,7 @@ class BoardServer:
 
     async def _send_role(self, request: web.Request) -> web.Response:
         self._entry(request)
-        role = {"role": ViewRole.SPECTATOR.value}
-        return web.json_response(role, headers={hdrs.CACHE_CONTROL: "no-store"})
+        return fresh_json({"role": ViewRole.SPECTATOR.value})
 
     async def _send_file(self, request: web.Request) -> web.Response:
         entry = self._entry(request)
@@ -168,16 +169,13 @@ class BoardServer:
 
     async def _stream(self, request: web.Request) -> web.StreamResponse:
         entry = self._entry(request)
-        page = web.WebSocketResponse(protocols=(SUBPROTOCOL,), compress=False, writer_limit=0)
-        if page.can_prepare(request).protocol != SUBPROTOCOL:
-            raise web.HTTPBadRequest(text=f"Ask for a WebSocket with {SUBPROTOCOL}.")
         try:
             simulator = await self._client.stream(entry)
         except InputError as error:
             raise web.HTTPBadGateway(text=str(error)) from None
-        hello = None
+        hello, page = None, None
         try:
-            await page.prepare(request)
+            page = await open_socket(request, SUBPROTOCOL, compress=False)
             with contextlib.suppress(asyncio.TimeoutError):
                 first = await page.receive(_HELLO_S)
                 hello = read_view_input(first.data) if first.type is WSMsgType.TEXT else None
@@ -185,20 +183,18 @@ class BoardServer:
                 raise InputError(SPECTATORS_ONLY)
             await simulator.send_str(_SPECTATOR_HELLO)
             await _pass_on(simulator, page)
+            await page.close()
         except InputError as error:
+            assert page is not None, "the refusal is of what the page has sent"
             await page.close(code=1008, message=str(error).encode()[:120])
         finally:
             await simulator.close()
-        await page.close()
         return page
 
     async def _send_tiles(self, request: web.Request) -> web.StreamResponse:
-        socket = web.WebSocketResponse(
-            protocols=(BOARD_SUBPROTOCOL,), max_msg_size=1024, heartbeat=HEARTBEAT_S, writer_limit=0
+        socket = await open_socket(
+            request, BOARD_SUBPROTOCOL, max_msg_size=1024, heartbeat=HEARTBEAT_S
         )
-        if socket.can_prepare(request).protocol != BOARD_SUBPROTOCOL:
-            raise web.HTTPBadRequest(text=f"Ask for a WebSocket with {BOARD_SUBPROTOCOL}.")
-        await socket.prepare(request)
         is_changed = asyncio.Event()
         is_changed.set()
         self._pages.add(is_changed)
@@ -288,7 +284,7 @@ class BoardServer:
 
 async def _confirm_pairing(_request: web.Request) -> web.Response:
     """Confirm to a browser, which cannot read its cookie, that it has one; else refuse it."""
-    return web.json_response({}, headers={hdrs.CACHE_CONTROL: "no-store"})
+    return fresh_json({})
 
 
 async def _pass_on(simulator: aiohttp.ClientWebSocketResponse, page: web.WebSocketResponse) -> None:

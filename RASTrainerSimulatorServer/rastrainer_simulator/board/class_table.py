@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from aiohttp import hdrs, web
+from aiohttp import web
 
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_to_json
@@ -29,6 +29,7 @@ from rastrainer_simulator.board.board_messages import (
     TraineeRow,
 )
 from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
+from rastrainer_simulator.net.views.access_control import fresh_json
 from rastrainer_simulator.ops.study_thread import StudyThread
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 
@@ -160,10 +161,7 @@ class ClassWatch:
         """Answer a page with the table in its language."""
         asked = request.query.get("language", "")
         language = asked if asked in LANGUAGES else next(iter(LANGUAGES))
-        return web.json_response(
-            record_to_json(self.message(language), with_defaults=True),
-            headers={hdrs.CACHE_CONTROL: "no-store"},
-        )
+        return fresh_json(record_to_json(self.message(language), with_defaults=True))
 
     def message(self, language: str) -> ClassNews:
         """Return what the page is sent."""

@@ -24,8 +24,9 @@ from rastrainer_simulator.loop.control_loop import ControlLoop
 
 PERIOD_S = 0.005
 """Time between two polls of the gamepad."""
-QUIET_S = 0.01
-"""The same if none is plugged in; messages of views are processed as they arrive."""
+QUIET_S, IDLE_S = 0.01, 0.025
+"""The same if none is plugged in, and if nobody drives either; messages of views are processed as
+they arrive."""
 LONGEST_STEP_S = 0.1
 """A machine that was asleep does not catch up."""
 
@@ -67,7 +68,8 @@ class RunningPresenter:
     async def run(self) -> None:
         before = time.monotonic()
         while True:
-            await asyncio.sleep(PERIOD_S if self._sources else QUIET_S)
+            quiet_s = IDLE_S if self.presenter.controls.holder is None else QUIET_S
+            await asyncio.sleep(PERIOD_S if self._sources else quiet_s)
             now = time.monotonic()
             self.advance(min(now - before, LONGEST_STEP_S))
             before = now

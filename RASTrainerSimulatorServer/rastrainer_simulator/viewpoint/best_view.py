@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,8 +20,6 @@ from rastrainer_simulator.collision.line_of_sight import LineOfSight
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.robot.kinematics import make_kinematics
-from rastrainer_simulator.scene.skin import Skin
-from rastrainer_simulator.scene.skin_marks import Placement, place_marks
 from rastrainer_simulator.vectors import (
     Vector,
     add,
@@ -35,6 +34,9 @@ from rastrainer_simulator.vectors import (
     unit,
     vector,
 )
+
+if TYPE_CHECKING:
+    from rastrainer_simulator.scene.skin_marks import Placement
 
 WIDEST_DEG = 60.0
 """Between the skin's normal and the line to the eye."""
@@ -240,6 +242,11 @@ def _along_skin(point: ViewedPoint, eye: Vector) -> list[Vector]:
     return [place for _, place in sorted(ranked)]
 
 
+def load_marks() -> None:
+    """Import what places marks on the skin; in a trial the import would make ticks late."""
+    import rastrainer_simulator.scene.skin_marks  # noqa: F401
+
+
 class TouchViews:
     """Looks for the views of a task's fiducials; with its own collision shapes, for one thread."""
 
@@ -324,6 +331,10 @@ class TouchViews:
         """Return the skin's normals at a task's fiducials, (n, 3), and where its marks are."""
         key = task.fiducials.tobytes()
         if key not in self._known:
+            # Here, since an idle simulator does without VTK.
+            from rastrainer_simulator.scene.skin import Skin
+            from rastrainer_simulator.scene.skin_marks import place_marks
+
             normals = outward_normals(self._head, task.fiducials)
             placement = place_marks(Skin(self._head), task.fiducials, task.labels)
             self._known[key] = normals, placement

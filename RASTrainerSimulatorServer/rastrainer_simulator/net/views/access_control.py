@@ -14,9 +14,9 @@ import math
 import secrets
 import socket
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from aiohttp import hdrs, web
 
@@ -195,6 +195,25 @@ def check_origin(request: web.Request) -> None:
     origin = request.headers.get("Origin")
     if origin is not None and origin != f"{request.scheme}://{request.host}":
         raise web.HTTPForbidden(text=FOREIGN)
+
+
+def fresh_json(values: Mapping[str, Any]) -> web.Response:
+    """Return an answer that no browser keeps."""
+    return web.json_response(values, headers={hdrs.CACHE_CONTROL: "no-store"})
+
+
+async def open_socket(
+    request: web.Request, subprotocol: str, **settings: Any
+) -> web.WebSocketResponse:
+    """Return a WebSocket of a protocol, opened with aiohttp's settings.
+
+    Every message waits until the previous one has left: only then is the latest sent.
+    """
+    stream = web.WebSocketResponse(protocols=(subprotocol,), writer_limit=0, **settings)
+    if stream.can_prepare(request).protocol != subprotocol:
+        raise web.HTTPBadRequest(text=f"Ask for a WebSocket with {subprotocol}.")
+    await stream.prepare(request)
+    return stream
 
 
 async def add_security_headers(_request: web.Request, response: web.StreamResponse) -> None:

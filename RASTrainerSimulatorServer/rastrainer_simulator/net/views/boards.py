@@ -9,13 +9,18 @@ from __future__ import annotations
 import asyncio
 import math
 
-from aiohttp import hdrs, web
+from aiohttp import web
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import with_units
 from rastrainer.protocol import OPEN_PHASES
 from rastrainer_simulator.loop.timing import Pacer
-from rastrainer_simulator.net.views.access_control import ROLE, read_body, refuse_for
+from rastrainer_simulator.net.views.access_control import (
+    ROLE,
+    fresh_json,
+    read_body,
+    refuse_for,
+)
 from rastrainer_simulator.net.views.view_socket import ViewSocket
 from rastrainer_simulator.ops.instructor_pin import InstructorPin
 from rastrainer_simulator.presentation.messages import (
@@ -109,4 +114,4 @@ class InstructorOrders:
         problem = self._presenter.instruct(asked.order, asked.sentence)
         if problem:
             raise web.HTTPConflict(text=problem)
-        return web.json_response({}, headers={hdrs.CACHE_CONTROL: "no-store"})
+        return fresh_json({})

@@ -44,9 +44,13 @@ def own_certificate(folder: Path) -> Certificate:
     names = own_names()
     try:
         make_private_folder(folder)
-        if _is_usable(file, names_file, names):
-            # An incomplete one, as after a full disk, is replaced.
-            with contextlib.suppress(ssl.SSLError):
+        # None yet, or an incomplete one, as after a full disk, is replaced.
+        with contextlib.suppress(FileNotFoundError, ssl.SSLError):
+            made_for = names_file.read_text(encoding="utf-8").split()
+            made = datetime.fromtimestamp(file.stat().st_mtime, timezone.utc)
+            age = datetime.now(timezone.utc) - made
+            is_young = timedelta(0) <= age < timedelta(days=VALID_DAYS - RENEWED_BEFORE_DAYS)
+            if is_young and set(names) <= set(made_for):
                 return _read(file)
         _make(file, names_file, names)
         return _read(file)
@@ -84,25 +88,10 @@ def _read(file: Path) -> Certificate:
         tls.load_cert_chain(file)
         # Another simulator that starts at the same time may just have made its own.
         if file.read_bytes() == content:
-            return Certificate(tls, _fingerprint(content.decode("ascii")))
-
-
-def _fingerprint(content: str) -> str:
-    _before, begin, rest = content.partition(ssl.PEM_HEADER)
-    certificate, end, _after = rest.partition(ssl.PEM_FOOTER)
-    digest = hashlib.sha256(ssl.PEM_cert_to_DER_cert(begin + certificate + end))
-    return digest.digest().hex(":").upper()
-
-
-def _is_usable(file: Path, names_file: Path, names: tuple[str, ...]) -> bool:
-    try:
-        made_for = names_file.read_text(encoding="utf-8").split()
-        made = datetime.fromtimestamp(file.stat().st_mtime, timezone.utc)
-    except OSError:
-        return False
-    age = datetime.now(timezone.utc) - made
-    is_young = timedelta(0) <= age < timedelta(days=VALID_DAYS - RENEWED_BEFORE_DAYS)
-    return is_young and set(names) <= set(made_for)
+            _before, begin, rest = content.decode("ascii").partition(ssl.PEM_HEADER)
+            pem = begin + "".join(rest.partition(ssl.PEM_FOOTER)[:2])
+            digest = hashlib.sha256(ssl.PEM_cert_to_DER_cert(pem)).digest()
+            return Certificate(tls, digest.hex(":").upper())
 
 
 def _make(file: Path, names_file: Path, names: tuple[str, ...]) -> None:

@@ -10,7 +10,7 @@ import ssl
 from collections.abc import Sequence
 from pathlib import Path
 
-from aiohttp import hdrs, web
+from aiohttp import web
 from aiohttp.http_exceptions import HttpProcessingError
 from aiohttp.typedefs import Handler
 
@@ -27,6 +27,7 @@ from rastrainer_simulator.net.views.access_control import (
     Sessions,
     add_security_headers,
     check_origin,
+    fresh_json,
     is_public,
     read_body,
     refuse_for,
@@ -145,7 +146,7 @@ class GuardedServer:
             refuse_for(self._code.seconds_to_wait(), TOO_MANY)
             raise web.HTTPForbidden(text=WRONG)
         key = self._sessions.open(asked.role)
-        response = web.json_response({"key": key}, headers={hdrs.CACHE_CONTROL: "no-store"})
+        response = fresh_json({"key": key})
         response.set_cookie(
             COOKIE, key, path="/", httponly=True, samesite="Strict", secure=request.secure
         )

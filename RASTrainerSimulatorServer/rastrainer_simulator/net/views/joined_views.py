@@ -45,6 +45,7 @@ from rastrainer_simulator.scene.scene_files import SceneFiles
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.vectors import vector
 from rastrainer_simulator.viewpoint.arm_cover import ArmCover, places_to_see
+from rastrainer_simulator.viewpoint.best_view import load_marks
 from rastrainer_simulator.viewpoint.view_control import Pictures
 
 _log = logging.getLogger(__name__)
@@ -241,6 +242,7 @@ class JoinedViews:
             self._scene = message_text(news)
             for view in self._views.values():
                 view.outbox.put_latest(SceneNews.type, self._scene)
+            await asyncio.to_thread(load_marks)
             # The views that have just got this scene need the processor first.
             await asyncio.sleep(_BEFORE_BUILDING_AHEAD_S)
             await self._scenes.build_all(setup)

@@ -27,6 +27,8 @@ from rastrainer_simulator.net.views.access_control import (
     SHORTEST_KEY,
     PairingCode,
     Sessions,
+    fresh_json,
+    open_socket,
 )
 from rastrainer_simulator.net.views.boards import InstructorOrders
 from rastrainer_simulator.net.views.guarded_server import GuardedServer, page_answer
@@ -106,8 +108,8 @@ class ViewServer:
         routes = [
             web.get("/", self._send_page),
             web.get("/scene/{sha256:[0-9a-f]{64}}.glb", self._send_scene),
-            web.get("/sounds/{name:[a-z-]{1,32}}.wav", self._send_sound),
-            web.get("/scenarios/{name:[a-z0-9-]{1,40}}.png", self._send_picture),
+            web.get("/sounds/{name:[a-z-]{1,32}}.wav", self._send_file),
+            web.get("/scenarios/{name:[a-z0-9-]{1,40}}.png", self._send_file),
             web.get("/role", _send_role),
             web.post("/instructor", InstructorOrders(pin, presenter).take),
             web.get("/stream", self._stream),
@@ -201,37 +203,29 @@ class ViewServer:
             content = await asyncio.to_thread(gzip.decompress, content)
         return web.Response(body=content, content_type="model/gltf-binary", headers=headers)
 
-    async def _send_sound(self, request: web.Request) -> web.StreamResponse:
-        path = asset_path("sounds", f"{request.match_info['name']}.wav")
-        if not path.is_file():
-            raise web.HTTPNotFound
-        return web.FileResponse(path)
-
-    async def _send_picture(self, request: web.Request) -> web.StreamResponse:
-        path = self._scenario_picture(request.match_info["name"])
+    async def _send_file(self, request: web.Request) -> web.StreamResponse:
+        """Send a sound, or the picture of a scenario."""
+        name, is_sound = request.match_info["name"], request.path.endswith(".wav")
+        path = asset_path("sounds", f"{name}.wav") if is_sound else self._scenario_picture(name)
         if path is None or not path.is_file():
             raise web.HTTPNotFound
-        return web.FileResponse(path, headers={"Content-Type": "image/png"})
+        return web.FileResponse(path, headers=None if is_sound else {"Content-Type": "image/png"})
 
     async def _stream(self, request: web.Request) -> web.StreamResponse:
-        stream = web.WebSocketResponse(
-            protocols=(SUBPROTOCOL,),
-            max_msg_size=MAX_MESSAGE_BYTES,
-            heartbeat=self._limits.gone_s / 2.0,
-            compress=False,
-            # Pings are answered by the view, where they count as any message does.
-            autoping=False,
-            # Every message waits until the previous one has left: only then is the latest sent.
-            writer_limit=0,
-        )
-        if stream.can_prepare(request).protocol != SUBPROTOCOL:
-            raise web.HTTPBadRequest(text=f"Ask for a WebSocket with {SUBPROTOCOL}.")
         role = request[ROLE]
         if self._streams[role] >= (SPECTATORS if role.is_watch_only else self._limits.views):
             raise web.HTTPServiceUnavailable(text=FULL)
         self._streams[role] += 1
         try:
-            await stream.prepare(request)
+            stream = await open_socket(
+                request,
+                SUBPROTOCOL,
+                max_msg_size=MAX_MESSAGE_BYTES,
+                heartbeat=self._limits.gone_s / 2.0,
+                compress=False,
+                # Pings are answered by the view, where they count as any message does.
+                autoping=False,
+            )
             _limit_buffering(request)
             try:
                 hello = await _first_message(stream, role)
@@ -277,7 +271,7 @@ def _limit_buffering(request: web.Request) -> None:
 
 async def _send_role(request: web.Request) -> web.Response:
     """Return to a browser, which cannot read its cookie, the role it was paired for."""
-    return web.json_response({"role": request[ROLE].value}, headers={"Cache-Control": "no-store"})
+    return fresh_json({"role": request[ROLE].value})
 
 
 async def _or_any_port(listen: Callable[[int], Awaitable[int]], port: int, or_any: bool) -> int:
