@@ -33,12 +33,9 @@ class TracedPoint:
 
 @dataclass(frozen=True)
 class TraceState:
-    """The points that were traced, stroke by stroke.
+    """The points that were traced, stroke by stroke, and whether a stroke is being drawn.
 
-    Attributes:
-        points: in the order of tracing.
-        strokes: how many points there were before each stroke.
-        is_on: whether a stroke is being drawn.
+    `strokes` are the numbers of points before each stroke.
     """
 
     points: tuple[TracedPoint, ...] = ()
@@ -90,14 +87,10 @@ class TouchState:
 
 @dataclass(frozen=True)
 class CheckedPoint:
-    """A checkpoint as it was touched.
+    """A checkpoint as it was touched: where the tip was (World, m) and when.
 
-    Attributes:
-        name: of the checkpoint.
-        position: of the tip, World, m.
-        error: its distance to the checkpoint by the registration in use, m.
-        sim_time: s.
-        elapsed: the trial's time in s, pauses excluded.
+    `error` is its distance to the checkpoint by the registration in use, m; `elapsed` the trial's
+    time in s, pauses excluded.
     """
 
     name: str
@@ -111,10 +104,7 @@ class CheckedPoint:
 class RegistrationAttempt:
     """One round of touching, registering and checking.
 
-    Attributes:
-        touches: that were registered.
-        registration: that was used; None if the trainee touched again before there was one.
-        checkpoints: that were touched by it.
+    The registration is None if the trainee touched again before there was one.
     """
 
     touches: tuple[TouchState, ...]
@@ -203,12 +193,10 @@ class TrajectoryState:
     Attributes:
         line: as the registration in use shows it.
         alignments: how often the guide was locked.
-        guide: as it was locked last; None before.
         is_self_aligned: whether the robot brought the guide onto the line, or it was locked as
             the robot would have brought it; what hands changed of it since makes it no less so.
         drill_depth: the deepest that the drill was.
         instrument_depth: where the instrument was released; None before.
-        times_s: by phase, pauses excluded.
     """
 
     line: PlannedLine
@@ -225,7 +213,6 @@ class ProcedureState:
     """The progress of a trial's procedure; the same object until something changes.
 
     Attributes:
-        name: of the procedure.
         stage: the phase that it is in, also while the trial is paused; `running` until the
             touches are registered.
         since: the trial's time in s at which the stage began.

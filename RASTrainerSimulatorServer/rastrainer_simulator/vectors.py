@@ -57,8 +57,7 @@ def length(a: Vector) -> float:
     return math.sqrt(dot(a, a))
 
 
-def distance(a: Vector, b: Vector) -> float:
-    return math.dist(a, b)
+distance = math.dist
 
 
 def unit(a: Vector) -> Vector:

@@ -24,9 +24,12 @@ from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.igtl.simulator_link import SimulatorLink
-from rastrainer_simulator.record.aborted_trials import attempt_entry
 from rastrainer_simulator.record.journal_writer import Journal
-from rastrainer_simulator.record.trial_archive import TrialArchive, find_unacknowledged
+from rastrainer_simulator.record.trial_archive import (
+    TrialArchive,
+    attempt_entry,
+    find_unacknowledged,
+)
 from Testing.domain.trial.trial_records import make_aborted
 from Testing.end_to_end.faulty_proxy import FaultyProxy, SlicerSide
 from Testing.end_to_end.finished_trials import COLIN, TRAINEE, write_finished_trials

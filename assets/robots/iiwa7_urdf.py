@@ -43,8 +43,16 @@ def urdf_text(bodies: Mapping[str, LinkBody], tip: tuple[str, str]) -> str:
     for name, color in COLORS.items():
         material = ElementTree.SubElement(robot, "material", name=name)
         ElementTree.SubElement(material, "color", rgba=_numbers(color))
-    for link in LINK_NAMES:
-        _add_link(robot, link, bodies[link])
+    for name in LINK_NAMES:
+        link, body = ElementTree.SubElement(robot, "link", name=name), bodies[name]
+        inertial = ElementTree.SubElement(link, "inertial")
+        ElementTree.SubElement(inertial, "origin", xyz=_numbers(body.center_of_mass), rpy="0 0 0")
+        ElementTree.SubElement(inertial, "mass", value=_number(body.mass))
+        moments = zip(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), body.inertia, strict=True)
+        ElementTree.SubElement(inertial, "inertia", {key: _number(at) for key, at in moments})
+        for file, color in body.visuals:
+            _add_visual(link, file, color)
+        _add_mesh(ElementTree.SubElement(link, "collision"), body.collision)
     _add_visual(ElementTree.SubElement(robot, "link", name=TOOL_TIP_LINK), *tip)
     for joint, parent, child in zip(JOINTS, LINK_NAMES[:7], LINK_NAMES[1:8], strict=True):
         element = _add_joint(robot, joint.name, "revolute", parent, child, joint.origin)
@@ -63,21 +71,8 @@ def urdf_text(bodies: Mapping[str, LinkBody], tip: tuple[str, str]) -> str:
     ):
         _add_joint(robot, name, "fixed", parent, child, (0.0, 0.0, height))
     ElementTree.indent(robot)
-    body = ElementTree.tostring(robot, encoding="unicode")
-    return f'<?xml version="1.0"?>\n{HEADER}\n{body}\n'
-
-
-def _add_link(robot: ElementTree.Element, name: str, body: LinkBody) -> None:
-    link = ElementTree.SubElement(robot, "link", name=name)
-    inertial = ElementTree.SubElement(link, "inertial")
-    ElementTree.SubElement(inertial, "origin", xyz=_numbers(body.center_of_mass), rpy="0 0 0")
-    ElementTree.SubElement(inertial, "mass", value=_number(body.mass))
-    names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-    moments = dict(zip(names, map(_number, body.inertia), strict=True))
-    ElementTree.SubElement(inertial, "inertia", moments)
-    for file, color in body.visuals:
-        _add_visual(link, file, color)
-    _add_mesh(ElementTree.SubElement(link, "collision"), body.collision)
+    text = ElementTree.tostring(robot, encoding="unicode")
+    return f'<?xml version="1.0"?>\n{HEADER}\n{text}\n'
 
 
 def _add_visual(link: ElementTree.Element, file: str, color: str) -> None:

@@ -17,7 +17,7 @@ import numpy as np
 
 from rastrainer.errors import RASTrainerError
 from rastrainer.head.mesh import HeadMesh, write_head_mesh
-from rastrainer.head.volume import HeadVolume, read_nrrd, write_nrrd
+from rastrainer.head.volume import read_nrrd
 from rastrainer.slicer.head.head_draft import makeDraft
 from rastrainer_headless.volume_files import readVolume
 
@@ -51,8 +51,17 @@ def make(mri: Path, check: bool) -> int:
         readVolume(mri), progress=lambda step, share: print(f"{share:4.0%}  {step}")
     )
     if check:
-        same = [_is_same_mesh("head", HEAD, draft.head), _is_same_mesh("skull", SKULL, draft.skull)]
-        return 0 if all([*same, _is_same_volume(draft.volume)]) else 1
+        values, matrix = read_nrrd(VOLUME)
+        volume = draft.volume
+        same = {
+            "head": _is_same_mesh(HEAD, draft.head),
+            "skull": _is_same_mesh(SKULL, draft.skull),
+            "volume": np.array_equal(values, volume.values)
+            and np.array_equal(matrix, volume.ijk_to_ras),
+        }
+        for what, is_same in same.items():
+            print(f"The committed {what} {'is the same' if is_same else 'differs'}.")
+        return 0 if all(same.values()) else 1
     write_head_mesh(HEAD, draft.head)
     write_head_mesh(SKULL, draft.skull)
     write_nrrd(VOLUME, draft.volume.values, draft.volume.ijk_to_ras)
@@ -61,22 +70,11 @@ def make(mri: Path, check: bool) -> int:
     return 0
 
 
-def _is_same_mesh(what: str, path: Path, mesh: HeadMesh) -> bool:
+def _is_same_mesh(path: Path, mesh: HeadMesh) -> bool:
     with tempfile.TemporaryDirectory() as folder:
         again = Path(folder) / path.name
         write_head_mesh(again, mesh)
-        return _told(what, again.read_bytes() == path.read_bytes())
-
-
-def _is_same_volume(volume: HeadVolume) -> bool:
-    values, matrix = read_nrrd(VOLUME)
-    same = np.array_equal(values, volume.values) and np.array_equal(matrix, volume.ijk_to_ras)
-    return _told("volume", same)
-
-
-def _told(what: str, same: bool) -> bool:
-    print(f"The committed {what} is the same." if same else f"The committed {what} differs.")
-    return same
+        return again.read_bytes() == path.read_bytes()
 
 
 if __name__ == "__main__":

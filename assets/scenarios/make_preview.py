@@ -39,7 +39,9 @@ def main() -> int:
     window.SetMultiSamples(4)
     window.SetSize(TILE[0] * len(scenario.tasks), TILE[1] * len(VIEWS))
     skin = vtk.vtkPolyDataNormals()
-    skin.SetInputData(surface(mesh.vertices, mesh.triangles))
+    head = surface(mesh.vertices, mesh.triangles)
+    head.GetPoints().SetData(numpy_to_vtk(mesh.vertices, deep=True))  # In double precision.
+    skin.SetInputData(head)
     skin.SetFeatureAngle(60)
     for column, task in enumerate(scenario.tasks):
         for row, (view, direction) in enumerate(VIEWS.items()):

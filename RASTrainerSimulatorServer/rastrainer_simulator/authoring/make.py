@@ -54,7 +54,6 @@ class ScenarioOptions:
         targets: planned; the target error is reported at the first.
         task_files: manually placed markups, in the order of the tasks; without any, tasks are
             proposed.
-        seed: of the proposal.
     """
 
     title: str

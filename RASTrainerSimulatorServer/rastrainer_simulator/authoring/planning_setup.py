@@ -38,11 +38,8 @@ def touchable(
 ) -> np.ndarray:
     """Return which points (n,) bool can be touched in every pose of the head.
 
-    Args:
-        planner: with the same `collision`, whose head is put into each pose.
-        positions: (n, 3) float, RAS mm.
-        normals: (n, 3) float, outward unit normals, RAS.
-        poses: HeadToWorld, (4, 4) float, mm, one after the other.
+    Positions (mm) and outward unit normals are (n, 3) float, RAS; `poses` are HeadToWorld, (4, 4)
+    float, mm, into which the collision's head is put. The planner has the same collision.
     """
     can_be = np.ones(len(positions), dtype=bool)
     likely = np.zeros(len(positions), dtype=int)

@@ -40,7 +40,6 @@ class TaskPlan:
     """The demands of a task.
 
     Attributes:
-        name, title: of the task.
         hidden: number of fiducials that the default view does not show.
         off_axis_deg: largest angle between the normal of a shown fiducial and the view's direction.
         crossings: how often the order changes between the right and the left half; 0 for the

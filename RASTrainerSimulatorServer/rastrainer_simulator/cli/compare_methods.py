@@ -23,8 +23,8 @@ from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli import arg
 from rastrainer_simulator.cli.options import Subcommand, json_text, text_table
 from rastrainer_simulator.report.charts import Series, grouped_bars
-from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE
 from rastrainer_simulator.virtual.method_trials import (
+    PUBLISHED_NOISE,
     MethodResult,
     mean_of,
     points_of_trial,

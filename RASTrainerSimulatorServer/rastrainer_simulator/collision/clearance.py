@@ -30,21 +30,15 @@ class Clearance(NamedTuple):
         shaft: the rest of the tool against the head, where it is near (see `SHAFT_NEAR`), else
             None; it starts 3 mm behind the tip.
         links_m: the links, flange included, against the head; at most FAR.
-        links_worst: the link that is nearest to the head, "" where none is within FAR.
         self_m: the arm against itself, links at least three joints apart; at most FAR.
-        self_worst: the two links nearest to each other, () where none are within FAR.
         table_m: arm and tool against the table and the head's stand; at most FAR.
-        table_worst: the link nearest to them, "" where none is within FAR.
     """
 
     tip: Nearest
     shaft: Nearest | None
     links_m: float
-    links_worst: str
     self_m: float
-    self_worst: tuple[str, ...]
     table_m: float
-    table_worst: str
 
     @property
     def tip_m(self) -> float:
@@ -112,18 +106,17 @@ class DistanceBounds:
 
     def nearest(
         self, traveled: float, distance: Callable[[int], float], rough: Callable[[], np.ndarray]
-    ) -> tuple[float, int | None]:
-        """Return the least distance, m, and its row; FAR and None where all are farther.
+    ) -> float:
+        """Return the least distance, m, at most FAR.
 
         `distance` gives that of a row, m; for the others see `due`.
         """
-        best, nearest = FAR, None
+        best = FAR
         for row in self.due(traveled, rough):
             found = distance(row)
             self.put_off(row, found, traveled)
-            if found < best:
-                best, nearest = found, row
-        return best, nearest
+            best = min(best, found)
+        return best
 
     def put_off(self, row: int, distance: float, traveled: float) -> None:
         """Make a row due again when it may be below FAR; it is now at least `distance`, m."""
@@ -183,29 +176,28 @@ class HeadClearance:
     def nearest_to_shaft(self, posed: PosedArm, limit: float) -> Nearest | None:
         """Return the point of the head nearest to the shaft, World, m; None beyond `limit`."""
         rows = range(self._arm.link_count, len(self._known))
-        found, _ = self._nearest(posed, rows, self._bounds(posed, rows), limit)
+        found = self._nearest(posed, rows, self._bounds(posed, rows), limit)
         return None if found is None else self._in_world(found)
 
-    def nearest_to_links(self, posed: PosedArm, traveled: float) -> tuple[float, str]:
-        """Return the clearance of the links, m, and the nearest of them.
+    def nearest_to_links(self, posed: PosedArm, traveled: float) -> float:
+        """Return the clearance of the links, m, at most FAR.
 
-        The clearance is at most FAR, and then no link is named. `traveled` is how far the arm has
-        moved in all, m.
+        `traveled` is how far the arm has moved in all, m.
         """
         rows = self._distance_bounds.due(traveled)
         if not rows:
-            return FAR, ""
-        found, nearest = self._nearest(posed, rows, self._bounds(posed, rows), FAR)
+            return FAR
+        found = self._nearest(posed, rows, self._bounds(posed, rows), FAR)
         for row, bound in zip(rows, self._bounds(posed, rows), strict=True):
             self._distance_bounds.put_off(row, bound, traveled)
-        return (FAR, "") if found is None else (found.distance_m, self._arm.names[nearest])
+        return FAR if found is None else found.distance_m
 
     def are_links_off(self, posed: PosedArm, clearance: float) -> bool:
         """Return whether every link keeps a clearance, m, to the head."""
         rows = range(self._arm.link_count)
         off_sphere = self._off_sphere(posed)
         bounds = list(map(max, off_sphere, self._bounds(posed, rows, off_sphere)))
-        return self._nearest(posed, rows, bounds, clearance)[0] is None
+        return self._nearest(posed, rows, bounds, clearance) is None
 
     def _bounds(
         self, posed: PosedArm, rows: Sequence[int], off_sphere: Sequence[float] = ()
@@ -230,8 +222,8 @@ class HeadClearance:
 
     def _nearest(
         self, posed: PosedArm, rows: Sequence[int], bounds: list[float], limit: float
-    ) -> tuple[Nearest | None, int]:
-        """Return the point nearest to some capsules, if nearer than `limit`, and that capsule."""
+    ) -> Nearest | None:
+        """Return the point nearest to some capsules, if nearer than `limit`."""
         best, best_row = None, -1
         for bound, row in sorted(zip(bounds, rows, strict=True)):
             if bound >= limit:
@@ -241,7 +233,7 @@ class HeadClearance:
             # Of two equally near capsules the first counts, whatever the order of the queries.
             if distance < limit or (distance == limit and row < best_row):
                 best, best_row, limit = found, row, distance
-        return best, best_row
+        return best
 
     def _query(self, posed: PosedArm, row: int) -> Nearest:
         segment, radius = self._segments[row], self._arm.capsules[row].radius

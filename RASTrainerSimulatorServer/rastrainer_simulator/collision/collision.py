@@ -65,19 +65,16 @@ class TableClearance:
         self._stand = ((x, y, self._table), (x, y, top)) if upright else None
         self._distance_bounds.forget()
 
-    def nearest(self, posed: PosedArm, traveled: float) -> tuple[float, str]:
-        """Return the least signed distance to table and stand, m, and the link.
+    def nearest(self, posed: PosedArm, traveled: float) -> float:
+        """Return the least signed distance to table and stand, m, at most FAR.
 
-        The distance is at most FAR, and then no link is named. `traveled` is how far the arm has
-        moved in all, m.
+        `traveled` is how far the arm has moved in all, m.
         """
-        best, row = self._distance_bounds.nearest(
+        best = self._distance_bounds.nearest(
             traveled, partial(self._distance, posed), partial(self._bounds, posed)
         )
-        name = "" if row is None else self._arm.names[row]
-        # The tip is no part of a capsule; it is the tool's, which is last.
-        above = posed.tip[2] - self._table
-        return (above, self._arm.names[-1]) if above < best else (best, name)
+        # The tip is no part of a capsule.
+        return min(best, posed.tip[2] - self._table)
 
     def _bounds(self, posed: PosedArm) -> np.ndarray:
         """Return a lower bound of the distance of each capsule, (n,) float, m."""
@@ -112,20 +109,17 @@ class SelfClearance:
         self._pairs = list(zip(self._first.tolist(), self._second.tolist(), strict=True))
         self._reaches = arm.reach[self._first] + arm.reach[self._second]
         self._radii = (arm.radii[self._first] + arm.radii[self._second]).tolist()
-        self._names = [(arm.names[i], arm.names[j]) for i, j in self._pairs]
         # Both links of a pair may move toward each other.
         self._distance_bounds = DistanceBounds(len(self._pairs), closing=2.0)
 
-    def nearest(self, posed: PosedArm, traveled: float) -> tuple[float, tuple[str, ...]]:
-        """Return the least signed distance of two links, m, and the two.
+    def nearest(self, posed: PosedArm, traveled: float) -> float:
+        """Return the least signed distance of two links, m, at most FAR.
 
-        The distance is at most FAR, and then no links are named. `traveled` is how far the arm has
-        moved in all, m.
+        `traveled` is how far the arm has moved in all, m.
         """
-        best, pair = self._distance_bounds.nearest(
+        return self._distance_bounds.nearest(
             traveled, partial(self._distance, posed), partial(self._bounds, posed)
         )
-        return best, () if pair is None else self._names[pair]
 
     def _bounds(self, posed: PosedArm) -> np.ndarray:
         """Return a lower bound of the distance of each pair, (pairs,) float, m."""
@@ -186,9 +180,9 @@ class Collision:
         return Clearance(
             tip,
             self._head.nearest_to_shaft(posed, max(tip.distance_m, SHAFT_NEAR)),
-            *self._head.nearest_to_links(posed, traveled),
-            *self._self.nearest(posed, traveled),
-            *self._table.nearest(posed, traveled),
+            self._head.nearest_to_links(posed, traveled),
+            self._self.nearest(posed, traveled),
+            self._table.nearest(posed, traveled),
         )
 
     def is_clear(self, link_to_world: Mapping[str, np.ndarray], clearance: float) -> bool:
@@ -201,10 +195,10 @@ class Collision:
         posed = self._arm.pose(link_to_world)
         traveled = self._travel(posed)
         return (
-            self._table.nearest(posed, traveled)[0] >= clearance
+            self._table.nearest(posed, traveled) >= clearance
             and self._head.nearest_to_shaft(posed, 0.0) is None
             and self._head.are_links_off(posed, clearance)
-            and self._self.nearest(posed, traveled)[0] >= clearance
+            and self._self.nearest(posed, traveled) >= clearance
         )
 
     def _travel(self, posed: PosedArm) -> float:

@@ -14,21 +14,24 @@ import numpy as np
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError, RASTrainerError
-from rastrainer.journal.folder import SUFFIX, journals_of
+from rastrainer.journal.folder import SUFFIX, JournalNumber, journals_of
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal, stamp
+from rastrainer.journal.recording import WholeRecording
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.procedure.record import UsedRegistration
+from rastrainer.protocol import PROCEDURE_PHASES, AbortReason, Phase
+from rastrainer.scenario.scenario import method_of
 from rastrainer.trial.aborted_trial import AbortedTrial
-from rastrainer.trial.record import TrialRecord
-from rastrainer_simulator.record.aborted_trials import (
-    ArchivedAttempt,
-    archived_attempt,
-    attempt_entry,
-    interrupted_attempt,
+from rastrainer.trial.record import TouchedPoint, TrialRecord
+from rastrainer_simulator.core.interrupted_trial import (
+    MALFORMED,
+    InterruptedTrial,
+    refusing_malformed,
 )
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training.head_pose import Truth
+from rastrainer_simulator.vectors import vector
 
 FIRST_REACH = 1 << 16
 """Bytes at the end of a journal that are read first."""
@@ -100,6 +103,101 @@ class ArchivedTrial:
             if self.scored != arguments:
                 return "scored", replace(self, scored=arguments)
         return "", self
+
+
+@dataclass(frozen=True)
+class ArchivedAttempt:
+    """An aborted trial, and whether a client has acknowledged its record."""
+
+    record: AbortedTrial
+    acknowledged: bool = False
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether nothing more is expected."""
+        return self.acknowledged
+
+    def summary(self) -> dict[str, Any]:
+        """Return the data of GetTrial; the head's pose in an aborted trial is never revealed."""
+        return {
+            "trialId": self.record.trial_id,
+            "phase": "aborted",
+            "record": record_to_json(self.record),
+            "acknowledged": self.acknowledged,
+        }
+
+
+def attempt_entry(record: AbortedTrial, times: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the entry that holds the record of an aborted trial."""
+    return {"kind": "attempt", **times, "record": record_to_json(record)}
+
+
+def archived_attempt(reading: JournalReading) -> ArchivedAttempt | None:
+    """Return the trial of a journal, None if it was not aborted."""
+    found = reading.of_kind("attempt")
+    if not found or reading.of_kind("registered"):
+        return None
+    record = record_from_json(AbortedTrial, found[-1].get("record"))
+    return ArchivedAttempt(record, bool(reading.of_kind("acknowledged")))
+
+
+def interrupted_attempt(reading: JournalReading) -> AbortedTrial | None:
+    """Return the record of the trial of an open journal; None if the trial is over.
+
+    A trial that was interrupted by the end of the simulator and never resumed counts as aborted:
+    otherwise ending the simulator would be a way to discard a bad trial.
+    """
+    if not reading.entries or InterruptedTrial.of(reading.entries) is None:
+        return None
+    with refusing_malformed(MALFORMED):
+        return _aborted(reading.entries)
+
+
+def _aborted(entries: tuple[Mapping[str, Any], ...]) -> AbortedTrial:
+    header, trajectory = entries[0], WholeRecording.of(entries).trajectory()
+    touches = {entry["label"]: entry for entry in entries if entry["kind"] == "touch"}
+    points = tuple(
+        TouchedPoint(
+            label=touch["label"],
+            # Where the tip was, unless the skin had shifted.
+            position_mm=vector(touch.get("measuredMm", touch["positionMm"])),
+            sim_time_s=touch["simTimeS"] - header["tickS"],
+            utc=touch["utc"],
+        )
+        for touch in (touches[each.label] for each in trajectory.touches)
+    )
+    phases = [entry["phase"] for entry in entries if entry["kind"] in ("phase", "continued")]
+    stage = next((phase for phase in reversed(phases) if phase != Phase.PAUSED.value), "")
+    # A procedure that is paused is aborted in what it was paused in.
+    phase = stage if stage in {phase.value for phase in PROCEDURE_PHASES} else phases[-1]
+    if phase == Phase.COMPLETE.value:
+        elapsed_s = trajectory.intended[-1].time_s
+    else:
+        # Samples are taken while the trial's time runs.
+        elapsed_s = float(trajectory.times_s[-1]) if len(trajectory.times_s) else 0.0
+    number = record_from_json(JournalNumber, header)
+    record = AbortedTrial(
+        trial_id=header["trialId"],
+        trainee=header["trainee"],
+        task=header["task"],
+        mode=header["mode"],
+        scenario=header["scenario"]["name"],
+        started_utc=header["utc"],
+        aborted_utc=entries[-1]["utc"],
+        elapsed_s=elapsed_s,
+        phase=phase,
+        reason=AbortReason.ABANDONED.value,
+        points=points,
+        rejected_touches=len(trajectory.refused),
+        undone_touches=trajectory.undone,
+        versions=header["versions"],
+        touch_rule=header["settings"]["training"]["touchRule"],
+        method=method_of(header["method"]["name"] if "method" in header else None),
+        traced=len(trajectory.traced),
+        number=number.number,
+        series=number.series,
+    )
+    return record_from_json(AbortedTrial, record_to_json(record))
 
 
 class TrialArchive:
@@ -233,32 +331,28 @@ def archived_trial(reading: JournalReading) -> ArchivedTrial | None:
     if reading.integrity is Integrity.ALTERED:
         raise InputError(f"{reading.path} is {reading.sentence}; the trial is not delivered.")
     try:
-        return _archived_trial(reading)
+        registered, registrations, scores = map(
+            reading.of_kind, ("registered", "registration", "scored")
+        )
+        if not registered:
+            return None
+        record = record_from_json(TrialRecord, registered[-1]["record"])
+        trial = ArchivedTrial(
+            record=replace(record, journal_sha256=registered[-1]["sha256"]),
+            truth=record_from_json(Truth, registered[-1]["truth"]),
+            seed=reading.header["seed"],
+            registration=registrations[0]["arguments"] if registrations else None,
+            scored=scores[-1]["arguments"] if scores else None,
+            acknowledged=bool(reading.of_kind("acknowledged")),
+        )
+        # Check that the data of GetTrial and SubmitRegistration can be computed.
+        replace(trial, registration=trial.registration or {"matrix": np.eye(4)}).summary()
     except (InputError, KeyError, TypeError, ValueError, AttributeError) as error:
         # The content may be invalid despite its hashes: forged, or written by a later version.
         raise InputError(
             f"{reading.path} does not hold a registered trial as it should ({error!r}); it is not "
             "delivered."
         ) from None
-
-
-def _archived_trial(reading: JournalReading) -> ArchivedTrial | None:
-    registered = reading.of_kind("registered")
-    if not registered:
-        return None
-    scores = reading.of_kind("scored")
-    registrations = reading.of_kind("registration")
-    record = record_from_json(TrialRecord, registered[-1]["record"])
-    trial = ArchivedTrial(
-        record=replace(record, journal_sha256=registered[-1]["sha256"]),
-        truth=record_from_json(Truth, registered[-1]["truth"]),
-        seed=reading.header["seed"],
-        registration=registrations[0]["arguments"] if registrations else None,
-        scored=scores[-1]["arguments"] if scores else None,
-        acknowledged=bool(reading.of_kind("acknowledged")),
-    )
-    # Check that the data of GetTrial and SubmitRegistration can be computed.
-    replace(trial, registration=trial.registration or {"matrix": np.eye(4)}).summary()
     return trial
 
 

@@ -12,9 +12,14 @@ from rastrainer.commands import CommandName
 from rastrainer.journal.folder import UNNUMBERED, newest_journal, number_of
 from rastrainer.journal.journal_file import JournalReading, file_stamp, stamp
 from rastrainer.protocol import AbortReason, Phase
-from rastrainer_simulator.record.aborted_trials import ArchivedAttempt, attempt_entry
 from rastrainer_simulator.record.journal_writer import Journal
-from rastrainer_simulator.record.trial_archive import SUFFIX, ArchivedTrial, TrialArchive
+from rastrainer_simulator.record.trial_archive import (
+    SUFFIX,
+    ArchivedAttempt,
+    ArchivedTrial,
+    TrialArchive,
+    attempt_entry,
+)
 from rastrainer_simulator.record.trial_context import REAL_TIME, NotedReport, PlayingSession
 from rastrainer_simulator.record.trial_entries import MUST_LAST, TrialEntries
 from rastrainer_simulator.record.trial_records import UnmeasuredRecord

@@ -1,4 +1,4 @@
-"""Light as in a bright room, with soft shadows, and what glows in it."""
+"""Light as in a bright room, with soft shadows."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkRenderingCore import (
     vtkLight,
-    vtkProperty,
     vtkRenderer,
     vtkRenderPass,
     vtkTexture,
@@ -132,13 +131,3 @@ def _passes(shadows: Shadows) -> vtkRenderPass:
         corners.SetDelegatePass(camera)
         smooth.SetDelegatePass(corners)
     return smooth
-
-
-def glow(target: vtkProperty, color: tuple[float, float, float]) -> None:
-    """Give a surface its own color (sRGB) in any light."""
-    # Not by switching the lighting off, which breaks the shader of the shadows.
-    target.SetInterpolationToPhong()
-    target.SetColor(*color)
-    target.SetAmbient(1.0)
-    target.SetDiffuse(0.0)
-    target.SetSpecular(0.0)

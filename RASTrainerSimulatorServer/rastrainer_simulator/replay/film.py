@@ -28,7 +28,13 @@ from rastrainer_simulator.scene.scene_glb import scene_nodes
 from rastrainer_simulator.scene.surfaces import vtk_matrix
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.viewpoint.best_view import TouchViews
-from rastrainer_simulator.viewpoint.view_control import STILL, CameraPose, ViewControl, orbit_to
+from rastrainer_simulator.viewpoint.view_control import (
+    STILL,
+    CameraPose,
+    ViewControl,
+    camera_pose,
+    orbit_to,
+)
 
 RATE_HZ = 25
 SIZE = (1280, 720)
@@ -165,7 +171,7 @@ class _FilmedScene:
             if best is not None:
                 self._control.go(orbit_to(camera, best.eye, best.fiducial))
         self._control.advance(passed_s, camera, STILL, is_arm_still=True)
-        return _camera(self._control.pose(camera))
+        return _camera(camera_pose(camera, self._control.orbit))
 
 
 def _camera(pose: CameraPose) -> Camera:

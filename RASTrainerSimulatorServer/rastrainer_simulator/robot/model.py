@@ -121,7 +121,15 @@ def _walk(robot: yourdfpy.Robot) -> tuple[tuple[Joint, ...], tuple[RobotLink, ..
             if found.type == "fixed":
                 links.append(RobotLink(found.child, link.joint, _constant(origin)))
                 continue
-            _check_serial(found, link, joints)
+            problem = ""
+            if found.type not in _MOVABLE:
+                problem = f"is {found.type}; only revolute joints can be used"
+            elif found.mimic is not None:
+                problem = "mimics another joint; each must move by itself"
+            elif link.joint != len(joints):
+                problem = "branches off: the seven joints must be in a row"
+            if problem:
+                raise InputError(f"Joint {found.name} {problem}.")
             axis = np.array([1.0, 0.0, 0.0]) if found.axis is None else found.axis
             endless = found.type == "continuous"
             joints.append(
@@ -138,15 +146,6 @@ def _walk(robot: yourdfpy.Robot) -> tuple[tuple[Joint, ...], tuple[RobotLink, ..
     if len(joints) != 7:
         raise InputError(f"FABRIK needs seven revolute joints in a row, not {len(joints)}.")
     return tuple(joints), tuple(links)
-
-
-def _check_serial(found: yourdfpy.Joint, link: RobotLink, joints: list[Joint]) -> None:
-    if found.type not in ("revolute", "continuous"):
-        raise InputError(f"Joint {found.name} is {found.type}; only revolute joints can be used.")
-    if found.mimic is not None:
-        raise InputError(f"Joint {found.name} mimics another joint; each must move by itself.")
-    if link.joint != len(joints):
-        raise InputError(f"Joint {found.name} branches off: the seven joints must be in a row.")
 
 
 def _constant(values: np.ndarray) -> np.ndarray:

@@ -129,7 +129,14 @@ def _centers(
         )
     centers, misfits = [], [max(bent)]
     for name, first in (("shoulder", 0), ("elbow", 2), ("wrist", 4)):
-        center, distance = _meeting_point(points[first : first + 3], axes[first : first + 3])
+        # The point nearest to three lines (least squares), and its distance to the farthest.
+        places, directions = points[first : first + 3], axes[first : first + 3]
+        projectors = np.eye(3) - directions[:, :, None] * directions[:, None, :]
+        right = (projectors @ places[:, :, None]).sum(axis=0)[:, 0]
+        # Parallel lines have no such point; the least-norm solution is then off them.
+        center = np.linalg.lstsq(projectors.sum(axis=0), right, rcond=None)[0]
+        misses = (projectors @ (center - places)[:, :, None])[:, :, 0]
+        distance = float(np.linalg.norm(misses, axis=1).max())
         if distance > _MEETING_TOLERANCE:
             raise InputError(
                 f"This is not an S-R-S arm: the axes of joints {first + 1}, {first + 2} and "
@@ -145,16 +152,6 @@ def _centers(
         )
     shoulder, elbow, wrist = centers
     return shoulder, elbow, wrist, max(*misfits, beside)
-
-
-def _meeting_point(points: np.ndarray, axes: np.ndarray) -> tuple[np.ndarray, float]:
-    """Return the point nearest to three lines (least squares) and its distance to the farthest."""
-    projectors = np.eye(3) - axes[:, :, None] * axes[:, None, :]
-    right = (projectors @ points[:, :, None]).sum(axis=0)[:, 0]
-    # Parallel lines have no such point; the least-norm solution is then off them.
-    center = np.linalg.lstsq(projectors.sum(axis=0), right, rcond=None)[0]
-    misses = (projectors @ (center - points)[:, :, None])[:, :, 0]
-    return center, float(np.linalg.norm(misses, axis=1).max())
 
 
 def _conventions(

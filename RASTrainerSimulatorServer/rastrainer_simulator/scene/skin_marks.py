@@ -173,13 +173,9 @@ class SkinMark:
 
 @dataclass(frozen=True)
 class Placement:
-    """The positions of the marks of a task.
+    """The marks of a task: each number as a flat shape and its middle (3,), RAS mm, and the arrows.
 
-    Attributes:
-        numbers: their flat shapes.
-        places: (3,) float, RAS mm, the middle of each number.
-        arrows: from each fiducial to the next.
-        has_room: whether all numbers keep clear of arrows, rims and each other.
+    `has_room` is whether all numbers keep clear of arrows, rims and each other.
     """
 
     numbers: list[Flat]

@@ -4,7 +4,8 @@ virtual ones on one head, with stated noise and skin shift.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -16,9 +17,11 @@ from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, pair
 from rastrainer.head.mesh import HeadMesh, outward_normals, read_head_mesh
 from rastrainer.head.trial_head import SkinShift
+from rastrainer.procedure.geometry import mesh_crossings
 from rastrainer.protocol import COARSE_LANDMARKS, TRACED_METHODS, RegistrationMethod
 from rastrainer.registration.localization_error import error_along_surface, isotropic_error
 from rastrainer.registration.registration import register
+from rastrainer.registration.surface_checks import LEAST_POINTS
 from rastrainer.registration.surface_error import (
     guided_vertices,
     knowledge_of,
@@ -33,9 +36,65 @@ from rastrainer.registration.target_error import (
 )
 from rastrainer.registration.warnings import RegistrationWarning
 from rastrainer.scenario.scenario import Scenario, task_by_method
+from rastrainer.transforms import frame_along
 from rastrainer.trial.score_reference import region_of
 from rastrainer.trial.touch_registration import LEAST_ALONG_SURFACE, GivenPoints, normals_at
-from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE, RangeCamera
+
+PUBLISHED_NOISE: Mapping[RegistrationMethod, float] = {
+    RegistrationMethod.BONE_SCREWS: 0.5,
+    RegistrationMethod.FIDUCIALS: 1.5,
+    RegistrationMethod.LANDMARKS: 4.0,
+    RegistrationMethod.SURFACE: 0.5,
+    RegistrationMethod.LANDMARKS_SURFACE: 0.5,
+    RegistrationMethod.SCAN: 1.07,
+}
+"""In mm: of a touched point, the RMS length of its error (FLE); of a traced or scanned point, the
+standard deviation across the skin or along the ray."""
+
+
+@dataclass(frozen=True, eq=False)
+class RangeCamera:
+    """A simulated range camera before the head: it sees where its rays first meet the skin.
+
+    On skin that faces it, the points are `spacing_mm` apart; the noise is along the rays.
+    """
+
+    eye: np.ndarray
+    noise_mm: float
+    spacing_mm: float = 8.0
+
+    def seen(self, mesh: HeadMesh) -> np.ndarray:
+        """Return the points of the skin at which the rays end, (n, 3) float, RAS mm, exact.
+
+        The rays go through a square grid at distance 1 before the eye. Where ears, nose or brows
+        hide the skin behind them, the rays end on these.
+        """
+        ahead = mesh.middle - self.eye
+        away = float(np.linalg.norm(ahead))
+        spacing, frame = self.spacing_mm / away, frame_along(ahead / away)
+        skin, points = mesh.skin, []
+        seen = (skin.vertices - self.eye) @ frame.T
+        on_grid = seen[:, :2] / seen[:, 2:] / spacing
+        low, high = np.floor(on_grid.min(axis=0)), np.ceil(on_grid.max(axis=0))
+        farthest_mm = float(np.linalg.norm(seen, axis=1).max())
+        for place in itertools.product(*map(np.arange, low, high + 1)):
+            ray = np.array([*place, 1.0 / spacing]) @ frame
+            ray /= np.linalg.norm(ray)
+            if crossings := mesh_crossings(skin, self.eye, ray, farthest_mm):
+                points.append(self.eye + crossings[0].distance_mm * ray)
+        if len(points) < LEAST_POINTS:
+            raise InputError(
+                f"The range camera sees {len(points)} points of the head; a match needs "
+                f"{LEAST_POINTS}: place the camera in front of the face, or its points closer "
+                "together."
+            )
+        return np.array(points)
+
+    def noisy(self, points: np.ndarray, random: Generator) -> np.ndarray:
+        """Return points (n, 3), RAS mm, as the camera measures them."""
+        rays = points - self.eye
+        rays /= np.linalg.norm(rays, axis=1, keepdims=True)
+        return points + random.normal(0.0, self.noise_mm, (len(points), 1)) * rays
 
 
 @dataclass(frozen=True, eq=False)

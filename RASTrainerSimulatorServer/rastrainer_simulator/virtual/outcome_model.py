@@ -184,8 +184,8 @@ class RejectionRates:
         ranks: Share with p < .05 by the rank test.
         coverage: Share whose 95 % interval holds the true difference; None for the score, whose
             true difference is not in the model.
-        true_difference: Mean difference that very many trainees have, second mode minus first,
-            their order apart; None for the score.
+        true_difference: Of the means of very many trainees, second mode minus first; None for the
+            score.
     """
 
     outcome: str

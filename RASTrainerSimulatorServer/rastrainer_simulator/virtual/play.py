@@ -58,18 +58,11 @@ class UnfinishedTrialError(RASTrainerError):
 
 @dataclass(frozen=True)
 class VirtualTrial:
-    """The results of a played trial, and the truth that only a simulation knows.
-
-    Attributes:
-        touches_mm: (15, 3) float, World, mm, in the order of the task.
-        fiducials_mm: (15, 3) float, the same points in the MRI, RAS mm.
-        completion_time_s: simulated time from the start to the last touch.
-    """
+    """The touches (15, 3) of a played trial, World, and the truth: RAS, and the head's pose; mm."""
 
     touches_mm: np.ndarray
     fiducials_mm: np.ndarray
     head_to_world: np.ndarray
-    completion_time_s: float
 
 
 def play_virtual_trial(
@@ -92,7 +85,6 @@ def play_virtual_trial(
         trial_id: UUID; by default derived from the simulation's seed and the trial's number.
     """
     scenario = simulation.setup.scenario
-    task = scenario.task(task_name)
     head_to_world = scenario.perturbed_head_to_world(seed)
     hands = ScriptedTrainee(scenario, task_name, head_to_world, skill, seed)
     start = {
@@ -134,12 +126,10 @@ def play_virtual_trial(
         state = result.state
         if action is not None and action[0] == CommandName.CAPTURE and not result.answers[0].ok:
             hands.touch_refused()
-    touches = state.training.touches
     return VirtualTrial(
-        touches_mm=MM_PER_M * np.array([touch.position for touch in touches]),
-        fiducials_mm=task.fiducials,
+        touches_mm=MM_PER_M * np.array([touch.position for touch in state.training.touches]),
+        fiducials_mm=scenario.task(task_name).fiducials,
         head_to_world=head_to_world,
-        completion_time_s=touches[-1].elapsed,
     )
 
 
@@ -150,11 +140,9 @@ PROCEDURE_STREAM = 21
 
 @dataclass(frozen=True)
 class PlaySettings:
-    """How the jobs of a cohort are played.
+    """How the jobs of a cohort are played; `records` is the folder for the journals.
 
-    Attributes:
-        references: Of the score, by task; the scenario's for tasks that it leaves out.
-        records: Folder for the journals; None for none.
+    The references are those of the score, by task; the scenario's for tasks that they leave out.
     """
 
     scenario: Path | None = None

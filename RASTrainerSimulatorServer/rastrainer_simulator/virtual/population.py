@@ -22,11 +22,9 @@ FIRST_DAY = datetime(2000, 1, 1, 9, tzinfo=timezone.utc)
 
 @dataclass(frozen=True)
 class TrialJob:
-    """One trial to be played.
+    """One trial to be played, and the procedure that it continues with, if any.
 
-    Attributes:
-        seed: Of the head's pose and of the hands.
-        procedure: That it continues with; "" for the touches alone.
+    The seed is that of the head's pose and of the hands.
     """
 
     trainee: str

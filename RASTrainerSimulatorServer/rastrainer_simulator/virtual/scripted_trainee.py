@@ -69,9 +69,8 @@ class Skill:
 class Observation:
     """The view of the trainee.
 
-    Attributes:
-        is_in_contact: whether the tool is shown to touch the head.
-        next_point: number of the fiducial to touch, from 1; 0 if there is none.
+    The tool is shown to touch the head or not; `next_point` is the number of the fiducial to touch,
+    from 1, 0 if there is none.
     """
 
     sim_time_s: float

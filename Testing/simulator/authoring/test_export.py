@@ -22,8 +22,7 @@ from rastrainer.slicer.head.extraction import findHead
 from rastrainer.slicer.head.mask import squaredDistances
 from rastrainer.slicer.head.volume import HeadSettings, Volume
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.authoring.export import Grid, without_face_in
-from rastrainer_simulator.authoring.face_picture import SIDE
+from rastrainer_simulator.authoring.export import SIDE, Grid, without_face_in
 from rastrainer_simulator.authoring.face_removal import (
     RADIUS_MM,
     check_front,

@@ -23,7 +23,7 @@ def clearance(tip_mm, shaft_mm=1000.0):
     def nearest(distance_mm):
         return Nearest(distance_mm / MM_PER_M, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 0)
 
-    return Clearance(nearest(tip_mm), nearest(shaft_mm), FAR, "", FAR, (), FAR, "")
+    return Clearance(nearest(tip_mm), nearest(shaft_mm), FAR, FAR, FAR)
 
 
 def states(tips_mm, settings=ProximitySettings(), start=FREE):  # noqa: B008
@@ -85,7 +85,7 @@ UP = (0.0, 0.0, 1.0)
 def skin(tip_m=REST, shaft=None):
     """Return clearances above level skin, unless the shaft is given as (m, normal)."""
     behind = None if shaft is None else Nearest(shaft[0], ZERO, shaft[1], 0)
-    return Clearance(Nearest(tip_m, ZERO, UP, 0), behind, FAR, "", FAR, (), FAR, "")
+    return Clearance(Nearest(tip_m, ZERO, UP, 0), behind, FAR, FAR, FAR)
 
 
 @pytest.fixture

@@ -19,8 +19,11 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.record.aborted_trials import interrupted_attempt
-from rastrainer_simulator.record.trial_archive import TrialArchive, find_unacknowledged
+from rastrainer_simulator.record.trial_archive import (
+    TrialArchive,
+    find_unacknowledged,
+    interrupted_attempt,
+)
 from rastrainer_simulator.replay.resimulation import replay
 from Testing.simulator.record.test_interrupted_trial import (
     TIMEOUT_S,

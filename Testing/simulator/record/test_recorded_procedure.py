@@ -22,7 +22,7 @@ from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import InterruptedTrial, find_interrupted
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.record.aborted_trials import interrupted_attempt
+from rastrainer_simulator.record.trial_archive import interrupted_attempt
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial
 from rastrainer_simulator.replay.resimulation import replay
 from rastrainer_simulator.state import EventKind, OperatorInput

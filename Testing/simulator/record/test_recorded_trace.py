@@ -14,7 +14,7 @@ from rastrainer.protocol import MIN_TRACE_POINTS, Phase, RegistrationMethod
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.record.aborted_trials import interrupted_attempt
+from rastrainer_simulator.record.trial_archive import interrupted_attempt
 from rastrainer_simulator.replay.resimulation import replay
 from Testing.simulator.landmarked import LANDMARKS, with_landmarks
 from Testing.simulator.record.test_interrupted_trial import Server, cut

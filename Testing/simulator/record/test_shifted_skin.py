@@ -16,8 +16,7 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.net.views.outgoing import TraceUpdate
 from rastrainer_simulator.presentation.presenter import TraceGuidance
-from rastrainer_simulator.record.aborted_trials import interrupted_attempt
-from rastrainer_simulator.record.trial_archive import archived_trial
+from rastrainer_simulator.record.trial_archive import archived_trial, interrupted_attempt
 from rastrainer_simulator.replay.resimulation import replay
 from Testing.simulator.record.test_interrupted_trial import Server
 from Testing.simulator.record.test_recorded_trace import airy, stroke  # noqa: F401

@@ -6,7 +6,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, hides
 from rastrainer.protocol import RegistrationMethod
-from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE, RangeCamera
+from rastrainer_simulator.virtual.method_trials import PUBLISHED_NOISE, RangeCamera
 from Testing.domain.registration.traces import colin27
 
 
