@@ -17,7 +17,7 @@ import numpy as np
 
 from rastrainer.errors import RASTrainerError
 from rastrainer.head.mesh import HeadMesh, write_head_mesh
-from rastrainer.head.volume import read_nrrd
+from rastrainer.head.volume import read_nrrd, write_nrrd
 from rastrainer.slicer.head.head_draft import makeDraft
 from rastrainer_headless.volume_files import readVolume
 
