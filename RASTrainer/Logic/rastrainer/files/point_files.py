@@ -176,7 +176,9 @@ def _from_csv(table: CsvTable) -> tuple[tuple[str, ...], np.ndarray, dict[int, s
     labels, points, left_out = [], [], {}
     for place, (line, cells) in enumerate(table.rows(axes, optional=("label",))):
         label = cells.get("label", "")
-        if _is_left_out(cells):
+        # Slicer does not use points that are deselected or not placed.
+        is_chosen = [cells.get(name, "1") != "0" for name in ("sel", "selected", "defined")]
+        if not all(is_chosen) or cells.get(POSITION_STATUS, "") not in ("", "2"):
             left_out[place] = label
             continue
         labels.append(label)
@@ -184,12 +186,6 @@ def _from_csv(table: CsvTable) -> tuple[tuple[str, ...], np.ndarray, dict[int, s
     is_in_lps = axes == _AXES[2] or _frame(table) == "LPS"
     read = np.array(points).reshape(-1, 3)
     return tuple(labels), read * LPS_TO_RAS if is_in_lps else read, left_out
-
-
-def _is_left_out(cells: Mapping[str, str]) -> bool:
-    """Return whether Slicer would not use a point: it is deselected, or not placed."""
-    is_chosen = [cells.get(name, "1") != "0" for name in ("sel", "selected", "defined")]
-    return not all(is_chosen) or cells.get(POSITION_STATUS, "") not in ("", "2")
 
 
 def _frame(table: CsvTable) -> str:

@@ -23,7 +23,15 @@ def read_bytes(path: str | os.PathLike[str], limit_bytes: int) -> bytes:
         # Opening a pipe would wait for its writer.
         flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
         with os.fdopen(os.open(path, flags), "rb") as file:
-            _check_kind(path, os.fstat(file.fileno()), limit_bytes)
+            status = os.fstat(file.fileno())
+            if stat.S_ISDIR(status.st_mode):
+                raise InputError(f"{path} is a folder; a file is needed.")
+            if not stat.S_ISREG(status.st_mode):
+                raise InputError(f"{path} is not a regular file.")
+            if status.st_size > limit_bytes:
+                raise _too_large(path, limit_bytes)
+            if status.st_size == 0:
+                raise InputError(f"The file {path} is empty.")
             content = file.read(limit_bytes + 1)
     except InputError:
         raise
@@ -102,17 +110,6 @@ def path_beside(file: Path, relative: Path, key: str) -> Path:
     if not path.is_relative_to(folder):
         raise InputError(f"{file}: {key} must be {_OUTSIDE}.")
     return path
-
-
-def _check_kind(path: object, status: os.stat_result, limit_bytes: int) -> None:
-    if stat.S_ISDIR(status.st_mode):
-        raise InputError(f"{path} is a folder; a file is needed.")
-    if not stat.S_ISREG(status.st_mode):
-        raise InputError(f"{path} is not a regular file.")
-    if status.st_size > limit_bytes:
-        raise _too_large(path, limit_bytes)
-    if status.st_size == 0:
-        raise InputError(f"The file {path} is empty.")
 
 
 def _too_large(path: object, limit_bytes: int) -> InputError:

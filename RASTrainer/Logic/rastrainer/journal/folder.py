@@ -157,24 +157,24 @@ def erase_journals(
     for path in sorted((*folder.glob(f"*{SUFFIX}"), *folder.glob(f"*{TUTORIAL_SUFFIX}"))):
         owner = _trainee_of(path)
         if owner == trainee or path.stem.rpartition("_")[2] in trial_ids:
-            _erase(path)
+            try:
+                with _locked(path) as descriptor:
+                    left = os.fstat(descriptor).st_size
+                    os.lseek(descriptor, 0, os.SEEK_SET)
+                    while left > 0:
+                        left -= os.write(descriptor, _ZEROS[: min(left, len(_ZEROS))])
+                    os.fsync(descriptor)
+                path.unlink()
+                path.with_suffix(SEED_SUFFIX).unlink(missing_ok=True)
+            except OSError as error:
+                raise InputError(
+                    f"The file {path} cannot be deleted ({error.strerror}); if the trial is still "
+                    "running, end it first."
+                ) from None
             erased.append(path)
         elif owner is None:
             unreadable.append(path)
     return erased, unreadable
-
-
-def _erase(path: Path) -> None:
-    try:
-        with _locked(path) as descriptor:
-            _overwrite(descriptor)
-        path.unlink()
-        path.with_suffix(SEED_SUFFIX).unlink(missing_ok=True)
-    except OSError as error:
-        raise InputError(
-            f"The file {path} cannot be deleted ({error.strerror}); if the trial is still "
-            "running, end it first."
-        ) from None
 
 
 def _begins_as_journal(path: Path) -> bool:
@@ -199,14 +199,6 @@ def _locked(path: Path) -> Iterator[int]:
         yield descriptor
     finally:
         os.close(descriptor)
-
-
-def _overwrite(descriptor: int) -> None:
-    left = os.fstat(descriptor).st_size
-    os.lseek(descriptor, 0, os.SEEK_SET)
-    while left > 0:
-        left -= os.write(descriptor, _ZEROS[: min(left, len(_ZEROS))])
-    os.fsync(descriptor)
 
 
 _HEADER_BYTES = 512

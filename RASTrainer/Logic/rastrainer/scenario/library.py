@@ -229,7 +229,15 @@ def _read_archive(package: Path, folder: Path, progress: Progress) -> None:
         if package.stat().st_size > MAX_PACKED_BYTES:
             raise _refused(package, f"is larger than {MAX_PACKED_BYTES // 10**6} MB")
         with zipfile.ZipFile(package) as archive:
-            _extract(package, archive, folder, progress)
+            taken = _members(package, archive)
+            if not 1 <= len(taken) <= MAX_FILES:
+                raise _refused(
+                    package, f"holds {len(taken)} files; a scenario has 1 to {MAX_FILES}"
+                )
+            left = MAX_BYTES
+            for number, (name, info) in enumerate(taken.items()):
+                progress(UNPACKING, UNPACKED_SHARE * number / len(taken))
+                left = _extract_member(package, archive, info, folder / name, left)
     except FileNotFoundError:
         raise InputError(f"There is no file {package}.") from None
     except OSError as error:
@@ -238,16 +246,6 @@ def _read_archive(package: Path, folder: Path, progress: Progress) -> None:
         raise
     except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError):
         raise _refused(package, "is not a zip file, or is damaged") from None
-
-
-def _extract(package: Path, archive: zipfile.ZipFile, folder: Path, progress: Progress) -> None:
-    taken = _members(package, archive)
-    if not 1 <= len(taken) <= MAX_FILES:
-        raise _refused(package, f"holds {len(taken)} files; a scenario has 1 to {MAX_FILES}")
-    left = MAX_BYTES
-    for number, (name, info) in enumerate(taken.items()):
-        progress(UNPACKING, UNPACKED_SHARE * number / len(taken))
-        left = _extract_member(package, archive, info, folder / name, left)
 
 
 def _members(package: Path, archive: zipfile.ZipFile) -> dict[str, zipfile.ZipInfo]:
@@ -260,7 +258,15 @@ def _members(package: Path, archive: zipfile.ZipFile) -> dict[str, zipfile.ZipIn
     # Some programs for Windows part folders by backslashes.
     named = [(info.filename.replace("\\", "/"), info) for info in infos]
     for name, info in named:
-        _check_member(package, name, info)
+        parts = name.split("/")
+        is_odd = not name.isprintable() or ":" in name or not {"", ".", ".."}.isdisjoint(parts)
+        if is_odd or any(_DEVICES.fullmatch(part) or part.endswith(".") for part in parts):
+            raise _refused(package, f"holds a file with the path {name[:80]!a}")
+        kind = stat.S_IFMT(info.external_attr >> 16)
+        if kind not in (0, stat.S_IFREG):
+            raise _refused(package, f"holds a link or a device, {printable_name(name[:80])}")
+        if info.flag_bits & 0x1:
+            raise _refused(package, "is encrypted")
     if len({name.casefold() for name, _ in named}) != len(named):
         raise _refused(package, "holds a file twice")
     bases = [name.removesuffix(FILE_NAME) for name, _ in named if name.split("/")[-1] == FILE_NAME]
@@ -269,18 +275,6 @@ def _members(package: Path, archive: zipfile.ZipFile) -> dict[str, zipfile.ZipIn
         raise _refused(package, "holds several scenarios")
     inside = {name[len(base) :]: info for name, info in named if name.startswith(base)}
     return {name: info for name, info in inside.items() if _NAME.fullmatch(name)}
-
-
-def _check_member(package: Path, name: str, info: zipfile.ZipInfo) -> None:
-    parts = name.split("/")
-    is_odd = not name.isprintable() or ":" in name or not {"", ".", ".."}.isdisjoint(parts)
-    if is_odd or any(_DEVICES.fullmatch(part) or part.endswith(".") for part in parts):
-        raise _refused(package, f"holds a file with the path {name[:80]!a}")
-    kind = stat.S_IFMT(info.external_attr >> 16)
-    if kind not in (0, stat.S_IFREG):
-        raise _refused(package, f"holds a link or a device, {printable_name(name[:80])}")
-    if info.flag_bits & 0x1:
-        raise _refused(package, "is encrypted")
 
 
 def _extract_member(
