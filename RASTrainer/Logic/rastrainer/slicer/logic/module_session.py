@@ -89,6 +89,7 @@ class ModuleSession:
         self.studyFile = places.study
         self.studyPlace: StudyPlace = places.studyAddress or places.study
         self._scene = scene
+        self._callSoon = callSoon
         self._lockWait = LockWait.interactive()
         find_driver_in(places.simulator)
         self.scenarios = cache = ScenarioCache(
@@ -232,7 +233,7 @@ class ModuleSession:
     def sceneWasCleared(self) -> None:
         """Forget references into the old scene; a running trial is shown again."""
         # Not yet now, as Slicer shows its last layout again after a scene is closed.
-        self.work.later(self.layout.giveBack)
+        self._callSoon(self.layout.giveBack)
         self.plan.points.forget()
         self.landmarks.points.forget()
         shown = (self.work, self.replay, self.slices, self.scenario, self.registration)
