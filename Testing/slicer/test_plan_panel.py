@@ -26,6 +26,8 @@ def planner(host):
         fiducials = colin.task("task-1").fiducials
         touched = transforms.apply(colin.perturbed_head_to_world(3), fiducials + noise)
         setPoints(capturedPointsNode(host.scene), LABELS, touched)
+        # The mouse would place the point in a list that is added later.
+        host.finish_work()
         host.press("placeTargetButton")
         host.place(10.0, 20.0, 0.0)
         host.wait_until(lambda: "target x" in host.text("planWorldText"), "the plan is mapped")

@@ -24,7 +24,7 @@ _NEW_CODE = re.compile(r"RASTrainer simulator has a new pairing code for views: 
 
 
 class ProgramState(str, Enum):
-    """Of the simulator's process."""
+    """State of the simulator's process."""
 
     STOPPED = "stopped"
     STARTING = "starting"
