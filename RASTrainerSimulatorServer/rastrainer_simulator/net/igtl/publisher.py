@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer.igtl.content import Point, Points, Status, String, Transform
+from rastrainer.igtl.content import Point, Points, String, Transform
 from rastrainer.igtl.message import Message
-from rastrainer.protocol import PROTOCOL_VERSION, DeviceName, Rate
+from rastrainer.protocol import DeviceName, Rate
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.loop.timing import Pacer
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
@@ -111,12 +111,6 @@ def sim_state(changing: Mapping[str, Any], state: SimulationState, seq: int) -> 
     times = {"simTimeS": round(state.sim_time, 6), "elapsedS": round(state.completion_time, 3)}
     text = json.dumps({"seq": seq, **times, **changing}, allow_nan=False)
     return Message(DeviceName.SIM_STATE, String(text))
-
-
-def heartbeat(details: Mapping[str, Any]) -> Message:
-    text = json.dumps({"protocolVersion": PROTOCOL_VERSION, **details}, allow_nan=False)
-    status = Status(Status.OK, subcode=PROTOCOL_VERSION, message=text)
-    return Message(DeviceName.SIM_SERVER, status)
 
 
 def _transform(pose: np.ndarray) -> Transform:

@@ -26,6 +26,7 @@ from rastrainer.igtl.content import (
     SUCCESS,
     Command,
     CommandReply,
+    Status,
     Transform,
 )
 from rastrainer.igtl.message import Message
@@ -36,7 +37,7 @@ from rastrainer.study.protocol.steps import StepAnswers
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
-from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher, heartbeat
+from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher
 from rastrainer_simulator.net.igtl.registration_check import (
     CHECKED,
     RegistrationCheck,
@@ -260,8 +261,10 @@ class SimulatorLink:
         return any(connection.scores for connection in self.server.clients)
 
     def _heartbeat(self) -> Outgoing:
-        clients = len(self.server.clients)
-        return Outgoing(heartbeat({"clients": clients, **self._health()}))
+        details = {"clients": len(self.server.clients), **self._health()}
+        text = json.dumps({"protocolVersion": PROTOCOL_VERSION, **details}, allow_nan=False)
+        status = Status(Status.OK, subcode=PROTOCOL_VERSION, message=text)
+        return Outgoing(Message(DeviceName.SIM_SERVER, status))
 
     def _submit(
         self, connection: ClientConnection, name: str, arguments: Mapping[str, Any]

@@ -250,15 +250,11 @@ class Outbox:
     async def take(self) -> str:
         """Wait for something to send and return it; what moves comes last."""
         await self._is_filled.wait()
-        text = self._next()
+        first = next((kind for kind in _BEFORE_EVENTS if kind in self._latest), None)
+        if first is None and self._events:
+            text = self._events.popleft()
+        else:
+            text = self._latest.pop(first or StateNews.type)
         if not self._latest and not self._events:
             self._is_filled.clear()
         return text
-
-    def _next(self) -> str:
-        for kind in _BEFORE_EVENTS:
-            if kind in self._latest:
-                return self._latest.pop(kind)
-        if self._events:
-            return self._events.popleft()
-        return self._latest.pop(StateNews.type)
