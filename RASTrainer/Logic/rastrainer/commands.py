@@ -87,7 +87,7 @@ class StartTutorialArguments:
     3D Slicer sends it before it starts a trial run.
     """
 
-    trainee: Annotated[str, pseudonym()]
+    trainee: Annotated[str, pseudonym]
     mode: _Mode = Mode.DESKTOP.value
 
 
@@ -96,7 +96,7 @@ class StartTaskArguments:
     """Starts a trial."""
 
     task: str
-    trainee: Annotated[str, pseudonym()]
+    trainee: Annotated[str, pseudonym]
     mode: _Mode = Mode.DESKTOP.value
     seed: Annotated[
         int | None,

@@ -21,7 +21,6 @@ from rastrainer.json_checks import (
     texts,
     whole_number,
 )
-from rastrainer.json_records import record_to_json
 from rastrainer.protocol import (
     ALL_DONE,
     FREE,
@@ -79,7 +78,6 @@ class StudyStep:
     """A step of a trainee through a study; texts that do not apply are empty.
 
     Attributes:
-        trainee: Pseudonym.
         kind: A `StepKind`, `REPEAT` if an aborted trial needs a reason, `ALL_DONE` after the last
             step, or `FREE` without a study.
         number, count: Of the step, from 1, and of all steps; 0 if none.
@@ -111,15 +109,6 @@ class StudyStep:
     skin: Skin = field(default_factory=dict, hash=False)
     name: Annotated[str, text(160)] = ""
     allows: Allowances = ()
-
-    @classmethod
-    def from_arguments(cls, arguments: Mapping[str, Any]) -> StudyStep:
-        """Return the step of checked command arguments."""
-        return cls(**arguments)
-
-    def arguments(self) -> dict[str, Any]:
-        """Return the command arguments, without defaults."""
-        return record_to_json(self)
 
     @property
     def is_played(self) -> bool:
@@ -228,7 +217,6 @@ class CurriculumMessage:
     """A trainee's standing in a curriculum, as the menu shows it.
 
     Attributes:
-        trainee: Pseudonym.
         title: Of the curriculum, for people.
         next: Name of the assignment to practice next; "" for none.
         assignments: In their order; none for a trainee without a curriculum.
@@ -240,19 +228,6 @@ class CurriculumMessage:
     assignments: Annotated[
         tuple[AssignmentStanding, ...], list_of(0, MAX_ASSIGNMENTS, "assignments")
     ] = ()
-
-    @classmethod
-    def from_arguments(cls, arguments: Mapping[str, Any]) -> CurriculumMessage:
-        """Return the message of checked command arguments."""
-        return cls(**arguments)
-
-    def arguments(self) -> dict[str, Any]:
-        """Return the command arguments, without defaults."""
-        return record_to_json(self)
-
-    @property
-    def reached(self) -> int:
-        return sum(each.is_reached for each in self.assignments)
 
     def find(self, name: str) -> AssignmentStanding | None:
         return next((each for each in self.assignments if each.name == name), None)

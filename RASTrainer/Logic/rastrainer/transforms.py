@@ -11,15 +11,7 @@ MM_PER_M = 1000.0
 
 
 def apply(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Map points by a transform.
-
-    Args:
-        matrix: (4, 4) float, affine (last row 0 0 0 1).
-        points: (..., 3) float.
-
-    Returns:
-        (..., 3) float, in the frame that the matrix maps to.
-    """
+    """Return points (..., 3) float mapped by an affine (4, 4) float matrix (last row 0 0 0 1)."""
     matrix = np.asarray(matrix, dtype=float)
     return np.asarray(points, dtype=float) @ matrix[:3, :3].T + matrix[:3, 3]
 

@@ -32,7 +32,6 @@ class CsvTable:
     """The cells of a CSV file.
 
     Attributes:
-        path: of the file.
         remarks: what its first lines say as "# name = value", by name in lower case.
         first: the line that should be the header, as it is written.
         header: the names of the columns in lower case; empty for those without a name.
@@ -147,13 +146,6 @@ def _text(path: str | os.PathLike[str]) -> str:
         with contextlib.suppress(UnicodeDecodeError):
             content = content.decode("utf-16").encode()
     return decode_text(content, f"The file {path}")
-
-
-def read_rows(
-    path: str | os.PathLike[str], required: Sequence[str], optional: Sequence[str] = ()
-) -> list[tuple[int, dict[str, str]]]:
-    """Return the line number and the named cells of each row of a CSV file; see `CsvTable.rows`."""
-    return read_table(path).rows(required, optional)
 
 
 def number_in(

@@ -24,9 +24,6 @@ class PointList:
         points: (n, 3) float, finite, n ≥ 1.
         left_out: places in the list, from 0, and labels of points that are not to be used: those
             that are deselected or not placed in Slicer. `labels` and `points` are without them.
-
-    Raises:
-        InputError: on construction, if they are invalid.
     """
 
     labels: tuple[str, ...]

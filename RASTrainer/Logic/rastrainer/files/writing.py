@@ -37,10 +37,7 @@ def write_text(path: str | os.PathLike[str], text: str, is_private: bool = False
 def write_bytes(path: str | os.PathLike[str], content: bytes, is_private: bool = False) -> None:
     """Write a file atomically: after a crash there is the old or the new one.
 
-    Args:
-        path: of the file; its folder is there.
-        content: all of it.
-        is_private: it is for this user only, unless its folder is shared (see `keep_others_out`).
+    A private one is for this user only, unless its folder is shared (see `keep_others_out`).
     """
     target = Path(path)
     partial = target.parent / f".{uuid.uuid4().hex}.partial"

@@ -36,8 +36,6 @@ if sys.platform == "win32":
         Raises:
             OSError: another program holds the lock.
         """
-        import os
-
         position = os.lseek(descriptor, 0, os.SEEK_CUR)
         os.lseek(descriptor, _FAR, os.SEEK_SET)
         msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
@@ -144,7 +142,6 @@ def erase_journals(
     """Overwrite and delete every journal and tutorial of a trainee, including damaged journals.
 
     Args:
-        folder: Of the journals.
         trainee: Pseudonym; it is in a journal's first line.
         trial_ids: UUIDs of the trainee's trials, to identify journals by file name.
 

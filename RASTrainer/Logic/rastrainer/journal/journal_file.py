@@ -127,8 +127,6 @@ class JournalReading:
     the trial is open: its last entry reveals it, until then the file beside the journal holds it.
 
     Attributes:
-        path: of the file.
-        integrity: whether it is complete and unaltered.
         entries: of the complete lines, up to the first altered one.
         end: number of bytes of these lines.
         sentence: the integrity in words.
@@ -159,16 +157,18 @@ class JournalReading:
 def read_journal(path: Path, pause: Callable[[], None] = lambda: None) -> JournalReading:
     """Read a journal as far as it is intact.
 
-    Args:
-        path: of the file.
-        pause: called regularly while reading; may block, to let other threads run.
+    `pause` is called regularly while reading; it may block, to let other threads run.
     """
     try:
         with path.open("rb") as file:
             reading = _read(path, file, pause)
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}.") from None
-    if reading.entries and (seed := _seed(path, reading.entries)) is not None:
+    seed = revealed_seed(reading.entries)
+    if seed is None:
+        with contextlib.suppress(OSError, ValueError):
+            seed = int(path.with_suffix(SEED_SUFFIX).read_text("ascii"))
+    if reading.entries and seed is not None:
         reading.header["seed"] = seed
     return reading
 
@@ -176,15 +176,6 @@ def read_journal(path: Path, pause: Callable[[], None] = lambda: None) -> Journa
 def revealed_seed(entries: Iterable[Mapping[str, Any]]) -> int | None:
     """Return the seed of the head's pose that a journal reveals; None while its trial is open."""
     return next((entry["seed"] for entry in reversed(tuple(entries)) if "seed" in entry), None)
-
-
-def _seed(path: Path, entries: Iterable[Mapping[str, Any]]) -> int | None:
-    """Return the seed of a trial, also of an open one if the file beside its journal is there."""
-    seed = revealed_seed(entries)
-    if seed is None:
-        with contextlib.suppress(OSError, ValueError):
-            seed = int(path.with_suffix(SEED_SUFFIX).read_text("ascii"))
-    return seed
 
 
 def _read(path: Path, file: BinaryIO, pause: Callable[[], None]) -> JournalReading:
@@ -212,19 +203,16 @@ def _read(path: Path, file: BinaryIO, pause: Callable[[], None]) -> JournalReadi
             )
         entries.append(entry)
         previous, end = entry["sha256"], end + len(line)
-    return JournalReading(path, *_judged(entries, end, whole=not line))
-
-
-def _judged(
-    entries: list[dict[str, Any]], end: int, whole: bool
-) -> tuple[Integrity, tuple[dict[str, Any], ...], int, str]:
     steps = [entry["kind"] for entry in entries if entry["kind"] in _STEPS]
-    ended = bool(steps) and steps[-1] in ENDS
-    if whole and ended:
-        return Integrity.INTACT, tuple(entries), end, f"intact: {len(entries)} lines"
-    why = "the trial was not ended" if whole else "the line after it is incomplete"
+    if line:
+        why = "the line after it is incomplete"
+    elif not steps or steps[-1] not in ENDS:
+        why = "the trial was not ended"
+    else:
+        sentence = f"intact: {len(entries)} lines"
+        return JournalReading(path, Integrity.INTACT, tuple(entries), end, sentence)
     sentence = f"cut short: recovered up to line {len(entries)}, {why}"
-    return Integrity.CUT_SHORT, tuple(entries), end, sentence
+    return JournalReading(path, Integrity.CUT_SHORT, tuple(entries), end, sentence)
 
 
 _BEGINNING = '{"n":1,"previous":"000…","kind":"header","format":"rastrainer-trial-journal"'

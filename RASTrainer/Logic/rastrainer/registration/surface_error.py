@@ -85,7 +85,6 @@ def knowledge_so_far(
     Args:
         places: (n, 3) float, RAS mm, where the points lie by the pose known so far.
         normals: (n, 3) float, unit normals of the skin there.
-        mesh: The head.
         noise_mm: σ, assumed.
     """
     rows, center = _rows(np.reshape(places, (-1, 3)), np.reshape(normals, (-1, 3)), mesh.middle)
@@ -120,7 +119,6 @@ class NextPlace:
     """Where on the skin more points would help most.
 
     Attributes:
-        vertex: Of the mesh.
         position: (3,) float, RAS mm.
     """
 

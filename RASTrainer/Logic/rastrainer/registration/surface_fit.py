@@ -70,7 +70,6 @@ def plane_normals(
     It is the line from the nearest point; for a point on the surface, the triangle's normal.
 
     Args:
-        mesh: The surface.
         offsets: (…, 3) float, mm, of points from the nearest ones of the surface.
         distances: (…) float, their lengths.
         triangles: (…) int, on which the nearest points lie.
@@ -232,11 +231,9 @@ def fit_to_surface(
 
     Args:
         points: (n, 3) float, World mm.
-        mesh: The surface, RAS mm.
         starts: (s, 4, 4) float, rigid, World→RAS.
         tolerance_mm: A start has converged when its next whole step would move no point farther.
         gate_mm: Up to which distance points count; infinite, all count; None: by their spread.
-        max_iterations: For each start.
         around: (4, 4) float, a matrix near all starts; the surface is searched there once for all.
     """
     size, count = len(starts), len(points)

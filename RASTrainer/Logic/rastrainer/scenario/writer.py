@@ -91,11 +91,7 @@ def write_scenario(
     Procedures are written only with a skull.
 
     Args:
-        folder: such as from `new_folder`.
         scenario: the scenario; its own paths are ignored.
-        head: the head's mesh.
-        skull: the skull's mesh, or None.
-        volume: the images, or None.
         no_go: the meshes of the procedures' no-go structures, by file name.
     """
     (folder / "tasks").mkdir(exist_ok=True)
@@ -182,9 +178,7 @@ class HeadDraft:
     Attributes:
         head: closed, with a flat base, RAS mm.
         method: how it was made, for the provenance.
-        skull: or None.
         is_skull_approximate: whether the skull is only the skin moved inward.
-        volume: the images, or None.
     """
 
     head: HeadMesh

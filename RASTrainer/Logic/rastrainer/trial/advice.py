@@ -173,11 +173,7 @@ MAX_ADVICE = 3
 
 @dataclass(frozen=True)
 class Advice:
-    """One improvement.
-
-    Attributes:
-        gain: Approximate gain in points.
-    """
+    """One improvement, and about how many points it gains."""
 
     topic: str
     sentence: Sentence

@@ -20,7 +20,7 @@ from typing import Annotated
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.csv_table import number_in, read_rows
+from rastrainer.files.csv_table import number_in, read_table
 from rastrainer.files.reading import read_record
 from rastrainer.json_checks import list_of, number, one_of, text
 
@@ -113,8 +113,7 @@ def equation_3_ctps(completion_time_s: float, rmse_mm: float, reference: CohortR
 def score_cohort(trials: Sequence[Trial], mean_ct_s: float | None = None) -> CohortScores:
     """Return the CTPS table of the trials of one mode.
 
-    Args:
-        mean_ct_s: Mean CT to use instead of the trials' own; the paper used a rounded one.
+    A mean CT can be given instead of the trials' own; the paper used a rounded one.
     """
     reference = CohortReference.of(trials, mean_ct_s)
     scores = [published_ctps(t.completion_time_s, t.rmse_mm, reference) for t in trials]
@@ -178,7 +177,7 @@ NUMBER_LIMIT = 1e6
 
 def read_trials(path: str | os.PathLike[str]) -> list[Trial]:
     """Return the trials of a file, one a row: `ct` in s above 0, `rmse` in mm, 0 or above."""
-    rows = read_rows(path, ("mode", "subject", "task", "ct", "rmse"))
+    rows = read_table(path).rows(("mode", "subject", "task", "ct", "rmse"))
     return [_trial(path, line, cells) for line, cells in rows]
 
 
@@ -240,11 +239,7 @@ class Claim:
 
 @dataclass(frozen=True)
 class StudyNotes:
-    """Notes on a study.
-
-    Attributes:
-        mean_ct_s: Mean completion times that the authors used, by mode.
-    """
+    """Notes on a study; the mean completion times are those that the authors used, by mode."""
 
     title: Annotated[str, text(200)]
     source: Annotated[str, text(400)]

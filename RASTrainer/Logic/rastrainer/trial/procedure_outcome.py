@@ -134,7 +134,6 @@ class ProcedureScore:
 
     Attributes:
         desirabilities: by measure: `time`, `target`, `entry`, `angle`, `plunge` and `distance`.
-        is_safe: whether no no-go structure is hit, and the drill stopped in time.
         reference_s: duration of half the range of the time desirability.
     """
 
@@ -157,7 +156,6 @@ def reference_duration_s(touching_s: float, procedure: Procedure, self_aligned: 
 
     Args:
         touching_s: reference time of the trial's task, which is touched first.
-        procedure: the plan; a longer trajectory takes longer.
         self_aligned: on how many trajectories the robot aligned the guide, which takes less time.
     """
     inserting = sum(

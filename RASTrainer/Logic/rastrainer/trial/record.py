@@ -213,11 +213,6 @@ class TrialRecord(AnyTrial):
         return np.array([point.position_mm for point in self.points], dtype=float)
 
     @property
-    def touch_times_s(self) -> np.ndarray:
-        """Simulated time of each touch, (n,) float, in s."""
-        return np.array([point.sim_time_s for point in self.points], dtype=float)
-
-    @property
     def trace_mm(self) -> np.ndarray:
         """Traced points in `World`, (n, 3) float, in mm."""
         return np.array(self.trace, dtype=float).reshape(-1, 4)[:, :3]

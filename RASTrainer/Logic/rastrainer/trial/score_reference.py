@@ -195,19 +195,12 @@ def score_reference(
     normals = fiducial_normals(scenario, task_name)
     touched = task_by_method(scenario, task_name, method)
     trace_mm = REFERENCE_TRACE_MM if method in TRACED_METHODS else 0.0
-    touching_s = _time_s(touched.fiducials, point_normals(scenario, touched))
+    # The tip moves straight between points above the fiducials; where the skin and the tool turn
+    # between two, the path is longer.
+    above = touched.fiducials + LIFT_MM * point_normals(scenario, touched)
+    path_mm = np.linalg.norm(np.diff(above, axis=0), axis=1).sum()
+    touching_s = float(TOUCH_S * len(above) + path_mm / SPEED_MM_S)
     return ScoreReference(
         time_s=touching_s + trace_mm / TRACE_SPEED_MM_S,
         tre_mm=float(REFERENCE_FLE_MM * region_of(scenario).tre_per_fle(fiducials, normals)),
     )
-
-
-def _time_s(fiducials: np.ndarray, normals: np.ndarray) -> float:
-    """Return the reference time of fiducials (n, 3) with the skin's outward unit normals (n, 3).
-
-    The tip moves straight between points above the fiducials; where the skin and the tool turn
-    between two, the path is longer.
-    """
-    above = fiducials + LIFT_MM * normals
-    path_mm = np.linalg.norm(np.diff(above, axis=0), axis=1).sum()
-    return float(TOUCH_S * len(fiducials) + path_mm / SPEED_MM_S)

@@ -164,7 +164,6 @@ class TouchRegistration:
     """Possible registrations of a trial, and their expected errors.
 
     Attributes:
-        fits: by kind; rigid is always included.
         target_errors: expected error at the scenario's target, by kind.
         match: of the trace, where the method has one.
     """
@@ -201,7 +200,22 @@ def register_trial(
     labels, moving, fixed = pair(given.touches, PointList(task.labels, task.fiducials))
     fits = register_all_kinds(moving, fixed, labels)
     if given.method in TRACED_METHODS:
-        return _by_trace(given, scenario, fits[RIGID], pause)
+        # The rigid one alone: a scaled or sheared head would fit any trace. It is that of the
+        # landmarks with the matrix that fits the trace to the surface.
+        coarse = fits[RIGID]
+        match = match_surface(given.trace_mm, head_of(scenario), coarse.matrix)
+        pause()
+        error = surface_target_error(knowledge_of(match), scenario.target_position)
+        vectors = transforms.apply(match.matrix, coarse.moving_mm) - coarse.fixed_mm
+        matched = replace(
+            coarse,
+            matrix=match.matrix,
+            fre_mm=match.rms_mm,
+            residual_vectors_mm=vectors,
+            residuals_mm=np.linalg.norm(vectors, axis=1),
+            warnings=(*coarse.warnings, *match.warnings),
+        )
+        return TouchRegistration({RIGID: matched}, {RIGID: error}, match)
     normals = normals_at(scenario, given.task, labels, given.method)
     errors = {}
     for kind, fit in fits.items():
@@ -212,28 +226,6 @@ def register_trial(
         errors[kind] = target_error(fit, scenario.target_position, localization)
     pause()
     return TouchRegistration(fits, errors)
-
-
-def _by_trace(
-    given: GivenPoints, scenario: Scenario, coarse: Registration, pause: Callable[[], None]
-) -> TouchRegistration:
-    """Return the rigid registration alone: a scaled or sheared head would fit any trace.
-
-    It is that of the landmarks with the matrix that fits the trace to the surface.
-    """
-    match = match_surface(given.trace_mm, head_of(scenario), coarse.matrix)
-    pause()
-    error = surface_target_error(knowledge_of(match), scenario.target_position)
-    vectors = transforms.apply(match.matrix, coarse.moving_mm) - coarse.fixed_mm
-    matched = replace(
-        coarse,
-        matrix=match.matrix,
-        fre_mm=match.rms_mm,
-        residual_vectors_mm=vectors,
-        residuals_mm=np.linalg.norm(vectors, axis=1),
-        warnings=(*coarse.warnings, *match.warnings),
-    )
-    return TouchRegistration({RIGID: matched}, {RIGID: error}, match)
 
 
 def head_of(scenario: Scenario) -> HeadMesh:
@@ -269,7 +261,6 @@ def unshifted_tre_mm(
 
     Args:
         head_to_world: (4, 4) float, mm, the true pose.
-        skin: How the skin lay, with its seed.
 
     Returns:
         None if the skin lay as in the images, or where the points cannot be registered so.

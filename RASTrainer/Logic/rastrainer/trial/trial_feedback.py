@@ -133,12 +133,11 @@ def progress_of(
     scores = tuple(
         other.score for other in in_mode if other.task == trial.task and not other.is_aborted
     )
-    is_best = len(scores) > 1 and scores[-1] > max(scores[:-1])
     has_others = any(
         (other.mode, other.task) == (trial.mode, trial.task) and not other.is_aborted
         for other in until[:-1]
     )
-    about_scores = _about_scores(scores, is_best, has_others)
+    about_scores = _about_scores(scores, has_others)
     if pass_mark is None:
         about_mark = say("no mark") if trial.acceptable else say("unacceptable")
         return TraineeProgress(scores, None, None, (about_scores, about_mark))
@@ -157,13 +156,13 @@ def competence_of(failures: Sequence[bool]) -> LcCusum:
     return lc_cusum(failures, ADEQUATE_FAILURES, INADEQUATE_FAILURES, limit)
 
 
-def _about_scores(scores: Sequence[float], is_best: bool, has_others: bool) -> Sentence:
+def _about_scores(scores: Sequence[float], has_others: bool) -> Sentence:
     if len(scores) == 1:
         return say("first by this method" if has_others else "first trial")
     earlier = scores[:-1][-3:]
     change = scores[-1] - float(np.mean(earlier))
     key = "more points" if change >= 0 else "less points"
-    best = say("best") if is_best else ""
+    best = say("best") if scores[-1] > max(scores[:-1]) else ""
     if len(earlier) == 1:
         return say(f"{key} than last", points=abs(change), best=best)
     return say(key, points=abs(change), trials=len(earlier), best=best)
@@ -200,7 +199,6 @@ class TrialFeedback:
     Attributes:
         score: With its parts; None if the trial has none.
         worst: The touch with the largest error; its `replay_s` is what to look at again.
-        progress: None if there is no history.
         paused_s: How long the trial was paused in all, as far as that is known.
         skin: How the skin had shifted, and what that did; None if it had not.
     """
@@ -229,8 +227,8 @@ class TrialFeedback:
                 f"Score {fixed(score.score, 0)} of 100{beyond}",
                 f"Time: {seconds} s, worth {fixed(100 * score.time_desirability, 0)} of 100.",
                 _accuracy_sentence(score),
+                _safety_sentence(score),
             ]
-            sentences.append(_safety_sentence(score))
         if self.paused_s > LONG_PAUSE_S:
             sentences.append(
                 f"Paused for {fixed(self.paused_s, 0)} s in all, which the score leaves out: "

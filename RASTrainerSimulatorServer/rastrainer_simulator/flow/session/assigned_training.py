@@ -139,7 +139,9 @@ class AssignmentTexts:
 
     def summary(self, curriculum: CurriculumMessage) -> str:
         return self._say(
-            "assignments.summary", reached=curriculum.reached, count=len(curriculum.assignments)
+            "assignments.summary",
+            reached=sum(each.is_reached for each in curriculum.assignments),
+            count=len(curriculum.assignments),
         )
 
     def in_brief(self, curriculum: CurriculumMessage) -> str:
