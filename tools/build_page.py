@@ -22,8 +22,12 @@ NO_NODE = (
 
 def build_page() -> Path:
     """Return the folder of the built page."""
+    folders = (WEB / "src", WEB / "static")
+    sources = [path for folder in folders for path in folder.rglob("*") if path.is_file()]
+    sources += [WEB / "package-lock.json", WEB / "build.mjs", WEB / "tsconfig.json"]
+    newest = max(path.stat().st_mtime for path in sources)
     page = DIST / "index.html.br"
-    if not (page.exists() and page.stat().st_mtime >= max(p.stat().st_mtime for p in _sources())):
+    if not (page.exists() and page.stat().st_mtime >= newest):
         node = install_packages()
         _run(node, [node, "build.mjs"])
     return DIST
@@ -47,12 +51,6 @@ def has_node() -> bool:
     version = subprocess.run([node, "--version"], capture_output=True, text=True).stdout
     major = version.strip().removeprefix("v").partition(".")[0]
     return major.isdecimal() and int(major) >= LEAST_NODE
-
-
-def _sources() -> list[Path]:
-    folders = (WEB / "src", WEB / "static")
-    files = [path for folder in folders for path in folder.rglob("*") if path.is_file()]
-    return [*files, WEB / "package-lock.json", WEB / "build.mjs", WEB / "tsconfig.json"]
 
 
 def node_and_npm() -> tuple[str, list[str]]:

@@ -12,15 +12,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 from rastrainer.errors import InputError
-from rastrainer.json_checks import (
-    identifier,
-    list_of,
-    number,
-    one_of,
-    text,
-    texts,
-    whole_number,
-)
+from rastrainer.json_checks import identifier, list_of, number, one_of, text, texts, whole_number
 from rastrainer.protocol import (
     ALL_DONE,
     FREE,

@@ -49,10 +49,8 @@ class CsvTable:
     ) -> list[tuple[int, dict[str, str]]]:
         """Return the line number and the named cells of each row.
 
-        Args:
-            required: Columns that the header must have, in any order. Decimal commas in them become
-                points.
-            optional: Columns that it may have; others do not matter.
+        The header may have other columns, in any order. Decimal commas in the required ones become
+        points.
         """
         wanted = [*optional, *required]
         twice = next((name for name in wanted if self.header.count(name) > 1), None)
@@ -102,7 +100,12 @@ def read_table(path: str | os.PathLike[str]) -> CsvTable:
     It may be in UTF-8 or, with its byte order mark, in UTF-16, and separated by commas, semicolons
     or tabs. A remark "# columns = …", as in Slicer's `.fcsv`, replaces the header.
     """
-    lines = _text(path).replace("\r\n", "\n").replace("\r", "\n").rstrip("\n").split("\n")
+    content = read_bytes(path, CSV_LIMIT_BYTES)
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        with contextlib.suppress(UnicodeDecodeError):
+            content = content.decode("utf-16").encode()
+    text = decode_text(content, f"The file {path}")
+    lines = text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\n").split("\n")
     remarks, start = _remarks(lines)
     separator = _SEPARATOR.fullmatch(lines[start]) if start < len(lines) else None
     if separator:
@@ -138,14 +141,6 @@ def _remarks(lines: list[str]) -> tuple[dict[str, str], int]:
         name, _, value = line.lstrip("# ").partition("=")
         remarks[name.strip().lower()] = value.strip()
     return remarks, len(lines)
-
-
-def _text(path: str | os.PathLike[str]) -> str:
-    content = read_bytes(path, CSV_LIMIT_BYTES)
-    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        with contextlib.suppress(UnicodeDecodeError):
-            content = content.decode("utf-16").encode()
-    return decode_text(content, f"The file {path}")
 
 
 def number_in(

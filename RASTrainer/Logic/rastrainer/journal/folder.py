@@ -141,12 +141,8 @@ def erase_journals(
 ) -> tuple[list[Path], list[Path]]:
     """Overwrite and delete every journal and tutorial of a trainee, including damaged journals.
 
-    Args:
-        trainee: Pseudonym; it is in a journal's first line.
-        trial_ids: UUIDs of the trainee's trials, to identify journals by file name.
-
-    Returns:
-        The deleted paths, and those of files that name no trainee.
+    A journal names the trainee in its first line, and its trial's UUID in the file's name. Return
+    the deleted paths, and those of files that name no trainee.
     """
     if not folder.is_dir():
         raise InputError(f"There is no folder {folder} with journals.")

@@ -126,14 +126,10 @@ def thinned(trace: np.ndarray, most: int = MOST_USED) -> np.ndarray:
 def find_match_warnings(
     measures: MatchMeasures, residuals_mm: np.ndarray, is_inlier: np.ndarray
 ) -> tuple[RegistrationWarning, ...]:
-    """Return what looks wrong with a match.
+    """Return what looks wrong with a match of n points, by their residuals and which are inliers.
 
     The codes are `slides`, `several-minima`, `not-converged`, `few-inliers`, `far-points` and
     `poor-fit`.
-
-    Args:
-        residuals_mm: (n,) float, of all points.
-        is_inlier: (n,) bool, whether a point counts.
     """
     found = []
     slide = measures.slide

@@ -17,11 +17,7 @@ from rastrainer.head.mesh import POINTS_AT_ONCE, HeadMesh, nearest_vertices
 from rastrainer.protocol import MAX_TRACE_POINTS
 from rastrainer.registration.fits import RIGID, motions
 from rastrainer.registration.surface_match import SurfaceMatch
-from rastrainer.registration.target_error import (
-    COMMON_BIAS_SD_MM,
-    TargetError,
-    error_of_covariance,
-)
+from rastrainer.registration.target_error import COMMON_BIAS_SD_MM, TargetError, error_of_covariance
 
 PARAMETERS = 6
 UNKNOWN_MM, UNKNOWN_RAD = 10.0, 0.2
@@ -47,14 +43,11 @@ class PoseKnowledge:
     noise_mm: float
     degrees_of_freedom: float
 
-    @property
-    def covariance(self) -> np.ndarray:
-        return self.noise_mm**2 * np.linalg.inv(self.curvature)
-
     def at_targets(self, targets: np.ndarray) -> np.ndarray:
         """Return the covariances (m, 3, 3), mm², of the error at targets (m, 3), RAS mm."""
         moved = motions(RIGID, targets - self.center)
-        return moved @ self.covariance @ np.swapaxes(moved, 1, 2)
+        covariance = self.noise_mm**2 * np.linalg.inv(self.curvature)
+        return moved @ covariance @ np.swapaxes(moved, 1, 2)
 
 
 def knowledge_of(match: SurfaceMatch) -> PoseKnowledge:
@@ -93,9 +86,7 @@ def knowledge_so_far(
 
 
 def surface_target_error(
-    knowledge: PoseKnowledge,
-    target: np.ndarray,
-    common_bias_sd_mm: float = COMMON_BIAS_SD_MM,
+    knowledge: PoseKnowledge, target: np.ndarray, common_bias_sd_mm: float = COMMON_BIAS_SD_MM
 ) -> TargetError:
     """Return the error to expect at a target (3,), RAS mm, with its interval.
 
@@ -120,10 +111,12 @@ class NextPlace:
 
     Attributes:
         position: (3,) float, RAS mm.
+        normal: (3,) float, outward unit normal of the skin there.
     """
 
     vertex: int
     position: np.ndarray
+    normal: np.ndarray
 
 
 def next_best_place(
@@ -148,8 +141,8 @@ def next_best_place(
     turned = directions @ inverse
     gain = DAB * np.einsum("vi,ij,vj->v", turned, weight, turned)
     gain /= 1.0 + DAB * np.einsum("vi,vi->v", turned, directions)
-    best = int(gain.argmax())
-    return NextPlace(int(rows[best]), mesh.vertices[rows[best]])
+    best = int(rows[gain.argmax()])
+    return NextPlace(best, mesh.vertices[best], mesh.vertex_normals[best])
 
 
 def _rows(
@@ -266,10 +259,6 @@ class TraceGuide:
         if not self._is_kept(is_drawing):
             self._told, self._told_at = self._best(), len(places)
         return self._told
-
-    def normal_at(self, place: NextPlace) -> np.ndarray:
-        """Return the outward unit normal (3,) of the skin at a place."""
-        return self._mesh.vertex_normals[place.vertex]
 
     def _follow(self, places: np.ndarray) -> None:
         """Take in the points that are new; after an undone stroke, all that are left."""

@@ -20,12 +20,7 @@ from rastrainer.files.point_list import PointList
 from rastrainer.files.reading import read_record
 from rastrainer.files.writing import make_private_folder, rounded, write_json
 from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
-from rastrainer.head.volume import (
-    HeadVolume,
-    VolumeFile,
-    read_head_volume,
-    write_nrrd,
-)
+from rastrainer.head.volume import HeadVolume, VolumeFile, read_head_volume, write_nrrd
 from rastrainer.json_checks import identifier_of, text
 from rastrainer.json_records import record_to_json
 from rastrainer.procedure.plan import NO_GO_FOLDER, POINT_DECIMALS, procedure_json
@@ -197,11 +192,7 @@ def write_draft(folder: Path, draft: HeadDraft) -> None:
         write_head_mesh(folder / SKULL_NAME, draft.skull)
     if volume is not None:
         write_nrrd(folder / VOLUME_NAME, volume.values, volume.ijk_to_ras)
-    file = DraftFile(
-        draft.method,
-        kind if draft.skull else None,
-        _volume_file(volume),
-    )
+    file = DraftFile(draft.method, kind if draft.skull else None, _volume_file(volume))
     write_json(folder / DRAFT_NAME, record_to_json(file))
 
 

@@ -83,9 +83,8 @@ def touch_findings(
 ) -> tuple[TouchFinding, ...]:
     """Return a finding for each touch of a registration, in its order.
 
-    Args:
-        normals: (n, 3) float, outward unit normals of the skin at the fixed points, RAS.
-        trajectory: Of the trial; touches are found in it by label.
+    The outward unit normals (n, 3) are those of the skin at the fixed points, RAS. Touches are
+    found in the trajectory by label.
     """
     squares = registration.residuals_mm**2
     total = float(squares.sum())

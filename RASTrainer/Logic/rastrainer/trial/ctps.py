@@ -105,11 +105,6 @@ def published_ctps(completion_time_s: float, rmse_mm: float, reference: CohortRe
     return 100 * (ct_score - rmse_penalty)
 
 
-def equation_3_ctps(completion_time_s: float, rmse_mm: float, reference: CohortReference) -> float:
-    """Return 100·(CT score − RMSE penalty)/2 of one trial, the paper's equation 3 as printed."""
-    return published_ctps(completion_time_s, rmse_mm, reference) / 2
-
-
 def score_cohort(trials: Sequence[Trial], mean_ct_s: float | None = None) -> CohortScores:
     """Return the CTPS table of the trials of one mode.
 
@@ -177,27 +172,20 @@ NUMBER_LIMIT = 1e6
 
 def read_trials(path: str | os.PathLike[str]) -> list[Trial]:
     """Return the trials of a file, one a row: `ct` in s above 0, `rmse` in mm, 0 or above."""
-    rows = read_table(path).rows(("mode", "subject", "task", "ct", "rmse"))
-    return [_trial(path, line, cells) for line, cells in rows]
-
-
-def _trial(path: object, line: int, cells: dict[str, str]) -> Trial:
-    for column in ("mode", "subject", "task"):
-        if not 1 <= len(cells[column]) <= TEXT_LIMIT or not cells[column].isprintable():
-            raise InputError(
-                f"Line {line} of {path}: {column} must be printable text of 1 to {TEXT_LIMIT} "
-                "characters."
-            )
-    completion_time = number_in(path, line, cells, "ct", 0, NUMBER_LIMIT)
-    if completion_time == 0:
-        raise InputError(f"Line {line} of {path}: ct must be above 0 s.")
-    return Trial(
-        mode=cells["mode"],
-        subject=cells["subject"],
-        task=cells["task"],
-        completion_time_s=completion_time,
-        rmse_mm=number_in(path, line, cells, "rmse", 0, NUMBER_LIMIT),
-    )
+    trials = []
+    for line, cells in read_table(path).rows(("mode", "subject", "task", "ct", "rmse")):
+        for column in ("mode", "subject", "task"):
+            if not 1 <= len(cells[column]) <= TEXT_LIMIT or not cells[column].isprintable():
+                raise InputError(
+                    f"Line {line} of {path}: {column} must be printable text of 1 to {TEXT_LIMIT} "
+                    "characters."
+                )
+        time_s = number_in(path, line, cells, "ct", 0, NUMBER_LIMIT)
+        if time_s == 0:
+            raise InputError(f"Line {line} of {path}: ct must be above 0 s.")
+        rmse_mm = number_in(path, line, cells, "rmse", 0, NUMBER_LIMIT)
+        trials.append(Trial(cells["mode"], cells["subject"], cells["task"], time_s, rmse_mm))
+    return trials
 
 
 QUANTITIES = (

@@ -152,11 +152,9 @@ class ProcedureScore:
 
 
 def reference_duration_s(touching_s: float, procedure: Procedure, self_aligned: int = 0) -> float:
-    """Return the reference duration of a procedure.
+    """Return the reference duration of a procedure, after the touches of the trial's task.
 
-    Args:
-        touching_s: reference time of the trial's task, which is touched first.
-        self_aligned: on how many trajectories the robot aligned the guide, which takes less time.
+    It takes less time where the robot aligned the guide: on `self_aligned` trajectories.
     """
     inserting = sum(
         (STAND_OFF_MM + trajectory.length_mm) / INSERTION_MM_S

@@ -94,12 +94,7 @@ class Region:
         return float((np.mean(of_targets) + np.mean(of_grid)) / 2)
 
     def tre_mm(self, world_to_head: np.ndarray, head_to_world: np.ndarray) -> float:
-        """Return the RMS true TRE of a registration.
-
-        Args:
-            world_to_head: (4, 4) float, mm, the registration.
-            head_to_world: (4, 4) float, mm, the true pose.
-        """
+        """Return the RMS true TRE of a registration; matrices as in `true_errors`."""
         squares = [
             np.sum(true_errors(world_to_head, head_to_world, points) ** 2, axis=1)
             for points in (self.targets, self.grid)
@@ -111,11 +106,8 @@ class Region:
 
         The touching errors are independent, with an FLE of 1 mm, and isotropic along the skin:
         Cov(eᵢ) = ½ (I − nᵢnᵢᵀ). To first order they move the fit by Σ (Σ JᵀJ)⁻¹ Jᵢᵀ eᵢ, and a point
-        r by J(r) times that, with J the motions of a point.
-
-        Args:
-            fiducials: (n, 3) float, RAS mm, not collinear.
-            normals: (n, 3) float, unit normals of the skin there, RAS.
+        r by J(r) times that, with J the motions of a point. The fiducials (n, 3), RAS mm, are not
+        collinear, and the unit normals (n, 3) of the skin there are in RAS.
         """
         center = fiducials.mean(axis=0)
         moved = motions(RIGID, fiducials - center)

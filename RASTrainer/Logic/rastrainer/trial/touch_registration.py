@@ -192,9 +192,8 @@ def register_trial(
 ) -> TouchRegistration:
     """Register what was touched and traced in a trial, by the trial's method.
 
-    Args:
-        given: the touches are paired by label with the fiducials of the task, or the landmarks.
-        pause: called between the steps, every 10 ms or so; a worker may wait in it.
+    The touches are paired by label with the fiducials of the task, or the landmarks. `pause` is
+    called between the steps, every 10 ms or so; a worker may wait in it.
     """
     task = task_by_method(scenario, given.task, given.method)
     labels, moving, fixed = pair(given.touches, PointList(task.labels, task.fiducials))
@@ -257,13 +256,7 @@ def unshifted_tre_mm(
     """Return the true TRE that a trial would have had with the skin as in the images, mm.
 
     Its touches and its trace are put back to where they would have been measured, and registered
-    again.
-
-    Args:
-        head_to_world: (4, 4) float, mm, the true pose.
-
-    Returns:
-        None if the skin lay as in the images, or where the points cannot be registered so.
+    again. None if the skin lay as in the images, or where the points cannot be registered so.
     """
     if skin.is_none:
         return None
@@ -283,13 +276,13 @@ def unshifted_tre_mm(
     return float(np.linalg.norm(true_errors(matrix, head_to_world, scenario.target_position)))
 
 
-def skin_sentence(
+def skin_sentences(
     skin: SkinShift, true_tre_mm: float, unshifted_mm: float | None
-) -> Sentence | None:
-    """Return what the trainee reads after a trial; None if the skin lay as in the images."""
+) -> tuple[Sentence, ...]:
+    """Return what the trainee reads after a trial; none if the skin lay as in the images."""
     if skin.is_none:
-        return None
+        return ()
     amounts = {"shift": skin.shift_mm, "indentation": skin.indentation_mm, "tre": true_tre_mm}
     if unshifted_mm is None:
-        return say("skin", **amounts)
-    return say("skin and error", **amounts, without=unshifted_mm)
+        return (say("skin", **amounts),)
+    return (say("skin and error", **amounts, without=unshifted_mm),)
