@@ -30,8 +30,8 @@ MAX_RECORD_VALUES = 25_000
 def decode_finite_json(text: str, deepest: int = MAX_DEPTH) -> Any:
     """Return decoded JSON with finite numbers.
 
-    Raises:
-        ValueError: not JSON, nested more than `deepest` levels, or a number is not finite.
+    Raise ValueError if it is not JSON, nested more than `deepest` levels, or a number is not
+    finite.
     """
     try:
         value = _DECODER.decode(text)

@@ -40,11 +40,7 @@ FIDUCIALS = RegistrationMethod.FIDUCIALS.value
 
 
 def skin_amounts(value: Any) -> dict[str, float]:
-    """Accept how far the skin shifts (RMS) and is indented, mm; a missing amount is 0.
-
-    Raises:
-        ValueError: anything else; the words follow "must be".
-    """
+    """Accept how far the skin shifts (RMS) and is indented, mm; a missing amount is 0."""
     check = number(0, SKIN_LIMIT_MM)
     with contextlib.suppress(ValueError):
         if isinstance(value, Mapping) and set(value) <= set(SKIN_KEYS):

@@ -42,11 +42,7 @@ def rotations(vectors: np.ndarray) -> np.ndarray:
 
 
 def inverse(matrix: np.ndarray) -> np.ndarray:
-    """Return the inverse, (4, 4) float, of an affine transform.
-
-    Raises:
-        numpy.linalg.LinAlgError: the matrix is singular.
-    """
+    """Return the inverse (4, 4) of an affine transform; raise LinAlgError if it is singular."""
     matrix = np.asarray(matrix, dtype=float)
     linear = np.linalg.inv(matrix[:3, :3])
     return rigid(linear, -linear @ matrix[:3, 3])

@@ -31,11 +31,7 @@ if sys.platform == "win32":
     _FAR = 1 << 40
 
     def lock(descriptor: int) -> None:
-        """Lock an open file until it is closed.
-
-        Raises:
-            OSError: another program holds the lock.
-        """
+        """Lock an open file until it is closed; raise OSError if another program holds the lock."""
         position = os.lseek(descriptor, 0, os.SEEK_CUR)
         os.lseek(descriptor, _FAR, os.SEEK_SET)
         msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
@@ -45,11 +41,7 @@ else:
     import fcntl
 
     def lock(descriptor: int) -> None:
-        """Lock an open file until it is closed.
-
-        Raises:
-            OSError: another program holds the lock.
-        """
+        """Lock an open file until it is closed; raise OSError if another program holds the lock."""
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
@@ -82,11 +74,7 @@ class FolderHolder:
 
 
 def write_holder(descriptor: int, holder: FolderHolder) -> None:
-    """Write the holder into the lock file, which is open and locked.
-
-    Raises:
-        OSError: it cannot be written.
-    """
+    """Write the holder into the open, locked lock file; raise OSError if that fails."""
     content = json.dumps(record_to_json(holder)).encode("ascii")
     os.lseek(descriptor, 0, os.SEEK_SET)
     os.write(descriptor, content)

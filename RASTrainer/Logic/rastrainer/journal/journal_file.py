@@ -66,8 +66,7 @@ class DamagedLineError(ValueError):
 def encode_line(n: int, previous: str, entry: Mapping[str, Any]) -> tuple[bytes, str]:
     """Return the line of an entry with its newline, and its hash.
 
-    Raises:
-        ValueError: the entry has a number that is not finite.
+    Raise ValueError if the entry has a number that is not finite.
     """
     body = json.dumps(
         {"n": n, "previous": previous, **entry},
@@ -82,10 +81,7 @@ def encode_line(n: int, previous: str, entry: Mapping[str, Any]) -> tuple[bytes,
 def decode_line(line: bytes, n: int, previous: str) -> dict[str, Any]:
     """Return the entry of a line without newline, which must be the `n`-th after `previous`.
 
-    The entry has `sha256` as its last key.
-
-    Raises:
-        DamagedLineError: it was altered or is not the expected line.
+    The entry has `sha256` as its last key. Raise `DamagedLineError` for another or an altered line.
     """
     body, seal = line[:-_SEAL_LENGTH] + b"}", line[-_SEAL_LENGTH:]
     digest = hashlib.sha256(body).hexdigest()

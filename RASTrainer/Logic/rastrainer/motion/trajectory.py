@@ -170,11 +170,9 @@ CUTOFF_HZ = 6.0
 
 
 def resample(times_s: np.ndarray, values: np.ndarray, rate_hz: float) -> np.ndarray:
-    """Return the values at equal steps from the first to the last time, linearly interpolated.
+    """Return the values (n, k) at equal steps from the first time to the last, interpolated.
 
-    Args:
-        times_s: (n,) float, strictly rising.
-        values: (n, k) float.
+    The interpolation is linear, and the times, (n,) float, rise strictly.
     """
     times_s, values = np.asarray(times_s, dtype=float), np.asarray(values, dtype=float)
     if len(times_s) < 2 or not (np.diff(times_s) > 0).all():
@@ -185,15 +183,11 @@ def resample(times_s: np.ndarray, values: np.ndarray, rate_hz: float) -> np.ndar
 
 
 def low_pass(values: np.ndarray, rate_hz: float, cutoff_hz: float = CUTOFF_HZ) -> np.ndarray:
-    """Return the values low-pass filtered without delay.
+    """Return evenly sampled values, (n, k) float, low-pass filtered without delay.
 
-    The gain 1/(1 + (f/fc)⁴) on the spectrum is that of a second-order Butterworth filter run
-    forward and backward. The ends are extended by point reflection, which keeps straight lines
-    straight.
-
-    Args:
-        values: (n, k) float, evenly sampled.
-        cutoff_hz: Frequency at which half the amplitude remains.
+    A second-order Butterworth filter, run forward and backward, has the same gain 1/(1 + (f/fc)⁴)
+    on the spectrum: at `cutoff_hz`, half the amplitude remains. The ends are extended by point
+    reflection, which keeps straight lines straight.
     """
     values = np.asarray(values, dtype=float)
     pad = min(len(values) - 1, int(np.ceil(3 * rate_hz / cutoff_hz)))
@@ -252,10 +246,7 @@ def sparc(speed: np.ndarray, rate_hz: float) -> float:
 
     The length of the curve of the speed's magnitude spectrum, scaled to 1 at its peak, up to the
     last frequency of at most 10 Hz where it reaches 0.05. The zero padding is theirs: four more
-    powers of two.
-
-    Args:
-        speed: (n,) float of one movement, evenly sampled.
+    powers of two. The speed, (n,) float, is of one movement, evenly sampled.
     """
     speed = _checked(speed)
     length = 2 ** (int(np.ceil(np.log2(len(speed)))) + SPARC_PAD_LEVEL)
@@ -271,10 +262,8 @@ def sparc(speed: np.ndarray, rate_hz: float) -> float:
 def log_dimensionless_jerk(speed: np.ndarray, rate_hz: float) -> float:
     """Return −ln(T³/v²ₚₑₐₖ · ∫ v̈² dt) (Balasubramanian et al. 2012), dimensionless.
 
-    A reach of minimum jerk has −ln 204.8 = −5.322.
-
-    Args:
-        speed: (n,) float of one movement, evenly sampled and low-pass filtered.
+    A reach of minimum jerk has −ln 204.8 = −5.322. The speed, (n,) float, is of one movement,
+    evenly sampled and low-pass filtered.
     """
     speed = _checked(speed)
     jerk = np.diff(speed, 2) * rate_hz**2

@@ -63,12 +63,8 @@ def effective_throughput(
     """Return the throughput of the n − 1 movements between n touches.
 
     The task axis of a movement runs from its first target to its second. The distance is measured
-    from where the movement really began.
-
-    Args:
-        targets_mm: (n, 3) float, the fiducials.
-        touches_mm: (n, 3) float, the touches, in the targets' frame.
-        touch_times_s: (n,) float, strictly rising.
+    from where the movement really began. Targets and touches are (n, 3) float in one frame; the
+    times, (n,) float, rise strictly.
     """
     targets, touches = np.asarray(targets_mm, dtype=float), np.asarray(touches_mm, dtype=float)
     durations = np.diff(np.asarray(touch_times_s, dtype=float))

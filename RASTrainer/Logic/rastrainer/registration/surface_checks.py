@@ -229,10 +229,8 @@ def slide_of(
     are alike. The covariance is propagated to the middle of the head and six places around it. The
     largest eigenvalue among them, as a 95 % limit, is the answer; it ends at 100 mm.
 
-    Args:
-        places: (n, 3) float, RAS mm, the points where the match puts them.
-        normals: (n, 3) float, the directions in which their distances grow.
-        rms_mm: σ, of the residuals; at least 1 mm.
+    The places (n, 3), RAS mm, are where the match puts the points, and the normals (n, 3) the
+    directions in which their distances grow. σ is `rms_mm`, at least 1 mm.
     """
     noise = max(rms_mm, LEAST_NOISE_MM)
     center = places.mean(axis=0)

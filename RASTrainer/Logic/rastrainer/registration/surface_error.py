@@ -73,12 +73,9 @@ def knowledge_so_far(
 ) -> PoseKnowledge:
     """Return what the points of an unfinished trace reveal, however few; nothing without points.
 
-    Before the first point, a pose is known to 10 mm and 0.2 rad on each axis.
-
-    Args:
-        places: (n, 3) float, RAS mm, where the points lie by the pose known so far.
-        normals: (n, 3) float, unit normals of the skin there.
-        noise_mm: σ, assumed.
+    Before the first point, a pose is known to 10 mm and 0.2 rad on each axis. The places (n, 3),
+    RAS mm, are where the points lie by the pose known so far, with the unit normals (n, 3) of the
+    skin there; σ is assumed.
     """
     rows, center = _rows(np.reshape(places, (-1, 3)), np.reshape(normals, (-1, 3)), mesh.middle)
     known = np.diag([(noise_mm / UNKNOWN_MM) ** 2] * 3 + [(noise_mm / UNKNOWN_RAD) ** 2] * 3)
@@ -122,14 +119,11 @@ class NextPlace:
 def next_best_place(
     knowledge: PoseKnowledge, mesh: HeadMesh, targets: np.ndarray, allowed: np.ndarray
 ) -> NextPlace:
-    """Return the place whose points would reduce the expected TRE most.
+    """Return the place whose points would reduce the expected TRE at targets (m, 3), RAS mm, most.
 
-    k points at a place with the row J change the covariance C = H⁻¹ by
-    −k·CJᵀJC/(1 + k·JCJᵀ) (Sherman and Morrison 1950), so all places are compared at once.
-
-    Args:
-        targets: (m, 3) float, RAS mm.
-        allowed: (v,) bool, the vertices that can be reached, at least one.
+    k points at a place with the row J change the covariance C = H⁻¹ by −k·CJᵀJC/(1 + k·JCJᵀ)
+    (Sherman and Morrison 1950), so all places are compared at once: the vertices (v,) bool that can
+    be reached, at least one.
     """
     rows = np.flatnonzero(allowed)
     if not len(rows):
@@ -187,12 +181,8 @@ def guided_targets(target: np.ndarray) -> np.ndarray:
 def guided_vertices(mesh: HeadMesh, eye: np.ndarray) -> np.ndarray:
     """Return the vertices among which the next place is chosen, (c,) int, 8 mm apart.
 
-    They are seen by the eye, do not face the table, and are off the base and the ears, where the
-    skin is smooth.
-
-    Args:
-        mesh: the head, upright.
-        eye: (3,) float, RAS mm, from where the trainee looks.
+    They are seen by the trainee's eye (3,), RAS mm, do not face the table, and are off the base and
+    the ears, where the skin is smooth. The head is upright.
     """
     normals, vertices = mesh.vertex_normals, mesh.vertices
     toward, outward = _directions(vertices, eye), -_directions(vertices, mesh.middle)
@@ -251,9 +241,7 @@ class TraceGuide:
     def next_place(self, places: np.ndarray, is_drawing: bool) -> NextPlace | None:
         """Return where to draw next; None where the trace is full or covers all that is reached.
 
-        Args:
-            places: (n, 3) float, RAS mm, all points so far by the pose that is known.
-            is_drawing: whether a stroke is being drawn.
+        The places (n, 3), RAS mm, are all points so far by the pose that is known.
         """
         self._follow(places)
         if not self._is_kept(is_drawing):

@@ -82,15 +82,12 @@ def expected_tre(
     localization: LocalizationError | None = None,
     common_bias_sd_mm: float = COMMON_BIAS_SD_MM,
 ) -> np.ndarray:
-    """Return √E[TRE²] at targets of the fixed space, (m,) float, in mm.
+    """Return √E[TRE²] at targets (m, 3) of the fixed space, (m,) float, in mm.
 
     For a rigid registration with isotropic FLE, alike at all points, and without a common offset
     this is Fitzpatrick's equation 46 (1998), E[TRE²] = E[FLE²]/N · (1 + ⅓ Σₖ dₖ²/fₖ²). An offset of
-    standard deviation σ on each axis adds 3σ².
-
-    Args:
-        targets: (m, 3) float, in mm.
-        localization: The FLE; by default the isotropic one that explains the residuals.
+    standard deviation σ on each axis adds 3σ². By default, the FLE is the isotropic one that
+    explains the residuals.
     """
     localization = localization or isotropic_error(registration)
     covariances = _propagated(registration, targets, localization.covariances)

@@ -37,9 +37,8 @@ class HeadPlace:
 class SetUp:
     """A set-up, in the table's frame: World of a robot at the default place.
 
-    Attributes:
-        perturbation: how far a trial's pose may be from it.
-        robot_base_mm: x and y of the robot's base on the table.
+    The perturbation is how far a trial's pose may be from it; the robot's base has x and y on the
+    table.
     """
 
     head: HeadPlace = HeadPlace()

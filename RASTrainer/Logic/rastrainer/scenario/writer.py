@@ -83,11 +83,8 @@ def write_scenario(
 ) -> None:
     """Write `scenario.json`, meshes, volume and tasks into an existing folder.
 
-    Procedures are written only with a skull.
-
-    Args:
-        scenario: the scenario; its own paths are ignored.
-        no_go: the meshes of the procedures' no-go structures, by file name.
+    The scenario's own paths are ignored. Procedures are written only with a skull; their no-go
+    structures have their meshes by file name.
     """
     (folder / "tasks").mkdir(exist_ok=True)
     write_head_mesh(folder / HEAD_NAME, head)

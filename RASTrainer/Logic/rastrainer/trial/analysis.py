@@ -61,11 +61,9 @@ class RevealedTruth:
 
 @dataclass(frozen=True)
 class PublishedScore:
-    """CTPS of a trial within a cohort; `rastrainer.trial.ctps` describes its weaknesses.
+    """CTPS of a trial within a cohort, as in the paper's tables, and by its equation 3: half of it.
 
-    Attributes:
-        published: 100·(CT score − RMSE penalty), as in the paper's tables.
-        equation_3: the paper's equation 3 as printed: half of it.
+    `rastrainer.trial.ctps` describes its weaknesses.
     """
 
     published: float

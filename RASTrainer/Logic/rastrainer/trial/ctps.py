@@ -35,12 +35,7 @@ CTPS_WARNING = (
 
 @dataclass(frozen=True)
 class Trial:
-    """One trial of a cohort.
-
-    Attributes:
-        mode: How the scene was seen, such as `desktop` or `hmd`.
-        rmse_mm: Fiducial registration error of the rigid fit, in mm.
-    """
+    """One trial of a cohort; its RMSE is the fiducial registration error of the rigid fit."""
 
     mode: str
     subject: str

@@ -246,9 +246,8 @@ def procedure_outcome(
 ) -> ProcedureOutcome | None:
     """Return the errors and the score of a trial's procedure; None for touches alone.
 
-    Args:
-        head_to_world: (4, 4) float, mm, the true pose.
-        references: of the score of touches, by task, as a study's protocol sets them.
+    The true pose is (4, 4) float, mm. The references of the score of touches are by task, as a
+    study's protocol sets them.
     """
     done = record.procedure
     if done is None:

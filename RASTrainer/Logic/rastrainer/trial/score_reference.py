@@ -79,12 +79,7 @@ BELOW_VERTEX_MM = 120.0
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """Where a registration has to be right.
-
-    Attributes:
-        targets: (m, 3) float, RAS mm, at least one.
-        grid: (n, 3) float, RAS mm, of the brain's volume.
-    """
+    """Targets (m, 3) and a grid of the brain (n, 3), RAS mm, where a registration has to be right."""
 
     targets: np.ndarray
     grid: np.ndarray
@@ -175,10 +170,7 @@ def score_reference(
     Whatever the method is, the error is measured against that of the task's fiducials: what an
     operation needs does not depend on how its head was registered. The reference time is that of
     the points which the method has touched, and of a trace of `REFERENCE_TRACE_MM`. References of a
-    protocol hold for fiducials.
-
-    Args:
-        of_protocol: references by task from a study's protocol, which take precedence.
+    protocol, by task, take precedence for fiducials.
     """
     is_by_fiducials = method is RegistrationMethod.FIDUCIALS
     if of_protocol and task_name in of_protocol and is_by_fiducials:
