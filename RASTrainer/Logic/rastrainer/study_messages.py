@@ -148,11 +148,6 @@ class Assignment:
                 f"The assignment {self.name}: trials must be left out of the goal competent."
             )
 
-    @property
-    def is_by_competence(self) -> bool:
-        """Whether its goal is competence by LC-CUSUM; else, trials in a row that pass."""
-        return self.goal is GoalKind.COMPETENT
-
     def is_played_as(
         self, scenario: str, task: str, mode: str, method: str, procedure: str
     ) -> bool:
@@ -189,15 +184,6 @@ class AssignmentStanding(Assignment):
     missing: Annotated[tuple[str, ...], texts(0, MAX_GATES)] = ()
     weakest: Annotated[str, text(20)] = ""
     reached_utc: str = ""
-
-    @property
-    def is_locked(self) -> bool:
-        """Whether others have to be reached first."""
-        return self.state is AssignmentState.LOCKED
-
-    @property
-    def is_reached(self) -> bool:
-        return self.state is AssignmentState.REACHED
 
 
 @dataclass(frozen=True)

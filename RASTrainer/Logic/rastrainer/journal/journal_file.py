@@ -141,11 +141,6 @@ class JournalReading:
             raise InputError(f"{self.path} has no complete line.")
         return self.entries[0]
 
-    @property
-    def last_hash(self) -> str:
-        """The hash that the next line must refer to."""
-        return self.entries[-1]["sha256"] if self.entries else NO_LINE
-
     def of_kind(self, *kinds: str) -> list[dict[str, Any]]:
         return [entry for entry in self.entries if entry["kind"] in kinds]
 

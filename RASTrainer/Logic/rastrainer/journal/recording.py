@@ -97,16 +97,15 @@ class Recording:
         kind = entry["kind"]
         if kind == "touch":
             self._press(entry)
-            self._touches.append(self._touch_of(entry))
+            self._touches.append(self._touch(entry["label"], entry, self._tick_s))
         elif kind == "rejected" and "checkpoint" not in entry:
-            self._refused.append(self._touch_of(entry))
+            self._refused.append(self._touch(entry["label"], entry, self._tick_s))
         elif kind == "undo":
             self._undone += 1
             del self._touches[entry["kept"] :]
         elif kind == "trace":
             # A point is left at the end of its tick, unlike a touch.
-            time_s = self._trial_time(entry["simTimeS"])
-            self._traced.append(Touch("", _position(entry), time_s))
+            self._traced.append(self._touch("", entry))
         elif kind == "stroke":
             del self._traced[entry["kept"] :]
 
@@ -155,10 +154,9 @@ class Recording:
             sim_time = self._paused_since
         return sim_time - self._start_s - self._paused_s
 
-    def _touch_of(self, entry: Mapping[str, Any]) -> Touch:
-        return Touch(
-            entry["label"], _position(entry), self._trial_time(entry["simTimeS"] - self._tick_s)
-        )
+    def _touch(self, label: str, entry: Mapping[str, Any], before_s: float = 0.0) -> Touch:
+        x, y, z = (float(value) for value in entry["positionMm"])
+        return Touch(label, (x, y, z), self._trial_time(entry["simTimeS"] - before_s))
 
     def _phase(self, entry: Mapping[str, Any]) -> None:
         now = entry["simTimeS"] - self._tick_s
@@ -216,11 +214,6 @@ def read_trajectory(
         with contextlib.suppress(InputError):
             return Recording.of(read_journal(path, pause).entries).trajectory()
     return None
-
-
-def _position(entry: Mapping[str, Any]) -> tuple[float, float, float]:
-    x, y, z = (float(value) for value in entry["positionMm"])
-    return x, y, z
 
 
 def _with_clearance(interval: Interval, times: np.ndarray, clearance: np.ndarray) -> Interval:

@@ -79,7 +79,7 @@ BELOW_VERTEX_MM = 120.0
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """Targets (m, 3) and a grid of the brain (n, 3), RAS mm, where a registration has to be right."""
+    """Targets (m, 3) and brain grid (n, 3), RAS mm, where a registration has to be right."""
 
     targets: np.ndarray
     grid: np.ndarray
