@@ -73,17 +73,13 @@ def _add_package(site: Files, config: MkDocsConfig, package: Path) -> list[dict[
             continue
         name = folder.relative_to(package.parent).as_posix()
         uri = f"reference/{name}.md"
-        site.append(File.generated(config, uri, content=_page(name, folder, modules)))
-        menu.append({name.replace("/", "."): uri})
+        initializer = folder / "__init__.py"
+        said = ""
+        if initializer.exists():
+            said = ast.get_docstring(ast.parse(initializer.read_text(encoding="utf-8"))) or ""
+        dotted = name.replace("/", ".")
+        parts = [f"# {dotted}", said, *(f"::: {dotted}.{module.stem}" for module in modules)]
+        content = "\n\n".join(part for part in parts if part) + "\n"
+        site.append(File.generated(config, uri, content=content))
+        menu.append({dotted: uri})
     return menu
-
-
-def _page(name: str, folder: Path, modules: list[Path]) -> str:
-    """Return the page of a folder: its own docstring, and all modules with theirs."""
-    initializer = folder / "__init__.py"
-    said = ""
-    if initializer.exists():
-        said = ast.get_docstring(ast.parse(initializer.read_text(encoding="utf-8"))) or ""
-    dotted = name.replace("/", ".")
-    parts = [f"# {dotted}", said, *(f"::: {dotted}.{module.stem}" for module in modules)]
-    return "\n\n".join(part for part in parts if part) + "\n"

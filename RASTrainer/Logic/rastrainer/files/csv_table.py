@@ -63,19 +63,18 @@ class CsvTable:
             )
         if not self.lines:
             raise InputError(f"The file {self.path} has a header but no rows.")
-        rows = [(number, self._row(number, cells)) for number, cells in self.lines]
+        columns = len(self.header)
+        rows = []
+        for number, cells in self.lines:
+            if len(cells) < columns or any(cells[columns:]):
+                hint = " A comma in a number needs semicolons between the cells, in a text quotes."
+                raise InputError(
+                    f"Line {number} of {self.path} has {len(cells)} cells; the header has "
+                    f"{columns}.{hint if len(cells) > columns else ''}"
+                )
+            rows.append((number, dict(zip(self.header, cells, strict=False))))
         self._replace_decimal_commas([cells for _, cells in rows], required)
         return rows
-
-    def _row(self, number: int, cells: list[str]) -> dict[str, str]:
-        columns = len(self.header)
-        if len(cells) < columns or any(cells[columns:]):
-            hint = " A comma in a number needs semicolons between the cells, in a text quotes."
-            raise InputError(
-                f"Line {number} of {self.path} has {len(cells)} cells; the header has {columns}."
-                f"{hint if len(cells) > columns else ''}"
-            )
-        return dict(zip(self.header, cells, strict=False))
 
     def _replace_decimal_commas(self, rows: list[dict[str, str]], columns: Sequence[str]) -> None:
         cells = [row[column] for row in rows for column in columns]

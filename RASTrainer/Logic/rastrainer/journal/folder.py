@@ -116,7 +116,12 @@ def journals(folder: Path) -> list[Path]:
     """Return the files of a folder that are journals by name and first bytes."""
     if not folder.is_dir():
         raise InputError(f"There is no folder {folder} with journals.")
-    return [path for path in sorted(folder.glob(f"*{SUFFIX}")) if _begins_as_journal(path)]
+    found = []
+    for path in sorted(folder.glob(f"*{SUFFIX}")):
+        with contextlib.suppress(OSError), path.open("rb") as file:
+            if file.read(len(FIRST_BYTES)) == FIRST_BYTES:
+                found.append(path)
+    return found
 
 
 def journals_of(folder: Path, trial_id: str) -> list[Path]:
@@ -156,12 +161,6 @@ def erase_journals(
         elif owner is None:
             unreadable.append(path)
     return erased, unreadable
-
-
-def _begins_as_journal(path: Path) -> bool:
-    with contextlib.suppress(OSError), path.open("rb") as file:
-        return file.read(len(FIRST_BYTES)) == FIRST_BYTES
-    return False
 
 
 def _trainee_of(path: Path) -> str | None:

@@ -97,10 +97,6 @@ class TrialAnalysis:
     def rigid(self) -> Registration:
         return self.fits[RIGID]
 
-    @property
-    def expected_tre(self) -> TargetError:
-        return self.target_errors[RIGID]
-
     def scored(
         self,
         scenario: Scenario,
@@ -238,7 +234,7 @@ def score_arguments(analysis: TrialAnalysis) -> dict[str, Any]:
         "details": {
             "scoreVersion": score.version,
             "residualsMm": analysis.rigid.residuals_mm.tolist(),
-            "treIntervalMm": list(analysis.expected_tre.interval_mm),
+            "treIntervalMm": list(analysis.target_errors[RIGID].interval_mm),
             "regionTreMm": measures.tre_mm,
             "regionLimitMm": score.reference.limit_mm,
             "commonBiasMm": measures.common_bias_mm,

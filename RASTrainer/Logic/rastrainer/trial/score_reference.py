@@ -44,7 +44,7 @@ def fiducial_normals(scenario: Scenario, task_name: str) -> np.ndarray:
 def point_normals(scenario: Scenario, task: Task) -> np.ndarray:
     """Return the skin's outward unit normals at a task's points, (n, 3) float, RAS; read-only."""
     points = np.asarray(task.fiducials, dtype=float)
-    return computed_once(scenario, _normals, tuple(map(tuple, points.tolist())))
+    return computed_once(scenario, outward_normals, tuple(map(tuple, points.tolist())))
 
 
 def computed_once(
@@ -66,10 +66,6 @@ def _computed(
     result = compute(read_head_mesh(mesh), *arguments)
     result.setflags(write=False)
     return result
-
-
-def _normals(head: HeadMesh, fiducials: Points) -> np.ndarray:
-    return outward_normals(head, np.array(fiducials))
 
 
 SPACING_MM = 10.0
