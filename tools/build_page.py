@@ -22,22 +22,23 @@ NO_NODE = (
 
 def build_page() -> Path:
     """Return the folder of the built page."""
-    if not _is_built():
+    folders = (WEB / "src", WEB / "static")
+    sources = [path for folder in folders for path in folder.rglob("*") if path.is_file()]
+    sources += [WEB / "package-lock.json", WEB / "build.mjs", WEB / "tsconfig.json"]
+    newest = max(path.stat().st_mtime for path in sources)
+    page = DIST / "index.html.br"
+    if not (page.exists() and page.stat().st_mtime >= newest):
         node = install_packages()
         _run(node, [node, "build.mjs"])
     return DIST
 
 
-def check_types() -> None:
-    """Have the TypeScript compiler check the page."""
-    node = install_packages()
-    _run(node, [node, str(Path("node_modules", "typescript", "bin", "tsc")), "--noEmit"])
-
-
 def install_packages() -> str:
     """Install what npm has to, where it is not there yet; return the path of Node.js."""
     node, npm = node_and_npm()
-    if not _is_installed():
+    marker = WEB / "node_modules" / ".package-lock.json"
+    lock = WEB / "package-lock.json"
+    if not (marker.exists() and marker.stat().st_mtime >= lock.stat().st_mtime):
         _run(node, [*npm, "ci", "--ignore-scripts", "--loglevel=error"])
     return node
 
@@ -50,23 +51,6 @@ def has_node() -> bool:
     version = subprocess.run([node, "--version"], capture_output=True, text=True).stdout
     major = version.strip().removeprefix("v").partition(".")[0]
     return major.isdecimal() and int(major) >= LEAST_NODE
-
-
-def _sources() -> list[Path]:
-    folders = (WEB / "src", WEB / "static")
-    files = [path for folder in folders for path in folder.rglob("*") if path.is_file()]
-    return [*files, WEB / "package-lock.json", WEB / "build.mjs", WEB / "tsconfig.json"]
-
-
-def _is_built() -> bool:
-    page = DIST / "index.html.br"
-    return page.exists() and page.stat().st_mtime >= max(p.stat().st_mtime for p in _sources())
-
-
-def _is_installed() -> bool:
-    marker = WEB / "node_modules" / ".package-lock.json"
-    lock = WEB / "package-lock.json"
-    return marker.exists() and marker.stat().st_mtime >= lock.stat().st_mtime
 
 
 def node_and_npm() -> tuple[str, list[str]]:
@@ -95,7 +79,10 @@ def main() -> None:
     """Do what the command line asks for; what has failed is the exit's message."""
     try:
         if sys.argv[1:] == ["--check"]:
-            check_types()
+            # The TypeScript compiler checks the page.
+            compiler = Path("node_modules", "typescript", "bin", "tsc")
+            node = install_packages()
+            _run(node, [node, str(compiler), "--noEmit"])
         else:
             build_page()
     except RuntimeError as error:

@@ -30,8 +30,14 @@ LINK = re.compile(r"(\]\()([^)#\s:]+)((?:#[^)\s]*)?\))")
 def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Take the pages of the whole repository, and add those of the reference and their menu."""
     site = Files([file for file in files if file.src_dir != config.docs_dir])
-    for name in _tracked_files():
-        site.append(_as_file(name, config))
+    # Those that git knows, or that are new and not ignored.
+    command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "--", *SITE_FILES]
+    listed = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    names = [name for name in listed.splitlines() if (ROOT / name).exists()]
+    for name in names:
+        if name.startswith(NO_PAGES):
+            continue
+        site.append(File(name, str(ROOT), config.site_dir, config.use_directory_urls))
     reference = [{title: _add_package(site, config, ROOT / place)} for title, place in PACKAGES]
     for entry in config.nav:
         if "Reference" in entry:
@@ -58,18 +64,6 @@ def on_page_markdown(markdown: str, *, page: Page, config: MkDocsConfig, files: 
     return LINK.sub(hosted, markdown)
 
 
-def _tracked_files() -> list[str]:
-    """Return the files of the site that git knows, or that are new and not ignored."""
-    command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "--", *SITE_FILES]
-    listed = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
-    names = [name for name in listed.splitlines() if (ROOT / name).exists()]
-    return [name for name in names if not name.startswith(NO_PAGES)]
-
-
-def _as_file(name: str, config: MkDocsConfig) -> File:
-    return File(name, str(ROOT), config.site_dir, config.use_directory_urls)
-
-
 def _add_package(site: Files, config: MkDocsConfig, package: Path) -> list[dict[str, Any]]:
     """Add a page for each folder of a package that has modules; return the menu of them."""
     menu = []
@@ -79,17 +73,13 @@ def _add_package(site: Files, config: MkDocsConfig, package: Path) -> list[dict[
             continue
         name = folder.relative_to(package.parent).as_posix()
         uri = f"reference/{name}.md"
-        site.append(File.generated(config, uri, content=_page(name, folder, modules)))
-        menu.append({name.replace("/", "."): uri})
+        initializer = folder / "__init__.py"
+        said = ""
+        if initializer.exists():
+            said = ast.get_docstring(ast.parse(initializer.read_text(encoding="utf-8"))) or ""
+        dotted = name.replace("/", ".")
+        parts = [f"# {dotted}", said, *(f"::: {dotted}.{module.stem}" for module in modules)]
+        content = "\n\n".join(part for part in parts if part) + "\n"
+        site.append(File.generated(config, uri, content=content))
+        menu.append({dotted: uri})
     return menu
-
-
-def _page(name: str, folder: Path, modules: list[Path]) -> str:
-    """Return the page of a folder: its own docstring, and all modules with theirs."""
-    initializer = folder / "__init__.py"
-    said = ""
-    if initializer.exists():
-        said = ast.get_docstring(ast.parse(initializer.read_text(encoding="utf-8"))) or ""
-    dotted = name.replace("/", ".")
-    parts = [f"# {dotted}", said, *(f"::: {dotted}.{module.stem}" for module in modules)]
-    return "\n\n".join(part for part in parts if part) + "\n"

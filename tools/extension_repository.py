@@ -28,20 +28,17 @@ def write_tree(wheel: Path, folder: Path) -> None:
     """
     if folder.exists():
         shutil.rmtree(folder)
-    for name in _known_files():
+    command = ["git", "ls-files", "-z", "--", *CONTENT, *PICTURES]
+    listed = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True)
+    for name in filter(None, listed.stdout.split("\0")):
+        if not (ROOT / name).exists():
+            continue
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(ROOT / name, folder / name)
     readme = (folder / README).read_text(encoding="utf-8").replace("](../", "](")
     (folder / README).unlink()
     (folder / "README.md").write_text(readme, encoding="utf-8")
     copy_beside_module(wheel, folder / "RASTrainer" / "Resources" / "RASTrainerSimulator")
-
-
-def _known_files() -> list[Path]:
-    command = ["git", "ls-files", "-z", "--", *CONTENT, *PICTURES]
-    listed = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True)
-    names = [Path(name) for name in listed.stdout.split("\0") if name]
-    return [name for name in names if (ROOT / name).exists()]
 
 
 def main() -> None:

@@ -76,16 +76,16 @@ def measure(system: str, machine: str, tags: Sequence[str]) -> dict[str, int]:
 
 
 def _kept(wheel: Path) -> int:
+    kept = 0
     with zipfile.ZipFile(wheel) as archive:
-        return sum(file.file_size for file in archive.infolist() if _stays(file.filename))
-
-
-def _stays(name: str) -> bool:
-    # What pip puts beside the packages stands below `….data/purelib` or `platlib`.
-    inside = name.split(".data/purelib/")[-1].split(".data/platlib/")[-1]
-    never = any(inside.startswith(f"{folder}/") for folder in trim_packages.NEVER_OPENED)
-    never = never or trim_packages.TESTS in Path(inside).parts[:-1]
-    return not never and not any(fnmatch(inside, form) for form in trim_packages.BUILDING_ONLY)
+        for file in archive.infolist():
+            # What pip puts beside the packages stands below `….data/purelib` or `platlib`.
+            inside = file.filename.split(".data/purelib/")[-1].split(".data/platlib/")[-1]
+            never = any(inside.startswith(f"{folder}/") for folder in trim_packages.NEVER_OPENED)
+            never = never or trim_packages.TESTS in Path(inside).parts[:-1]
+            if not never and not any(fnmatch(inside, form) for form in trim_packages.BUILDING_ONLY):
+                kept += file.file_size
+    return kept
 
 
 def measure_here() -> int:

@@ -78,15 +78,12 @@ class PageTypes:
             values = " | ".join(json.dumps(each.value) for each in hint)
             text = f"{_comment(hint)}\nexport type {hint.__name__} = {values};"
         else:
-            text = self._interface(hint)
+            keys = [f"  readonly {each.key}: {self.of(each.hint)};" for each in record_fields(hint)]
+            if issubclass(hint, messages.ViewMessage):
+                keys.insert(0, f'  readonly type: "{hint.type}";')
+            lines = "\n".join(keys)
+            text = f"{_comment(hint)}\nexport interface {hint.__name__} {{\n{lines}\n}}"
         self.declarations[hint] = text
-
-    def _interface(self, kind: Any) -> str:
-        members = [f"  readonly {each.key}: {self.of(each.hint)};" for each in record_fields(kind)]
-        if issubclass(kind, messages.ViewMessage):
-            members.insert(0, f'  readonly type: "{kind.type}";')
-        lines = "\n".join(members)
-        return f"{_comment(kind)}\nexport interface {kind.__name__} {{\n{lines}\n}}"
 
 
 def _is_enum(hint: Any) -> bool:

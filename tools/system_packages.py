@@ -31,7 +31,6 @@ import subprocess
 found = subprocess.run(["fc-list", ":lang=zh-cn"], capture_output=True, check=True)
 raise SystemExit(found.stdout == b"")
 """
-QT_NEEDS = ["libegl1", "libgl1", "libfontconfig1", "libxkbcommon0", "libdbus-1-3"]
 OPENIGTLINK_HEADER = Path("/usr/include/openigtlink/igtlMessageHeader.h")
 FONTS = Path("/usr/share/fonts/truetype")
 REAL_HEADS = {
@@ -42,9 +41,6 @@ REAL_HEADS = {
 
 WAIT = ("-o", "DPkg::Lock::Timeout=300")
 """For another installation to end, s: many machines look for updates when they start."""
-
-
-TESTS, TRAINING = ("test", "soak"), ("simulator", "test", "soak")
 
 
 def missing_packages(target: str) -> list[str]:

@@ -51,13 +51,17 @@ def python_notices(lock: Path = LOCK) -> Iterator[Notice]:
         except importlib.metadata.PackageNotFoundError:
             continue  # The lock is for every system; this package belongs to another.
         metadata = package.metadata
-        yield Notice(
-            metadata["Name"],
-            package.version,
-            _license(metadata),
-            _home(metadata),
-            tuple(_legal_files(package)),
-        )
+        links = [entry.partition(", ")[2] for entry in metadata.get_all("Project-URL") or []]
+        home = metadata.get("Home-page") or (links[0] if links else "")
+        files = [
+            file
+            for file in package.files or ()
+            if _LEGAL.search(file.name) and file.suffix in _TEXT_SUFFIXES
+        ]
+        files.sort(key=lambda file: (len(file.parts), str(file)))
+        paths = [Path(str(package.locate_file(file))) for file in files[:MAX_FILES]]
+        texts = tuple(_text(path) for path in paths if path.is_file())
+        yield Notice(metadata["Name"], package.version, _license(metadata), home, texts)
 
 
 def page_notices(web: Path = WEB) -> Iterator[Notice]:
@@ -97,24 +101,6 @@ def _license(metadata: importlib.metadata.PackageMetadata) -> str:
     return "; ".join(
         line.rpartition(" :: ")[2] for line in classifiers if line.startswith("License ::")
     )
-
-
-def _home(metadata: importlib.metadata.PackageMetadata) -> str:
-    links = [entry.partition(", ")[2] for entry in metadata.get_all("Project-URL") or []]
-    return metadata.get("Home-page") or (links[0] if links else "")
-
-
-def _legal_files(package: importlib.metadata.Distribution) -> Iterator[str]:
-    found = [
-        file
-        for file in package.files or ()
-        if _LEGAL.search(file.name) and file.suffix in _TEXT_SUFFIXES
-    ]
-    found.sort(key=lambda file: (len(file.parts), str(file)))
-    for file in found[:MAX_FILES]:
-        path = Path(str(package.locate_file(file)))
-        if path.is_file():
-            yield _text(path)
 
 
 def _text(path: Path) -> str:

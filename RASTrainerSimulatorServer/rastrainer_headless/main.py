@@ -34,6 +34,7 @@ from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.json_records import record_to_json
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
+from rastrainer.registration.fits import RIGID
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
@@ -194,7 +195,8 @@ def writeOutput(
     """Write scene and picture of the latest trial; return the paths of all files."""
     files = {"scene": folder / SCENE, "picture": folder / PICTURE, "results": folder / RESULTS}
     application.save(files["scene"])
-    task, expected, rigid = scenario.task(latest.record.task), latest.expected_tre, latest.rigid
+    task, rigid = scenario.task(latest.record.task), latest.rigid
+    expected = latest.target_errors[RIGID]
     low, high = expected.interval_mm
     # The recording program may not know where the head was.
     true = "" if latest.truth is None else f", true TRE {latest.truth.true_tre_mm:.2f} mm"

@@ -8,6 +8,7 @@ import uuid
 import pytest
 
 from rastrainer.igtl.client import Client
+from rastrainer.json_records import record_to_json
 from rastrainer.number_text import with_units
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.study.curriculum.curriculum import Curriculum
@@ -55,7 +56,7 @@ PASSED = PastTrial("", "task-1", "desktop", 60.0, 80.0, acceptable=True)
 
 def curriculum(*trials):
     standing = standing_in(TWO, trials, lambda _version: 70.0)
-    return standing.message("P08").arguments()
+    return record_to_json(standing.message("P08"))
 
 
 def states(screen):
@@ -74,7 +75,7 @@ def test_the_trainees_menu_offers_what_slicer_sends_of_a_study_and_of_a_curricul
         ViewClient(loop_thread, simulator.url, key) as view,
     ):
         assert slicer.send_command("Hello", hello, timeout=60).ok
-        assert slicer.send_command("StudyStep", step.arguments(), timeout=60).ok
+        assert slicer.send_command("StudyStep", record_to_json(step), timeout=60).ok
         view.join(kind="desktop")
         go_to(view, "train", "introduction")
         go_to(view, "skip", "controls")
@@ -84,7 +85,7 @@ def test_the_trainees_menu_offers_what_slicer_sends_of_a_study_and_of_a_curricul
         assert enabled(screen) == ["task-2"]
         assert "play Task 2" in screen["menu"]["paragraphs"][0]
         done = StudyStep("P07", "all-done", 19, 19)
-        assert slicer.send_command("StudyStep", done.arguments(), timeout=60).ok
+        assert slicer.send_command("StudyStep", record_to_json(done), timeout=60).ok
         screen = screen_where(view, lambda screen: not enabled(screen))
         assert "All steps of the study are done" in screen["menu"]["paragraphs"][0]
         refused = slicer.send_command("StudyStep", {"trainee": "P07", "kind": "dance"}, timeout=60)

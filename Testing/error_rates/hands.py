@@ -13,12 +13,13 @@ import tempfile
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from rastrainer.registration.target_error import true_touch_errors
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.trial.scoring import SAFETY_METRICS, SafetyMeasures
+from rastrainer.trial.scoring import SAFETY_METRICS
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.virtual.scripted_trainee import Skill
 from Testing.simulator.authoring.planned_heads import setup_of
@@ -41,6 +42,14 @@ SKILLS = {
 }
 SEEDS = {USUAL: range(1, 16), SLOW: range(1, 13)}
 """Of the head's pose and of the hands."""
+
+
+class SafetyMeasures(NamedTuple):
+    """Time and path of unintended contact (s, mm) and how deep the tool was pressed in (mm)."""
+
+    contact_time_s: float
+    contact_path_mm: float
+    pressing_depth_mm: float
 
 
 @dataclass(frozen=True, eq=False)

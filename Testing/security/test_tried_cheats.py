@@ -15,7 +15,7 @@ import pytest
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.message import Transform
 from rastrainer.journal.journal_file import read_journal
-from rastrainer.json_records import record_from_json
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import FREE, PROTOCOL_VERSION, DeviceName
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study_messages import StudyStep
@@ -184,7 +184,7 @@ def test_no_two_trials_are_open_at_once_in_a_folder_of_records(place):
 
 def test_a_board_starts_no_step_of_a_study(place):
     step = StudyStep("anna", "trial", 3, 19, TASK, "desktop")
-    place.player.do("StudyStep", **step.arguments())
+    place.player.do("StudyStep", **record_to_json(step))
     journals = set(place.records.glob("*.journal"))
     statuses = {name: place.board.order(name) for name in ("pause", "say", "replay", "start")}
     assert statuses.pop("start") == 400
@@ -194,7 +194,7 @@ def test_a_board_starts_no_step_of_a_study(place):
     # The simulator has taken another command since, and nothing was started.
     assert place.player.do("GetTrial", trialId=place.trial)["phase"] == "scored"
     assert set(place.records.glob("*.journal")) == journals
-    place.player.do("StudyStep", **StudyStep("anna", FREE).arguments())
+    place.player.do("StudyStep", **record_to_json(StudyStep("anna", FREE)))
 
 
 def test_a_score_is_replaced_by_no_client_but_one_that_scores_and_the_journal_keeps_both(place):

@@ -11,6 +11,7 @@ import pytest
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_from_json
+from rastrainer.registration.fits import RIGID
 from rastrainer.trial.analysis import RevealedTruth, analyze_trial
 from rastrainer.trial.ctps import read_trials
 from rastrainer.trial.record import TrialRecord
@@ -44,7 +45,7 @@ def test_the_true_error_lies_in_the_interval_nearly_always(scenario, make_record
             record_from_json(TrialRecord, make_record(str(uuid.UUID(int=seed)), seed=seed)),
             scenario,
         )
-        low, high = analysis.expected_tre.interval_mm
+        low, high = analysis.target_errors[RIGID].interval_mm
         hits += low <= true_tre(scenario, analysis, seed) <= high
     assert hits >= 21
 
@@ -116,7 +117,9 @@ def test_only_the_score_detects_an_offset_shared_by_all_touches(scenario, make_r
     aside = analyze_trial(record_from_json(TrialRecord, value), scenario, truth=truth)
     record = record_from_json(TrialRecord, make_record(str(uuid.UUID(int=1))))
     honest = analyze_trial(record, scenario, truth=truth)
-    assert aside.expected_tre.expected_mm == pytest.approx(honest.expected_tre.expected_mm)
+    assert aside.target_errors[RIGID].expected_mm == pytest.approx(
+        honest.target_errors[RIGID].expected_mm
+    )
     assert aside.score.measures.tre_mm == pytest.approx(9.0, abs=1.0)
     assert not aside.score.acceptable
     assert aside.score.score < 10 < honest.score.score

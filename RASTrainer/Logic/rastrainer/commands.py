@@ -87,7 +87,7 @@ class StartTutorialArguments:
     3D Slicer sends it before it starts a trial run.
     """
 
-    trainee: Annotated[str, pseudonym()]
+    trainee: Annotated[str, pseudonym]
     mode: _Mode = Mode.DESKTOP.value
 
 
@@ -96,7 +96,7 @@ class StartTaskArguments:
     """Starts a trial."""
 
     task: str
-    trainee: Annotated[str, pseudonym()]
+    trainee: Annotated[str, pseudonym]
     mode: _Mode = Mode.DESKTOP.value
     seed: Annotated[
         int | None,
@@ -391,17 +391,11 @@ class CommandName:
     )
     REGISTER_AGAIN = _step("RegisterAgain", "Starts the touches again.", Phase.VERIFYING)
     ALIGN_GUIDE = CommandEntry(
-        "AlignGuide",
-        AlignGuideArguments,
-        refused=_but_in(Phase.ALIGNING),
-        is_stateless=True,
+        "AlignGuide", AlignGuideArguments, refused=_but_in(Phase.ALIGNING), is_stateless=True
     )
     LOCK_GUIDE = _step("LockGuide", "Locks the guide where it is.", Phase.ALIGNING)
     FEED = CommandEntry(
-        "Feed",
-        FeedArguments,
-        refused=_but_in(Phase.DRILLING, Phase.INSERTING),
-        is_stateless=True,
+        "Feed", FeedArguments, refused=_but_in(Phase.DRILLING, Phase.INSERTING), is_stateless=True
     )
     RETRACT_DRILL = _step(
         "RetractDrill",
@@ -421,11 +415,7 @@ class CommandName:
         "Pause",
         "Stops the trial's time, and the arm.",
         _STATE,
-        refused={
-            **_OUTSIDE_A_TRIAL,
-            Phase.PAUSED: "already paused",
-            Phase.COMPLETE: "all touched",
-        },
+        refused={**_OUTSIDE_A_TRIAL, Phase.PAUSED: "already paused", Phase.COMPLETE: "all touched"},
         entries=("phase",),
     )
     RESUME = CommandEntry(

@@ -30,8 +30,8 @@ MAX_RECORD_VALUES = 25_000
 def decode_finite_json(text: str, deepest: int = MAX_DEPTH) -> Any:
     """Return decoded JSON with finite numbers.
 
-    Raises:
-        ValueError: not JSON, nested more than `deepest` levels, or a number is not finite.
+    Raise ValueError if it is not JSON, nested more than `deepest` levels, or a number is not
+    finite.
     """
     try:
         value = _DECODER.decode(text)
@@ -46,24 +46,14 @@ def decode_finite_json(text: str, deepest: int = MAX_DEPTH) -> Any:
     return value
 
 
-def decode_message(text: str, most: int = MAX_MESSAGE_VALUES) -> Any:
-    """Return the decoded JSON of a message, which has a limited number of values.
+def decode_message_object(text: str, what: str, most: int = MAX_MESSAGE_VALUES) -> dict[str, Any]:
+    """Return the JSON object of a message of at most `most` values; `what` starts the error.
 
     Python's decoder blocks all other threads; with more values than `MAX_MESSAGE_VALUES`, the
     control loop would miss a tick.
-
-    Raises:
-        ValueError: as `decode_finite_json`, or more than `most` values.
     """
-    if text.count(",") >= most:
-        raise ValueError("too many values")
-    return decode_finite_json(text)
-
-
-def decode_message_object(text: str, what: str, most: int = MAX_MESSAGE_VALUES) -> dict[str, Any]:
-    """Return the JSON object of a message of at most `most` values; `what` starts the error."""
     try:
-        value = decode_message(text, most)
+        value = decode_finite_json(text) if text.count(",") < most else None
     except ValueError:
         value = None
     if not isinstance(value, dict):
@@ -172,15 +162,11 @@ def text(max_length: int = 64, min_length: int = 1) -> Callable[[Any], str]:
     return check
 
 
-def pseudonym() -> Callable[[Any], str]:
+def pseudonym(value: Any) -> str:
     """Accept a trainee's pseudonym: short printable text without a space at either end."""
-
-    def check(value: Any) -> str:
-        if text()(value) != value.strip():
-            raise ValueError("printable text without a space at its beginning or end")
-        return value
-
-    return check
+    if text()(value) != value.strip():
+        raise ValueError("printable text without a space at its beginning or end")
+    return value
 
 
 def number(minimum: float, maximum: float, unit: str = "") -> Callable[[Any], float]:
@@ -237,16 +223,11 @@ def point(limit: float, unit: str = "mm") -> Callable[[Any], np.ndarray]:
     return check
 
 
-def transform() -> Callable[[Any], np.ndarray]:
+def transform(value: Any) -> np.ndarray:
     """Accept 16 numbers, row by row: (4, 4) float, read-only."""
-    check_numbers = numbers(16, 1e6)
-
-    def check(value: Any) -> np.ndarray:
-        matrix = np.reshape(check_numbers(value), (4, 4))
-        matrix.setflags(write=False)
-        return matrix
-
-    return check
+    matrix = np.reshape(numbers(16, 1e6)(value), (4, 4))
+    matrix.setflags(write=False)
+    return matrix
 
 
 @dataclass(frozen=True)

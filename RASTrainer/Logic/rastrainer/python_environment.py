@@ -63,21 +63,17 @@ def clean_environment(environment: Mapping[str, str]) -> dict[str, str]:
         for name, value in environment.items()
         if name.upper() not in searched and not name.startswith("APPLAUNCHER_")
     }
-    clean["PATH"] = _without(clean.get("PATH", os.defpath), environment.get(HOME, ""))
+    clean["PATH"] = clean.get("PATH", os.defpath)
+    if environment.get(HOME):
+        # The folders in Slicer's own are left out.
+        slicer = Path(environment[HOME]).resolve()
+        places = clean["PATH"].split(os.pathsep)
+        kept = [place for place in places if not Path(place).resolve().is_relative_to(slicer)]
+        clean["PATH"] = os.pathsep.join(kept)
     for name in (*SEARCHED, "PATH"):
         if SAVED + name in environment:
             clean[name] = environment[SAVED + name]
     return clean
-
-
-def _without(path: str, home: str) -> str:
-    """Return a search path without the folders in Slicer's."""
-    if not home:
-        return path
-    inside = Path(home).resolve()
-    places = path.split(os.pathsep)
-    kept = [place for place in places if not Path(place).resolve().is_relative_to(inside)]
-    return os.pathsep.join(kept)
 
 
 START = (
@@ -141,7 +137,16 @@ def _own_environment(folder: Path) -> dict[str, str]:
         clean["PYTHONHOME"] = os.environ["PYTHONHOME"]
     wanted = clean.get("LD_LIBRARY_PATH", "")
     if os.environ.get("LD_LIBRARY_PATH", "") != wanted:
-        places = [_linked(python_libraries(os.environ), folder / LIBRARIES), wanted]
+        links, libraries = folder / LIBRARIES, python_libraries(os.environ)
+        if libraries:
+            links.mkdir(exist_ok=True)
+        for name, path in libraries.items():
+            if os.path.realpath(links / name) != str(path):
+                # Another simulator may be starting at this moment.
+                partial = links / f".{uuid.uuid4().hex}"
+                partial.symlink_to(path)
+                partial.replace(links / name)
+        places = [str(links) if libraries else "", wanted]
         clean["LD_LIBRARY_PATH"] = os.pathsep.join(filter(None, places))
     return clean
 
@@ -165,18 +170,3 @@ def python_libraries(environment: Mapping[str, str]) -> dict[str, Path]:
                 if os.path.realpath(path) in mapped:
                     found.setdefault(path.name, Path(os.path.realpath(path)))
     return found
-
-
-def _linked(libraries: Mapping[str, Path], folder: Path) -> str:
-    """Link to the libraries in a folder and return it; empty if there are none."""
-    if not libraries:
-        return ""
-    folder.mkdir(exist_ok=True)
-    for name, path in libraries.items():
-        link = folder / name
-        if os.path.realpath(link) != str(path):
-            # Another simulator may be starting at this moment.
-            partial = folder / f".{uuid.uuid4().hex}"
-            partial.symlink_to(path)
-            partial.replace(link)
-    return str(folder)

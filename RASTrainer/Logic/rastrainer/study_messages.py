@@ -12,16 +12,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 from rastrainer.errors import InputError
-from rastrainer.json_checks import (
-    identifier,
-    list_of,
-    number,
-    one_of,
-    text,
-    texts,
-    whole_number,
-)
-from rastrainer.json_records import record_to_json
+from rastrainer.json_checks import identifier, list_of, number, one_of, text, texts, whole_number
 from rastrainer.protocol import (
     ALL_DONE,
     FREE,
@@ -49,11 +40,7 @@ FIDUCIALS = RegistrationMethod.FIDUCIALS.value
 
 
 def skin_amounts(value: Any) -> dict[str, float]:
-    """Accept how far the skin shifts (RMS) and is indented, mm; a missing amount is 0.
-
-    Raises:
-        ValueError: anything else; the words follow "must be".
-    """
+    """Accept how far the skin shifts (RMS) and is indented, mm; a missing amount is 0."""
     check = number(0, SKIN_LIMIT_MM)
     with contextlib.suppress(ValueError):
         if isinstance(value, Mapping) and set(value) <= set(SKIN_KEYS):
@@ -79,7 +66,6 @@ class StudyStep:
     """A step of a trainee through a study; texts that do not apply are empty.
 
     Attributes:
-        trainee: Pseudonym.
         kind: A `StepKind`, `REPEAT` if an aborted trial needs a reason, `ALL_DONE` after the last
             step, or `FREE` without a study.
         number, count: Of the step, from 1, and of all steps; 0 if none.
@@ -111,15 +97,6 @@ class StudyStep:
     skin: Skin = field(default_factory=dict, hash=False)
     name: Annotated[str, text(160)] = ""
     allows: Allowances = ()
-
-    @classmethod
-    def from_arguments(cls, arguments: Mapping[str, Any]) -> StudyStep:
-        """Return the step of checked command arguments."""
-        return cls(**arguments)
-
-    def arguments(self) -> dict[str, Any]:
-        """Return the command arguments, without defaults."""
-        return record_to_json(self)
 
     @property
     def is_played(self) -> bool:
@@ -171,11 +148,6 @@ class Assignment:
                 f"The assignment {self.name}: trials must be left out of the goal competent."
             )
 
-    @property
-    def is_by_competence(self) -> bool:
-        """Whether its goal is competence by LC-CUSUM; else, trials in a row that pass."""
-        return self.goal is GoalKind.COMPETENT
-
     def is_played_as(
         self, scenario: str, task: str, mode: str, method: str, procedure: str
     ) -> bool:
@@ -213,22 +185,12 @@ class AssignmentStanding(Assignment):
     weakest: Annotated[str, text(20)] = ""
     reached_utc: str = ""
 
-    @property
-    def is_locked(self) -> bool:
-        """Whether others have to be reached first."""
-        return self.state is AssignmentState.LOCKED
-
-    @property
-    def is_reached(self) -> bool:
-        return self.state is AssignmentState.REACHED
-
 
 @dataclass(frozen=True)
 class CurriculumMessage:
     """A trainee's standing in a curriculum, as the menu shows it.
 
     Attributes:
-        trainee: Pseudonym.
         title: Of the curriculum, for people.
         next: Name of the assignment to practice next; "" for none.
         assignments: In their order; none for a trainee without a curriculum.
@@ -240,19 +202,6 @@ class CurriculumMessage:
     assignments: Annotated[
         tuple[AssignmentStanding, ...], list_of(0, MAX_ASSIGNMENTS, "assignments")
     ] = ()
-
-    @classmethod
-    def from_arguments(cls, arguments: Mapping[str, Any]) -> CurriculumMessage:
-        """Return the message of checked command arguments."""
-        return cls(**arguments)
-
-    def arguments(self) -> dict[str, Any]:
-        """Return the command arguments, without defaults."""
-        return record_to_json(self)
-
-    @property
-    def reached(self) -> int:
-        return sum(each.is_reached for each in self.assignments)
 
     def find(self, name: str) -> AssignmentStanding | None:
         return next((each for each in self.assignments if each.name == name), None)

@@ -11,15 +11,7 @@ MM_PER_M = 1000.0
 
 
 def apply(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Map points by a transform.
-
-    Args:
-        matrix: (4, 4) float, affine (last row 0 0 0 1).
-        points: (..., 3) float.
-
-    Returns:
-        (..., 3) float, in the frame that the matrix maps to.
-    """
+    """Return points (..., 3) float mapped by an affine (4, 4) float matrix (last row 0 0 0 1)."""
     matrix = np.asarray(matrix, dtype=float)
     return np.asarray(points, dtype=float) @ matrix[:3, :3].T + matrix[:3, 3]
 
@@ -50,11 +42,7 @@ def rotations(vectors: np.ndarray) -> np.ndarray:
 
 
 def inverse(matrix: np.ndarray) -> np.ndarray:
-    """Return the inverse, (4, 4) float, of an affine transform.
-
-    Raises:
-        numpy.linalg.LinAlgError: the matrix is singular.
-    """
+    """Return the inverse (4, 4) of an affine transform; raise LinAlgError if it is singular."""
     matrix = np.asarray(matrix, dtype=float)
     linear = np.linalg.inv(matrix[:3, :3])
     return rigid(linear, -linear @ matrix[:3, 3])

@@ -19,7 +19,7 @@ import rastrainer
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.files.ply import write_point_cloud
-from rastrainer.files.point_files import write_line, write_markups
+from rastrainer.files.point_files import write_markups
 from rastrainer.files.point_list import PointList
 from rastrainer.files.writing import make_empty_folder, make_folder, write_json, write_text
 from rastrainer.motion.trajectory import Trajectory, resample
@@ -251,7 +251,7 @@ def _write_lines(trial: StoredTrial, folder: Path) -> list[Path]:
             path = folder / f"trajectory-{number}-{kind}.mrk.json"
             labels = ("guide", "tip") if kind == "placed" else ("entry", "target")
             points = PointList(labels, getattr(line, kind))
-            write_line(path, f"{line.trajectory} ({kind})", points)
+            write_markups(path, points, f"{line.trajectory} ({kind})")
             written.append(path)
     return written
 

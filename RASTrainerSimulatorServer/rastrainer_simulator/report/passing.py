@@ -9,7 +9,7 @@ from datetime import datetime
 import numpy as np
 from markupsafe import Markup
 
-from rastrainer.protocol import RegistrationMethod
+from rastrainer.protocol import TRIAL_RUN, RegistrationMethod
 from rastrainer.study.database.values import StoredAbortedTrial, moment
 from rastrainer.study.outcomes import mode_title, short_mode_title, task_title
 from rastrainer.study.protocol.study_protocol import pass_mark_of
@@ -27,7 +27,7 @@ def started_trials(data: StudyData) -> Markup:
     """Return the section; "" if only finished trials are known, as in a CSV file."""
     if not data.has_order:
         return Markup()
-    scored = [stored for stored in data.aborted if not stored.record.is_trial_run]
+    scored = [stored for stored in data.aborted if stored.record.task != TRIAL_RUN]
     return render(
         "started_trials",
         data=data,

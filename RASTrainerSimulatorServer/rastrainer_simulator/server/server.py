@@ -302,10 +302,10 @@ class SimulatorServer:
         if name == CommandName.LOAD_SCENARIO:
             return self._scenarios.load(arguments["folder"])
         if name == CommandName.STUDY_STEP:
-            self._assigned.take_step(StudyStep.from_arguments(arguments))
+            self._assigned.take_step(StudyStep(**arguments))
             return answered(Answer(0, True))
         if name == CommandName.CURRICULUM:
-            self._assigned.take_curriculum(CurriculumMessage.from_arguments(arguments))
+            self._assigned.take_curriculum(CurriculumMessage(**arguments))
             return answered(Answer(0, True))
         if name == CommandName.START_TUTORIAL:
             if self._presenter is None:

@@ -38,7 +38,7 @@ class Truth:
         skin: its shift, compared with the images.
     """
 
-    head_to_world: Annotated[np.ndarray, transform()]
+    head_to_world: Annotated[np.ndarray, transform]
     target_ras: _RasPoint
     fiducials_ras: Mapping[str, _RasPoint]
     skin: SkinShift = UNMOVED

@@ -19,6 +19,7 @@ from rastrainer.journal.journal_file import file_stamp, iso
 from rastrainer.json_records import record_from_json
 from rastrainer.procedure.record import ProcedureRecord, UsedRegistration
 from rastrainer.protocol import Mode, Phase, Proximity
+from rastrainer.registration.fits import RIGID
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
@@ -229,7 +230,7 @@ def _procedure(
         _skull(skull),
         procedure.sha256(skull),
         head_to_world,
-        UsedRegistration(matrix, analysis.rigid.fre_mm, analysis.expected_tre.expected_mm),
+        UsedRegistration(matrix, analysis.rigid.fre_mm, analysis.target_errors[RIGID].expected_mm),
         analysis.record.completion_time_s,
         ProcedureHands.of(job.skill),
         np.random.default_rng([job.seed, PROCEDURE_STREAM]),

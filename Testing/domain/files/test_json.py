@@ -11,7 +11,7 @@ from rastrainer.json_checks import (
     MAX_MESSAGE_VALUES,
     accepted,
     decode_finite_json,
-    decode_message,
+    decode_message_object,
     is_number,
 )
 
@@ -41,10 +41,10 @@ def test_wide_json_and_text_of_brackets_are_not_deep():
 
 
 def test_a_message_with_too_many_values_is_refused_before_it_is_decoded():
-    most = f"[{','.join('1' * MAX_MESSAGE_VALUES)}]"
-    assert len(decode_message(most)) == MAX_MESSAGE_VALUES
-    with pytest.raises(ValueError, match="too many values"):
-        decode_message(most.replace("1", "1,1", 1))
+    most = f'{{"values":[{",".join("1" * MAX_MESSAGE_VALUES)}]}}'
+    assert len(decode_message_object(most, "It")["values"]) == MAX_MESSAGE_VALUES
+    with pytest.raises(InputError, match=f"at most {MAX_MESSAGE_VALUES} values"):
+        decode_message_object(most.replace("1", "1,1", 1), "It")
 
 
 @pytest.mark.parametrize("number", ["NaN", "Infinity", "-Infinity", "1e999"])
@@ -71,7 +71,7 @@ def test_integers_of_any_length_and_underflowing_numbers_are_finite():
     ("check", "value", "words"),
     [
         pytest.param(json_checks.text(3), "abcd", "printable text of 1 to 3", id="long text"),
-        pytest.param(json_checks.pseudonym(), " a", "without a space at its", id="space"),
+        pytest.param(json_checks.pseudonym, " a", "without a space at its", id="space"),
         pytest.param(json_checks.number(0, 1, "s"), True, "a number from 0 to 1 s", id="true"),
         pytest.param(json_checks.number(0, 1), float("nan"), "a number from 0 to 1", id="nan"),
         pytest.param(json_checks.whole_number(0, 9), 1.0, "a whole number from 0", id="float"),

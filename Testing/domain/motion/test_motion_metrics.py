@@ -9,7 +9,6 @@ from rastrainer.motion.trajectory import (
     idle_time,
     log_dimensionless_jerk,
     low_pass,
-    path_efficiency,
     path_length,
     resample,
     sparc,
@@ -102,9 +101,6 @@ def test_path_length_and_efficiency():
     assert path_length(helix) == pytest.approx(2.0 * np.pi * 50.0, rel=1e-7)
     square = np.array([[0, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0]], dtype=float)
     assert path_length(square) == 30.0
-    assert path_efficiency(30.0, 15.0) == 0.5
-    with pytest.raises(InputError, match="two lengths above 0"):
-        path_efficiency(0.0, 1.0)
 
 
 def test_idle_time_counts_rests_longer_than_the_threshold_only():

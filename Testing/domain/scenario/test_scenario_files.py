@@ -8,12 +8,14 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
+from rastrainer.files.writing import write_json
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.trial_head import UNMOVED, Perturbation, SkinShift
 from rastrainer.head.volume import read_head_volume
+from rastrainer.json_records import record_to_json
 from rastrainer.scenario.library import list_scenarios
 from rastrainer.scenario.scenario import OperatingTable, Stand, load_scenario
-from rastrainer.scenario.setup import HeadPlace, SetUp, read_setup, write_setup
+from rastrainer.scenario.setup import HeadPlace, SetUp, read_setup
 from rastrainer.scenario.writer import (
     HeadDraft,
     new_folder,
@@ -162,7 +164,7 @@ def test_a_setup_is_written_and_read_back(tmp_path):
         Stand(90.0),
         (10.0, -11),
     )
-    write_setup(tmp_path / "setup.json", setup)
+    write_json(tmp_path / "setup.json", record_to_json(setup, with_defaults=True))
     assert read_setup(tmp_path / "setup.json") == setup
 
 

@@ -10,6 +10,7 @@ import pytest
 
 from rastrainer.commands import CommandName, check_arguments, decode_json_object
 from rastrainer.errors import InputError
+from rastrainer.json_records import record_to_json
 from rastrainer.protocol import (
     MAX_ASSIGNMENTS,
     MAX_GATES,
@@ -336,15 +337,15 @@ def test_a_failed_trial_stored_late_breaks_the_streak_in_which_it_was_played(stu
 
 
 def told_of(trials, *assignments):
-    arguments = stand(trials, *assignments).message("A").arguments()
+    arguments = record_to_json(stand(trials, *assignments).message("A"))
     return check_arguments(CommandName.CURRICULUM, json.loads(json.dumps(arguments)))
 
 
 def test_what_slicer_sends_to_the_simulator_arrives_unchanged_and_fits_into_a_message():
     checked = told_of([PASSED])
-    assert CurriculumMessage.from_arguments(checked) == stand([PASSED]).message("A")
-    none = check_arguments(CommandName.CURRICULUM, CurriculumMessage("A").arguments())
-    assert CurriculumMessage.from_arguments(none) == CurriculumMessage("A")
+    assert CurriculumMessage(**checked) == stand([PASSED]).message("A")
+    none = check_arguments(CommandName.CURRICULUM, record_to_json(CurriculumMessage("A")))
+    assert CurriculumMessage(**none) == CurriculumMessage("A")
     names = [f"{number:02d}{'x' * 38}" for number in range(MAX_ASSIGNMENTS)]
     largest = [
         Assignment(
@@ -354,7 +355,7 @@ def test_what_slicer_sends_to_the_simulator_arrives_unchanged_and_fits_into_a_me
         )
         for place, name in enumerate(names)
     ]
-    whole = stand([], *largest).message("A" * 64).arguments()
+    whole = record_to_json(stand([], *largest).message("A" * 64))
     decode_json_object(json.dumps(whole))
     assert len(json.dumps(whole)) < 20_000
 
@@ -379,7 +380,7 @@ def test_what_slicer_sends_to_the_simulator_arrives_unchanged_and_fits_into_a_me
     ids=lambda changes: json.dumps(changes)[:30],
 )
 def test_a_hostile_message_is_refused(changes):
-    good = stand([]).message("A").arguments()
+    good = record_to_json(stand([]).message("A"))
     bad = {**good, "assignments": [{**good["assignments"][0], **changes}]}
     with pytest.raises(InputError):
         check_arguments(CommandName.CURRICULUM, bad)

@@ -10,6 +10,7 @@ import pytest
 
 from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
+from rastrainer.json_records import record_to_json
 from rastrainer.protocol import (
     ALL_DONE,
     FREE,
@@ -163,17 +164,17 @@ def test_every_step_survives_the_study_step_command(study):
     kinds = set()
     while True:
         step = progress.progress("T001").study_step("T001", NOW)
-        checked = check_arguments(CommandName.STUDY_STEP, json.loads(json.dumps(step.arguments())))
-        assert StudyStep.from_arguments(checked) == step
+        checked = check_arguments(
+            CommandName.STUDY_STEP, json.loads(json.dumps(record_to_json(step)))
+        )
+        assert StudyStep(**checked) == step
         kinds.add(step.kind)
         if step.kind == ALL_DONE:
             break
         progress.skip("T001", progress.progress("T001").next_step.name, "only sent in this test")
     assert kinds == {*(kind.value for kind in StepKind), ALL_DONE}
     free = StudyStep("T001", FREE)
-    assert (
-        StudyStep.from_arguments(check_arguments(CommandName.STUDY_STEP, free.arguments())) == free
-    )
+    assert StudyStep(**check_arguments(CommandName.STUDY_STEP, record_to_json(free))) == free
 
 
 def test_a_protocol_may_set_the_pass_mark():
@@ -208,8 +209,8 @@ def test_a_protocol_may_set_the_guidance_to_the_next_point_and_a_ghost(study):
     assert (step.kind, step.guidance, step.ghost) == ("trial-run", "arrow", "")
     ghosts = {step.ghost for step in steps_for(own, 0) if step.kind is StepKind.TRIAL}
     assert ghosts == {"own best"}
-    arguments = check_arguments(CommandName.STUDY_STEP, step.arguments())
-    assert StudyStep.from_arguments(arguments) == step
+    arguments = check_arguments(CommandName.STUDY_STEP, record_to_json(step))
+    assert StudyStep(**arguments) == step
     with pytest.raises(InputError, match="guidance must be one of fading, words, arrow, none"):
         protocol(guidance="loud")
     with pytest.raises(InputError, match="ghost must be one of off, own best, expert"):
@@ -222,8 +223,8 @@ def test_a_protocol_may_require_the_tutorial_before_each_trial_run_or_skip_it():
     assert study_protocol_from_json(own.to_json()) == own
     steps = [step for step in steps_for(own, 0) if step.tutorial]
     assert {(step.kind, step.tutorial) for step in steps} == {("trial-run", "skipped")}
-    sent = StudyStep("P07", "trial-run", tutorial="skipped").arguments()
-    assert StudyStep.from_arguments(check_arguments("StudyStep", sent)).tutorial == "skipped"
+    sent = record_to_json(StudyStep("P07", "trial-run", tutorial="skipped"))
+    assert StudyStep(**check_arguments("StudyStep", sent)).tutorial == "skipped"
     with pytest.raises(InputError, match="tutorial must be one of required, optional, skipped"):
         protocol(tutorial="short")
 
@@ -237,8 +238,8 @@ def test_a_protocol_may_name_a_procedure_for_the_trials_of_a_task():
         ("trial", "task-1", "dbs")
     }
     assert "Task 1 with the procedure dbs" in instruction(steps[0])
-    sent = StudyStep("P07", "trial", task="task-1", procedure="dbs").arguments()
-    assert StudyStep.from_arguments(check_arguments("StudyStep", sent)).procedure == "dbs"
+    sent = record_to_json(StudyStep("P07", "trial", task="task-1", procedure="dbs"))
+    assert StudyStep(**check_arguments("StudyStep", sent)).procedure == "dbs"
     with pytest.raises(InputError, match=r"procedures.task-9 must be one of the study's tasks"):
         protocol(procedures={"task-9": "dbs"})
     with pytest.raises(InputError, match=r"procedures.task-1 must be"):
@@ -433,8 +434,8 @@ def test_a_protocol_may_set_how_the_trials_of_a_task_are_registered():
     assert sentences["task-2"].startswith("Play Task 2 by a trace over the skin ")
     assert sentences["task-3"].startswith("Play Task 3 by landmarks of the face ")
     assert sentences["task-4"].startswith("Play Task 4 ")
-    sent = StudyStep("P07", "trial", task="task-2", method="surface").arguments()
-    assert StudyStep.from_arguments(check_arguments("StudyStep", sent)).method == "surface"
+    sent = record_to_json(StudyStep("P07", "trial", task="task-2", method="surface"))
+    assert StudyStep(**check_arguments("StudyStep", sent)).method == "surface"
     with pytest.raises(InputError, match=r"methods.task-9 must be one of the study's tasks"):
         protocol(methods={"task-9": "surface"})
     with pytest.raises(InputError, match=r"methods.task-1 must be one of fiducials, landmarks, "):
@@ -454,9 +455,9 @@ def test_a_protocol_may_set_how_the_skin_shifts_in_the_trials_of_a_task_without_
     assert not trials["task-2"].is_played_on(0.0, 0.0)
     assert not trials["task-3"].is_played_on(2.0, 0.0)
     assert trials["task-1"].is_played_on(2.0, 0.0)
-    sent = StudyStep("P07", "trial", task="task-2", skin=trials["task-2"].skin).arguments()
-    assert StudyStep.from_arguments(check_arguments("StudyStep", sent)).skin == sent["skin"]
-    assert "skin" not in StudyStep("P07", "trial", task="task-1").arguments()
+    sent = record_to_json(StudyStep("P07", "trial", task="task-2", skin=trials["task-2"].skin))
+    assert StudyStep(**check_arguments("StudyStep", sent)).skin == sent["skin"]
+    assert "skin" not in record_to_json(StudyStep("P07", "trial", task="task-1"))
 
 
 AMOUNTS = "skin.task-1 must be an object of shiftMm and indentationMm, each a number from 0 to 20"

@@ -10,7 +10,6 @@ from rastrainer.errors import InputError
 from rastrainer.trial.ctps import (
     CohortReference,
     Trial,
-    equation_3_ctps,
     published_ctps,
     read_trials,
     score_cohort,
@@ -67,8 +66,6 @@ def test_the_printed_r_squared_are_correlations(published):
 def test_equation_3_yields_half_of_the_tables(published):
     assert f"{published['hmd'].equation_3_overall:.1f}" == "32.4"
     assert f"{published['desktop'].equation_3_overall:.1f}" == "33.6"
-    reference = CohortReference(120.0, 1.0)
-    assert equation_3_ctps(90.0, 1.3, reference) * 2 == published_ctps(90.0, 1.3, reference)
 
 
 def test_means_of_the_published_trials_are_as_printed(modes):

@@ -275,6 +275,6 @@ def test_the_feedback_sentences_are_in_order():
     short = feedback.short_sentences
     assert short[0] == sentences[4]
     assert short[1:] == [feedback.advice[0].sentence, feedback.progress.sentences[0]]
-    moved = replace(feedback, skin=feedback.worst.sentence).short_sentences
+    moved = replace(feedback, skin=(feedback.worst.sentence,)).short_sentences
     assert len(moved) == MAX_SHORT
     assert "Your score is 10 above that of your last trial of this task" in sentences[-3]

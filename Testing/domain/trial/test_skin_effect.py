@@ -83,7 +83,7 @@ def test_the_error_without_the_shift_is_computed_from_the_points_moved_back(scen
 def test_one_sentence_describes_the_shift_and_its_effect(scenario):
     analysis, truth = scored(scenario, SKIN)
     assert truth.true_tre_mm > 0.5
-    (sentence,) = analysis.feedback.skin_sentences
+    (sentence,) = analysis.feedback.skin
     assert sentence == (
         "The skin had shifted by 4.0 mm (RMS) and was indented by 0.5 mm: the true error at the "
         f"target was {truth.true_tre_mm:.2f} mm, and would have been "
@@ -96,7 +96,7 @@ def test_one_sentence_describes_the_shift_and_its_effect(scenario):
 
 def test_unshifted_skin_leaves_score_and_record_unchanged(scenario):
     analysis, _truth = scored(scenario, UNMOVED)
-    assert analysis.feedback.skin_sentences == ()
+    assert analysis.feedback.skin == ()
     assert "unshiftedTreMm" not in record_to_json(analysis.score)
     assert "skin" not in record_to_json(analysis.record)
 
@@ -112,7 +112,7 @@ def test_a_study_stores_the_skin_shift_and_shows_it_in_tables_and_report(scenari
         study.set_truth(record.trial_id, truth.true_tre_mm, truth.head_to_world)
         (stored,) = study.history("P01")
     again = analyze_trial(stored.record, scenario).scored_as(stored.score, scenario, stored.truth)
-    assert again.feedback.skin_sentences == analysis.feedback.skin_sentences
+    assert again.feedback.skin == analysis.feedback.skin
     rows = trial_rows([stored])
     header, values = (line.split(",") for line in trials_csv(rows).splitlines())
     cells = dict(zip(header, values, strict=True))

@@ -11,6 +11,7 @@ from pathlib import Path
 from playwright.sync_api import sync_playwright
 
 from rastrainer.igtl.client import Client
+from rastrainer.json_records import record_to_json
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.database.study import Study
@@ -85,7 +86,7 @@ def keep_seat(folder: Path, message: CurriculumMessage) -> None:
         Client(port=simulator.port) as slicer,
     ):
         slicer.send_command("Hello", hello, timeout=60)
-        slicer.send_command("Curriculum", message.arguments(), timeout=60)
+        slicer.send_command("Curriculum", record_to_json(message), timeout=60)
         browser = launch(playwright)
         page = open_page(browser, simulator.url, simulator.code, size=SIZE)
         for item, menu in (

@@ -12,7 +12,7 @@ import pytest
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, read_journal
-from rastrainer.protocol import MIN_ABORTED_S, Phase
+from rastrainer.protocol import MIN_ABORTED_S, TRIAL_RUN, Phase
 from rastrainer.study.database.study import Study
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
@@ -116,7 +116,7 @@ def test_a_trial_run_is_stored_too_and_marked(simulation, tmp_path):
         touch(server, 1)
         assert server.do(CommandName.ABORT, reason="practice over").ok
         (record,) = wait_for_offer(server)
-    assert record.is_trial_run
+    assert record.task == TRIAL_RUN
     assert not record.counts_as_failed
     assert record.reason == "practice over"
 

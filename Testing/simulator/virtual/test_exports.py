@@ -83,7 +83,7 @@ def test_every_touch_is_a_row_with_its_residual(played, exported):
         assert np.all(np.diff([float(row["sim_time_s"]) for row in own]) > 0)
         journal = read_trajectory(played / RECORDS, trial.trial_id)
         tip = [[float(row[axis]) for axis in ("x_mm", "y_mm", "z_mm")] for row in own]
-        np.testing.assert_array_equal(tip, journal.touch_positions_mm)
+        np.testing.assert_array_equal(tip, [touch.position_mm for touch in journal.touches])
 
 
 def test_xapi_statements_have_what_the_specification_requires(exported):

@@ -32,7 +32,6 @@ class CsvTable:
     """The cells of a CSV file.
 
     Attributes:
-        path: of the file.
         remarks: what its first lines say as "# name = value", by name in lower case.
         first: the line that should be the header, as it is written.
         header: the names of the columns in lower case; empty for those without a name.
@@ -50,10 +49,8 @@ class CsvTable:
     ) -> list[tuple[int, dict[str, str]]]:
         """Return the line number and the named cells of each row.
 
-        Args:
-            required: Columns that the header must have, in any order. Decimal commas in them become
-                points.
-            optional: Columns that it may have; others do not matter.
+        The header may have other columns, in any order. Decimal commas in the required ones become
+        points.
         """
         wanted = [*optional, *required]
         twice = next((name for name in wanted if self.header.count(name) > 1), None)
@@ -66,19 +63,18 @@ class CsvTable:
             )
         if not self.lines:
             raise InputError(f"The file {self.path} has a header but no rows.")
-        rows = [(number, self._row(number, cells)) for number, cells in self.lines]
+        columns = len(self.header)
+        rows = []
+        for number, cells in self.lines:
+            if len(cells) < columns or any(cells[columns:]):
+                hint = " A comma in a number needs semicolons between the cells, in a text quotes."
+                raise InputError(
+                    f"Line {number} of {self.path} has {len(cells)} cells; the header has "
+                    f"{columns}.{hint if len(cells) > columns else ''}"
+                )
+            rows.append((number, dict(zip(self.header, cells, strict=False))))
         self._replace_decimal_commas([cells for _, cells in rows], required)
         return rows
-
-    def _row(self, number: int, cells: list[str]) -> dict[str, str]:
-        columns = len(self.header)
-        if len(cells) < columns or any(cells[columns:]):
-            hint = " A comma in a number needs semicolons between the cells, in a text quotes."
-            raise InputError(
-                f"Line {number} of {self.path} has {len(cells)} cells; the header has {columns}."
-                f"{hint if len(cells) > columns else ''}"
-            )
-        return dict(zip(self.header, cells, strict=False))
 
     def _replace_decimal_commas(self, rows: list[dict[str, str]], columns: Sequence[str]) -> None:
         cells = [row[column] for row in rows for column in columns]
@@ -103,7 +99,12 @@ def read_table(path: str | os.PathLike[str]) -> CsvTable:
     It may be in UTF-8 or, with its byte order mark, in UTF-16, and separated by commas, semicolons
     or tabs. A remark "# columns = …", as in Slicer's `.fcsv`, replaces the header.
     """
-    lines = _text(path).replace("\r\n", "\n").replace("\r", "\n").rstrip("\n").split("\n")
+    content = read_bytes(path, CSV_LIMIT_BYTES)
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        with contextlib.suppress(UnicodeDecodeError):
+            content = content.decode("utf-16").encode()
+    text = decode_text(content, f"The file {path}")
+    lines = text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\n").split("\n")
     remarks, start = _remarks(lines)
     separator = _SEPARATOR.fullmatch(lines[start]) if start < len(lines) else None
     if separator:
@@ -139,21 +140,6 @@ def _remarks(lines: list[str]) -> tuple[dict[str, str], int]:
         name, _, value = line.lstrip("# ").partition("=")
         remarks[name.strip().lower()] = value.strip()
     return remarks, len(lines)
-
-
-def _text(path: str | os.PathLike[str]) -> str:
-    content = read_bytes(path, CSV_LIMIT_BYTES)
-    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        with contextlib.suppress(UnicodeDecodeError):
-            content = content.decode("utf-16").encode()
-    return decode_text(content, f"The file {path}")
-
-
-def read_rows(
-    path: str | os.PathLike[str], required: Sequence[str], optional: Sequence[str] = ()
-) -> list[tuple[int, dict[str, str]]]:
-    """Return the line number and the named cells of each row of a CSV file; see `CsvTable.rows`."""
-    return read_table(path).rows(required, optional)
 
 
 def number_in(

@@ -58,8 +58,7 @@ class PlyFile:
     def vertices(self) -> np.ndarray:
         """(n, 3) float, in RAS if the file says that it is in LPS, otherwise as they are.
 
-        Raises:
-            LookupError: there are none with x, y and z.
+        Raise LookupError if there are none with x, y and z.
         """
         columns = self.elements["vertex"]
         points = np.stack([np.asarray(columns[axis], float) for axis in ("x", "y", "z")], axis=1)
@@ -113,8 +112,7 @@ def read_ply(path: str | os.PathLike[str]) -> PlyFile:
 def _described(lines: list[str]) -> tuple[str, list[_Element]]:
     """Return the order of the bytes, empty for text, and the elements.
 
-    Raises:
-        ValueError, LookupError: the header is not one.
+    Raise ValueError or LookupError if the header is not one.
     """
     orders, elements = [], []
     for words in (line.split() for line in lines):

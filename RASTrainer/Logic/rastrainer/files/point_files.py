@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.csv_table import POSITION_STATUS, CsvTable, number_in, read_rows, read_table
+from rastrainer.files.csv_table import POSITION_STATUS, CsvTable, number_in, read_table
 from rastrainer.files.ply import LPS_TO_RAS, read_point_cloud
 from rastrainer.files.point_list import COORDINATE_LIMIT_MM, PointList
 from rastrainer.files.reading import read_json
@@ -31,9 +31,7 @@ _STATUSES = ("undefined", "preview", "missing", _PLACED)
 def read_markups(path: str | os.PathLike[str], *, allow_left_out: bool = False) -> PointList:
     """Return the points of a markups file with one point list, in RAS mm.
 
-    Args:
-        path: of the file.
-        allow_left_out: whether points may be deselected or not placed; these are left out.
+    With `allow_left_out`, points may be deselected or not placed; these are left out.
     """
     document = read_json(path, MARKUPS_LIMIT_BYTES)
     try:
@@ -48,23 +46,13 @@ def read_markups(path: str | os.PathLike[str], *, allow_left_out: bool = False) 
     return point_list
 
 
-def write_markups(path: str | os.PathLike[str], point_list: PointList) -> None:
-    """Write points in RAS mm as a markups file for Slicer, whole or not at all."""
-    _write(path, {"type": "Fiducial"}, point_list)
+def write_markups(
+    path: str | os.PathLike[str], point_list: PointList, line_name: str | None = None
+) -> None:
+    """Write points in RAS mm as a markups file for Slicer, whole or not at all.
 
-
-def write_line(path: str | os.PathLike[str], name: str, ends: PointList) -> None:
-    """Write a line between two points in RAS mm as a markups file for Slicer.
-
-    Args:
-        path: ends in `.mrk.json`.
-        name: of the line's node.
-        ends: two points.
+    With a name, two points are the ends of a line.
     """
-    _write(path, {"type": "Line", "name": name}, ends)
-
-
-def _write(path: str | os.PathLike[str], kind: Mapping[str, str], point_list: PointList) -> None:
     labels = point_list.labels or tuple("" for _ in point_list.points)
     control_points = [
         {
@@ -81,6 +69,7 @@ def _write(path: str | os.PathLike[str], kind: Mapping[str, str], point_list: Po
         }
         for row, (label, position) in enumerate(zip(labels, point_list.points, strict=True))
     ]
+    kind = {"type": "Fiducial"} if line_name is None else {"type": "Line", "name": line_name}
     markup = {
         **kind,
         "coordinateSystem": "RAS",
@@ -209,7 +198,7 @@ def read_point_numbers(
     Rows are matched by the column `label`, or by order without one. Other columns are ignored, so
     the numbers may be in a file of points.
     """
-    rows = read_rows(path, (column,), optional=("label",))
+    rows = read_table(path).rows((column,), optional=("label",))
     numbers = [number_in(path, line, cells, column, lowest, highest) for line, cells in rows]
     named = [cells.get("label", "") for _, cells in rows]
     if not any(named):

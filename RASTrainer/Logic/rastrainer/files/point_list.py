@@ -24,9 +24,6 @@ class PointList:
         points: (n, 3) float, finite, n ≥ 1.
         left_out: places in the list, from 0, and labels of points that are not to be used: those
             that are deselected or not placed in Slicer. `labels` and `points` are without them.
-
-    Raises:
-        InputError: on construction, if they are invalid.
     """
 
     labels: tuple[str, ...]
@@ -113,7 +110,9 @@ def _check_partners(moving: PointList, fixed: PointList) -> None:
     ):
         missing = [label for label in here if label not in there]
         if missing:
-            unpaired.append(f"{_some(missing)} only in the {which} list")
+            shown = ", ".join(missing[:5]) + (", …" if len(missing) > 5 else "")
+            verb = "is" if len(missing) == 1 else "are"
+            unpaired.append(f"{shown} {verb} only in the {which} list")
     if unpaired:
         raise InputError(
             f"Points are paired by their labels, but {' and '.join(unpaired)}; "
@@ -138,8 +137,3 @@ def _check_labels(labels: tuple[str, ...], count: int) -> None:
         if label in seen:
             raise InputError(f"The label {json.dumps(label)} is given to two points.")
         seen.add(label)
-
-
-def _some(labels: list[str]) -> str:
-    shown = ", ".join(labels[:5]) + (", …" if len(labels) > 5 else "")
-    return f"{shown} {'is' if len(labels) == 1 else 'are'}"

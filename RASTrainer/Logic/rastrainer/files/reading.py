@@ -28,11 +28,15 @@ def read_bytes(path: str | os.PathLike[str], limit_bytes: int) -> bytes:
                 raise InputError(f"{path} is a folder; a file is needed.")
             if not stat.S_ISREG(status.st_mode):
                 raise InputError(f"{path} is not a regular file.")
-            if status.st_size > limit_bytes:
-                raise _too_large(path, limit_bytes)
             if status.st_size == 0:
                 raise InputError(f"The file {path} is empty.")
-            content = file.read(limit_bytes + 1)
+            is_large = status.st_size > limit_bytes
+            content = b"" if is_large else file.read(limit_bytes + 1)
+            if is_large or len(content) > limit_bytes:
+                raise InputError(
+                    f"The file {path} is larger than {limit_bytes / 2**20:g} MiB, the most that is "
+                    "read."
+                )
     except InputError:
         raise
     except FileNotFoundError:
@@ -43,8 +47,6 @@ def read_bytes(path: str | os.PathLike[str], limit_bytes: int) -> bytes:
         raise InputError(
             f"The file {printable_name(path)} cannot be read: {failure_reason(error)}."
         ) from None
-    if len(content) > limit_bytes:
-        raise _too_large(path, limit_bytes)
     return content
 
 
@@ -112,12 +114,6 @@ def path_beside(file: Path, relative: Path, key: str) -> Path:
     return path
 
 
-def _too_large(path: object, limit_bytes: int) -> InputError:
-    return InputError(
-        f"The file {path} is larger than {limit_bytes / 2**20:g} MiB, the most that is read."
-    )
-
-
 def failure_reason(error: Exception) -> str:
     """Return the system's description of a failure."""
     strerror = getattr(error, "strerror", None)
@@ -144,38 +140,29 @@ def plain_xml(content: bytes, what: str) -> str:
     decoded = decode_text(content, what)
     declaration = _DECLARATION.match(decoded)
     body = decoded[declaration.end() :] if declaration else decoded
+    elements = depth = 0
+
+    def begin_element(_name: str, _attributes: Any) -> None:
+        nonlocal elements, depth
+        elements, depth = elements + 1, depth + 1
+        if elements > MAX_ELEMENTS:
+            raise InputError(f"{what} has more than {MAX_ELEMENTS} elements.")
+        if depth > MAX_DEPTH:
+            raise InputError(f"{what} nests its elements more than {MAX_DEPTH} deep.")
+
+    def end_element(_name: str) -> None:
+        nonlocal depth
+        depth -= 1
+
+    def refuse_type(*_declaration: Any) -> None:
+        raise InputError(f"{what} declares a document type or entities; remove them.")
+
+    parser = expat.ParserCreate("utf-8")
+    parser.StartElementHandler = begin_element
+    parser.EndElementHandler = end_element
+    parser.StartDoctypeDeclHandler = refuse_type
     try:
-        _Check(what).parse(body.encode())
+        parser.Parse(body.encode(), True)
     except expat.ExpatError as error:
         raise InputError(f"{what} is not well-formed XML: {error}.") from None
     return body
-
-
-class _Check:
-    """Checks each element as it is parsed."""
-
-    def __init__(self, what: str) -> None:
-        self._what = what
-        self._elements = 0
-        self._depth = 0
-
-    def parse(self, body: bytes) -> None:
-        parser = expat.ParserCreate("utf-8")
-        parser.StartElementHandler = self._begin
-        parser.EndElementHandler = self._end
-        parser.StartDoctypeDeclHandler = self._refuse_type
-        parser.Parse(body, True)
-
-    def _begin(self, _name: str, _attributes: Any) -> None:
-        self._elements += 1
-        self._depth += 1
-        if self._elements > MAX_ELEMENTS:
-            raise InputError(f"{self._what} has more than {MAX_ELEMENTS} elements.")
-        if self._depth > MAX_DEPTH:
-            raise InputError(f"{self._what} nests its elements more than {MAX_DEPTH} deep.")
-
-    def _end(self, _name: str) -> None:
-        self._depth -= 1
-
-    def _refuse_type(self, *_declaration: Any) -> None:
-        raise InputError(f"{self._what} declares a document type or entities; remove them.")

@@ -37,10 +37,7 @@ def write_text(path: str | os.PathLike[str], text: str, is_private: bool = False
 def write_bytes(path: str | os.PathLike[str], content: bytes, is_private: bool = False) -> None:
     """Write a file atomically: after a crash there is the old or the new one.
 
-    Args:
-        path: of the file; its folder is there.
-        content: all of it.
-        is_private: it is for this user only, unless its folder is shared (see `keep_others_out`).
+    A private one is for this user only, unless its folder is shared (see `keep_others_out`).
     """
     target = Path(path)
     partial = target.parent / f".{uuid.uuid4().hex}.partial"
@@ -108,13 +105,10 @@ def _unwritable(path: object, error: Exception) -> InputError:
 
 
 def make_private_folder(folder: Path) -> None:
-    """Make a folder and its missing parents for this user only.
+    """Make a folder and its missing parents for this user only; raise OSError if that fails.
 
     An existing folder is made private if its name or its parent's is in `OUR_FOLDERS`; the
     permissions of others are the user's choice.
-
-    Raises:
-        OSError: it cannot be made.
     """
     missing = [place for place in (folder, *folder.parents) if not place.exists()]
     for place in reversed(missing):
@@ -125,11 +119,7 @@ def make_private_folder(folder: Path) -> None:
 
 
 def open_private(path: str | os.PathLike[str], flags: int) -> int:
-    """Open a file like `os.open`, make it private, and return its descriptor.
-
-    Raises:
-        OSError: it cannot be opened.
-    """
+    """Open a file like `os.open`, also its errors, make it private, and return its descriptor."""
     descriptor = os.open(path, flags, _FILE)
     keep_others_out(path)
     return descriptor

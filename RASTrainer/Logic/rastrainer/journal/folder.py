@@ -31,13 +31,7 @@ if sys.platform == "win32":
     _FAR = 1 << 40
 
     def lock(descriptor: int) -> None:
-        """Lock an open file until it is closed.
-
-        Raises:
-            OSError: another program holds the lock.
-        """
-        import os
-
+        """Lock an open file until it is closed; raise OSError if another program holds the lock."""
         position = os.lseek(descriptor, 0, os.SEEK_CUR)
         os.lseek(descriptor, _FAR, os.SEEK_SET)
         msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
@@ -47,11 +41,7 @@ else:
     import fcntl
 
     def lock(descriptor: int) -> None:
-        """Lock an open file until it is closed.
-
-        Raises:
-            OSError: another program holds the lock.
-        """
+        """Lock an open file until it is closed; raise OSError if another program holds the lock."""
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
@@ -84,11 +74,7 @@ class FolderHolder:
 
 
 def write_holder(descriptor: int, holder: FolderHolder) -> None:
-    """Write the holder into the lock file, which is open and locked.
-
-    Raises:
-        OSError: it cannot be written.
-    """
+    """Write the holder into the open, locked lock file; raise OSError if that fails."""
     content = json.dumps(record_to_json(holder)).encode("ascii")
     os.lseek(descriptor, 0, os.SEEK_SET)
     os.write(descriptor, content)
@@ -130,7 +116,12 @@ def journals(folder: Path) -> list[Path]:
     """Return the files of a folder that are journals by name and first bytes."""
     if not folder.is_dir():
         raise InputError(f"There is no folder {folder} with journals.")
-    return [path for path in sorted(folder.glob(f"*{SUFFIX}")) if _begins_as_journal(path)]
+    found = []
+    for path in sorted(folder.glob(f"*{SUFFIX}")):
+        with contextlib.suppress(OSError), path.open("rb") as file:
+            if file.read(len(FIRST_BYTES)) == FIRST_BYTES:
+                found.append(path)
+    return found
 
 
 def journals_of(folder: Path, trial_id: str) -> list[Path]:
@@ -143,13 +134,8 @@ def erase_journals(
 ) -> tuple[list[Path], list[Path]]:
     """Overwrite and delete every journal and tutorial of a trainee, including damaged journals.
 
-    Args:
-        folder: Of the journals.
-        trainee: Pseudonym; it is in a journal's first line.
-        trial_ids: UUIDs of the trainee's trials, to identify journals by file name.
-
-    Returns:
-        The deleted paths, and those of files that name no trainee.
+    A journal names the trainee in its first line, and its trial's UUID in the file's name. Return
+    the deleted paths, and those of files that name no trainee.
     """
     if not folder.is_dir():
         raise InputError(f"There is no folder {folder} with journals.")
@@ -175,12 +161,6 @@ def erase_journals(
         elif owner is None:
             unreadable.append(path)
     return erased, unreadable
-
-
-def _begins_as_journal(path: Path) -> bool:
-    with contextlib.suppress(OSError), path.open("rb") as file:
-        return file.read(len(FIRST_BYTES)) == FIRST_BYTES
-    return False
 
 
 def _trainee_of(path: Path) -> str | None:

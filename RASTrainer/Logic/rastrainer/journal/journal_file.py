@@ -66,8 +66,7 @@ class DamagedLineError(ValueError):
 def encode_line(n: int, previous: str, entry: Mapping[str, Any]) -> tuple[bytes, str]:
     """Return the line of an entry with its newline, and its hash.
 
-    Raises:
-        ValueError: the entry has a number that is not finite.
+    Raise ValueError if the entry has a number that is not finite.
     """
     body = json.dumps(
         {"n": n, "previous": previous, **entry},
@@ -82,10 +81,7 @@ def encode_line(n: int, previous: str, entry: Mapping[str, Any]) -> tuple[bytes,
 def decode_line(line: bytes, n: int, previous: str) -> dict[str, Any]:
     """Return the entry of a line without newline, which must be the `n`-th after `previous`.
 
-    The entry has `sha256` as its last key.
-
-    Raises:
-        DamagedLineError: it was altered or is not the expected line.
+    The entry has `sha256` as its last key. Raise `DamagedLineError` for another or an altered line.
     """
     body, seal = line[:-_SEAL_LENGTH] + b"}", line[-_SEAL_LENGTH:]
     digest = hashlib.sha256(body).hexdigest()
@@ -127,8 +123,6 @@ class JournalReading:
     the trial is open: its last entry reveals it, until then the file beside the journal holds it.
 
     Attributes:
-        path: of the file.
-        integrity: whether it is complete and unaltered.
         entries: of the complete lines, up to the first altered one.
         end: number of bytes of these lines.
         sentence: the integrity in words.
@@ -147,11 +141,6 @@ class JournalReading:
             raise InputError(f"{self.path} has no complete line.")
         return self.entries[0]
 
-    @property
-    def last_hash(self) -> str:
-        """The hash that the next line must refer to."""
-        return self.entries[-1]["sha256"] if self.entries else NO_LINE
-
     def of_kind(self, *kinds: str) -> list[dict[str, Any]]:
         return [entry for entry in self.entries if entry["kind"] in kinds]
 
@@ -159,16 +148,18 @@ class JournalReading:
 def read_journal(path: Path, pause: Callable[[], None] = lambda: None) -> JournalReading:
     """Read a journal as far as it is intact.
 
-    Args:
-        path: of the file.
-        pause: called regularly while reading; may block, to let other threads run.
+    `pause` is called regularly while reading; it may block, to let other threads run.
     """
     try:
         with path.open("rb") as file:
             reading = _read(path, file, pause)
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}.") from None
-    if reading.entries and (seed := _seed(path, reading.entries)) is not None:
+    seed = revealed_seed(reading.entries)
+    if seed is None:
+        with contextlib.suppress(OSError, ValueError):
+            seed = int(path.with_suffix(SEED_SUFFIX).read_text("ascii"))
+    if reading.entries and seed is not None:
         reading.header["seed"] = seed
     return reading
 
@@ -176,15 +167,6 @@ def read_journal(path: Path, pause: Callable[[], None] = lambda: None) -> Journa
 def revealed_seed(entries: Iterable[Mapping[str, Any]]) -> int | None:
     """Return the seed of the head's pose that a journal reveals; None while its trial is open."""
     return next((entry["seed"] for entry in reversed(tuple(entries)) if "seed" in entry), None)
-
-
-def _seed(path: Path, entries: Iterable[Mapping[str, Any]]) -> int | None:
-    """Return the seed of a trial, also of an open one if the file beside its journal is there."""
-    seed = revealed_seed(entries)
-    if seed is None:
-        with contextlib.suppress(OSError, ValueError):
-            seed = int(path.with_suffix(SEED_SUFFIX).read_text("ascii"))
-    return seed
 
 
 def _read(path: Path, file: BinaryIO, pause: Callable[[], None]) -> JournalReading:
@@ -212,19 +194,16 @@ def _read(path: Path, file: BinaryIO, pause: Callable[[], None]) -> JournalReadi
             )
         entries.append(entry)
         previous, end = entry["sha256"], end + len(line)
-    return JournalReading(path, *_judged(entries, end, whole=not line))
-
-
-def _judged(
-    entries: list[dict[str, Any]], end: int, whole: bool
-) -> tuple[Integrity, tuple[dict[str, Any], ...], int, str]:
     steps = [entry["kind"] for entry in entries if entry["kind"] in _STEPS]
-    ended = bool(steps) and steps[-1] in ENDS
-    if whole and ended:
-        return Integrity.INTACT, tuple(entries), end, f"intact: {len(entries)} lines"
-    why = "the trial was not ended" if whole else "the line after it is incomplete"
+    if line:
+        why = "the line after it is incomplete"
+    elif not steps or steps[-1] not in ENDS:
+        why = "the trial was not ended"
+    else:
+        sentence = f"intact: {len(entries)} lines"
+        return JournalReading(path, Integrity.INTACT, tuple(entries), end, sentence)
     sentence = f"cut short: recovered up to line {len(entries)}, {why}"
-    return Integrity.CUT_SHORT, tuple(entries), end, sentence
+    return JournalReading(path, Integrity.CUT_SHORT, tuple(entries), end, sentence)
 
 
 _BEGINNING = '{"n":1,"previous":"000…","kind":"header","format":"rastrainer-trial-journal"'

@@ -68,8 +68,46 @@ class Recording:
         kind = entry["kind"]
         if kind == "sample":
             self._add_sample(entry)
-        elif kind in _HANDLERS:
-            _HANDLERS[kind](self, entry)
+        elif kind == "header":
+            self._tick_s = entry["tickS"]
+            self._start_s = entry["simTimeS"] - self._tick_s
+            # Absent where the scenario does not give it.
+            self._shortest_path = entry.get("shortestPathMm")
+        elif kind == "phase":
+            self._phase(entry)
+        elif kind == "continued":
+            # The time of an interruption is excluded.
+            if entry["phase"] == Phase.PAUSED.value and self._paused_since is None:
+                self._paused_since = entry["sinceS"]
+        elif kind == "proximity":
+            self._proximity(entry)
+        elif kind == "registered":
+            truth = entry["truth"]
+            head_to_world = np.array(truth["headToWorld"], dtype=float).reshape(4, 4)
+            self._fiducials = {
+                label: transforms.apply(head_to_world, np.array(position, dtype=float))
+                for label, position in truth["fiducialsRas"].items()
+            }
+        elif kind == "camera":
+            self._cameras += 1
+        else:
+            self._add_point(entry)
+
+    def _add_point(self, entry: Mapping[str, Any]) -> None:
+        kind = entry["kind"]
+        if kind == "touch":
+            self._press(entry)
+            self._touches.append(self._touch(entry["label"], entry, self._tick_s))
+        elif kind == "rejected" and "checkpoint" not in entry:
+            self._refused.append(self._touch(entry["label"], entry, self._tick_s))
+        elif kind == "undo":
+            self._undone += 1
+            del self._touches[entry["kept"] :]
+        elif kind == "trace":
+            # A point is left at the end of its tick, unlike a touch.
+            self._traced.append(self._touch("", entry))
+        elif kind == "stroke":
+            del self._traced[entry["kept"] :]
 
     def trajectory(self) -> Trajectory:
         """Return the movement so far; open intervals end with the last sample."""
@@ -100,56 +138,25 @@ class Recording:
             depth_mm=None if np.isnan(depth).any() else depth,
         )
 
-    def _add_sample(self, entry: Mapping[str, Any]) -> bool:
-        """Keep a sample that is later than the last one; return whether it was kept."""
+    def _add_sample(self, entry: Mapping[str, Any]) -> None:
+        """Keep a sample that is later than the last one."""
         time = self._trial_time(entry["simTimeS"])
-        if self._paused_since is not None:
-            return False
-        if self._samples and time <= self._samples[-_COLUMNS]:
-            return False
+        is_late = self._samples and time <= self._samples[-_COLUMNS]
+        if self._paused_since is not None or is_late:
+            return
         x, y, z = entry["tipMm"]
         depth = entry.get("depthMm", math.nan)
         self._samples += array("d", (time, x, y, z, entry["clearanceMm"], depth))
         self._press(entry)
-        return True
 
     def _trial_time(self, sim_time: float) -> float:
         if self._paused_since is not None:
             sim_time = self._paused_since
         return sim_time - self._start_s - self._paused_s
 
-    def _header(self, entry: Mapping[str, Any]) -> None:
-        self._tick_s = entry["tickS"]
-        self._start_s = entry["simTimeS"] - self._tick_s
-        # Absent where the scenario does not give it.
-        self._shortest_path = entry.get("shortestPathMm")
-
-    def _touch(self, entry: Mapping[str, Any]) -> None:
-        self._press(entry)
-        self._touches.append(self._touch_of(entry))
-
-    def _rejected(self, entry: Mapping[str, Any]) -> None:
-        if "checkpoint" not in entry:
-            self._refused.append(self._touch_of(entry))
-
-    def _touch_of(self, entry: Mapping[str, Any]) -> Touch:
-        return Touch(
-            entry["label"], _position(entry), self._trial_time(entry["simTimeS"] - self._tick_s)
-        )
-
-    def _undo(self, entry: Mapping[str, Any]) -> None:
-        self._undone += 1
-        del self._touches[entry["kept"] :]
-
-    def _trace(self, entry: Mapping[str, Any]) -> None:
-        # A point is left at the end of its tick, unlike a touch.
-        self._traced.append(Touch("", _position(entry), self._trial_time(entry["simTimeS"])))
-
-    def _stroke(self, entry: Mapping[str, Any]) -> None:
-        del self._traced[entry["kept"] :]
-
-    def _camera(self, _entry: Mapping[str, Any]) -> None:
-        self._cameras += 1
+    def _touch(self, label: str, entry: Mapping[str, Any], before_s: float = 0.0) -> Touch:
+        x, y, z = (float(value) for value in entry["positionMm"])
+        return Touch(label, (x, y, z), self._trial_time(entry["simTimeS"] - before_s))
 
     def _phase(self, entry: Mapping[str, Any]) -> None:
         now = entry["simTimeS"] - self._tick_s
@@ -166,11 +173,6 @@ class Recording:
         labels = [touch.label for touch in self._touches]
         if entry.get("nextPoint") in labels:
             del self._touches[labels.index(entry["nextPoint"]) :]
-
-    def _continued(self, entry: Mapping[str, Any]) -> None:
-        """Exclude the time of an interruption."""
-        if entry["phase"] == Phase.PAUSED.value and self._paused_since is None:
-            self._paused_since = entry["sinceS"]
 
     def _proximity(self, entry: Mapping[str, Any]) -> None:
         # This event is at the end of its tick, unlike those of commands.
@@ -195,14 +197,6 @@ class Recording:
     def _contact_until(self, end_s: float) -> Interval:
         return Interval(self._contact_since, end_s, greatest_depth_mm=self._contact_depth)
 
-    def _registered(self, entry: Mapping[str, Any]) -> None:
-        truth = entry["truth"]
-        head_to_world = np.array(truth["headToWorld"], dtype=float).reshape(4, 4)
-        self._fiducials = {
-            label: transforms.apply(head_to_world, np.array(position, dtype=float))
-            for label, position in truth["fiducialsRas"].items()
-        }
-
 
 class WholeRecording(Recording):
     """Also keeps what the tool does in the phases of a procedure; only a pause takes no time."""
@@ -222,31 +216,11 @@ def read_trajectory(
     return None
 
 
-def _position(entry: Mapping[str, Any]) -> tuple[float, float, float]:
-    x, y, z = (float(value) for value in entry["positionMm"])
-    return x, y, z
-
-
 def _with_clearance(interval: Interval, times: np.ndarray, clearance: np.ndarray) -> Interval:
     first = np.searchsorted(times, interval.start_s)
     part = clearance[first : np.searchsorted(times, interval.end_s, side="right")]
     least = float(part.min()) if len(part) else np.inf
     return replace(interval, least_clearance_mm=least)
-
-
-_HANDLERS = {
-    "header": Recording._header,
-    "touch": Recording._touch,
-    "rejected": Recording._rejected,
-    "undo": Recording._undo,
-    "trace": Recording._trace,
-    "stroke": Recording._stroke,
-    "camera": Recording._camera,
-    "phase": Recording._phase,
-    "continued": Recording._continued,
-    "proximity": Recording._proximity,
-    "registered": Recording._registered,
-}
 
 
 EVENTS = frozenset(
@@ -280,11 +254,8 @@ class ReplayTrack:
     """A recorded trial in trial time, which excludes pauses.
 
     Attributes:
-        header: the journal's first entry.
-        trajectory: of the tool's tip.
         q: (n, 7) float, joint angles in rad, one row per sample.
         feed_mm: (n,) float, how far drill or instrument was beyond the guide's tip; 0 without.
-        events: in order.
     """
 
     header: Mapping[str, Any]
@@ -334,16 +305,13 @@ class _ReplayRecording(WholeRecording):
         self.events: list[RecordedEvent] = []
 
     def add(self, entry: Mapping[str, Any]) -> None:
+        known = len(self._samples)
         super().add(entry)
+        if len(self._samples) > known:
+            self.postures.append([float(value) for value in entry["q"]])
+            self.feeds.append(float(entry.get("feedMm", 0.0)))
         if entry["kind"] in EVENTS:
             seen_s = entry["simTimeS"] if self._paused_since is None else self._paused_since
             # Keep events in order, also in the tick in which a trial is paused.
             before_s = self.events[-1].time_s if self.events else 0.0
             self.events.append(RecordedEvent(max(before_s, self._trial_time(seen_s)), entry))
-
-    def _add_sample(self, entry: Mapping[str, Any]) -> bool:
-        counts = super()._add_sample(entry)
-        if counts:
-            self.postures.append([float(value) for value in entry["q"]])
-            self.feeds.append(float(entry.get("feedMm", 0.0)))
-        return counts

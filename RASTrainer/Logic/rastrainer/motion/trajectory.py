@@ -27,8 +27,6 @@ class Interval:
     """A time interval and the tool's distance to the head in it.
 
     Attributes:
-        start_s: trial time.
-        end_s: trial time.
         least_clearance_mm: smallest signed distance of tool and head.
         greatest_depth_mm: how far the commanded motion went into the head at most.
     """
@@ -65,13 +63,8 @@ class Trajectory:
         tip_mm: (n, 3) float, the tool's tip, World.
         clearance_mm: (n,) float, signed distance of the tool to the head.
         touches: kept touches, in order.
-        refused: refused touches.
         traced: kept points of a trace, in order.
-        undone: number of undone touches.
         near: intervals with the tip near the head, or the tool in contact.
-        contacts: intervals in contact.
-        camera_switches: number of changes of the view.
-        pauses: number of pauses.
         paused_s: their total duration.
         fiducials_mm: label → (3,) position in World; empty while secret.
         shortest_path_mm: the shortest free path through the task's fiducials, or None.
@@ -105,11 +98,6 @@ class Trajectory:
     def touch_times_s(self) -> np.ndarray:
         """Times of the kept touches, (m,) float."""
         return np.array([touch.time_s for touch in self.touches])
-
-    @property
-    def touch_positions_mm(self) -> np.ndarray:
-        """Positions of the kept touches, (m, 3) float, World."""
-        return np.array([touch.position_mm for touch in self.touches], dtype=float).reshape(-1, 3)
 
 
 INTENDED_MM = 5.0
@@ -182,15 +170,9 @@ CUTOFF_HZ = 6.0
 
 
 def resample(times_s: np.ndarray, values: np.ndarray, rate_hz: float) -> np.ndarray:
-    """Return the values at equal steps from the first to the last time, linearly interpolated.
+    """Return the values (n, k) at equal steps from the first time to the last, interpolated.
 
-    Args:
-        times_s: (n,) float, strictly rising.
-        values: (n, k) float.
-        rate_hz: Samples a second of the result.
-
-    Returns:
-        (m, k) float.
+    The interpolation is linear, and the times, (n,) float, rise strictly.
     """
     times_s, values = np.asarray(times_s, dtype=float), np.asarray(values, dtype=float)
     if len(times_s) < 2 or not (np.diff(times_s) > 0).all():
@@ -201,19 +183,11 @@ def resample(times_s: np.ndarray, values: np.ndarray, rate_hz: float) -> np.ndar
 
 
 def low_pass(values: np.ndarray, rate_hz: float, cutoff_hz: float = CUTOFF_HZ) -> np.ndarray:
-    """Return the values low-pass filtered without delay.
+    """Return evenly sampled values, (n, k) float, low-pass filtered without delay.
 
-    The gain 1/(1 + (f/fc)⁴) on the spectrum is that of a second-order Butterworth filter run
-    forward and backward. The ends are extended by point reflection, which keeps straight lines
-    straight.
-
-    Args:
-        values: (n, k) float, evenly sampled.
-        rate_hz: Sampling rate.
-        cutoff_hz: Frequency at which half the amplitude remains.
-
-    Returns:
-        (n, k) float.
+    A second-order Butterworth filter, run forward and backward, has the same gain 1/(1 + (f/fc)⁴)
+    on the spectrum: at `cutoff_hz`, half the amplitude remains. The ends are extended by point
+    reflection, which keeps straight lines straight.
     """
     values = np.asarray(values, dtype=float)
     pad = min(len(values) - 1, int(np.ceil(3 * rate_hz / cutoff_hz)))
@@ -234,9 +208,7 @@ def low_pass(values: np.ndarray, rate_hz: float, cutoff_hz: float = CUTOFF_HZ) -
 def speeds(positions_mm: np.ndarray, rate_hz: float) -> np.ndarray:
     """Return the speed at each sample, (n,) float, in mm/s, by central differences.
 
-    Args:
-        positions_mm: (n, 3) float, evenly sampled and low-pass filtered, n ≥ 2.
-        rate_hz: Samples a second.
+    The positions, (n, 3) float with n ≥ 2, are evenly sampled and low-pass filtered.
     """
     return np.linalg.norm(np.gradient(positions_mm, 1 / rate_hz, axis=0), axis=1)
 
@@ -253,19 +225,10 @@ def path_length(positions_mm: np.ndarray) -> float:
     return float(np.linalg.norm(np.diff(positions_mm, axis=0), axis=1).sum())
 
 
-def path_efficiency(actual_mm: float, shortest_mm: float) -> float:
-    """Return the shortest collision-free length over the actual length; 1 is direct."""
-    if not (actual_mm > 0 and shortest_mm > 0):
-        raise InputError("Path efficiency needs two lengths above 0 mm.")
-    return shortest_mm / actual_mm
-
-
 def idle_time(speed_mm_s: np.ndarray, rate_hz: float) -> float:
     """Return the total time in s of rests: slower than 1 mm/s for longer than 0.3 s.
 
-    Args:
-        speed_mm_s: (n,) float, evenly sampled.
-        rate_hz: Sampling rate.
+    The speed, (n,) float, is evenly sampled.
     """
     resting = np.concatenate([[False], np.asarray(speed_mm_s) < IDLE_SPEED_MM_S, [False]])
     changes = np.flatnonzero(np.diff(resting.astype(int)))
@@ -283,11 +246,7 @@ def sparc(speed: np.ndarray, rate_hz: float) -> float:
 
     The length of the curve of the speed's magnitude spectrum, scaled to 1 at its peak, up to the
     last frequency of at most 10 Hz where it reaches 0.05. The zero padding is theirs: four more
-    powers of two.
-
-    Args:
-        speed: (n,) float of one movement, evenly sampled.
-        rate_hz: Samples a second.
+    powers of two. The speed, (n,) float, is of one movement, evenly sampled.
     """
     speed = _checked(speed)
     length = 2 ** (int(np.ceil(np.log2(len(speed)))) + SPARC_PAD_LEVEL)
@@ -303,11 +262,8 @@ def sparc(speed: np.ndarray, rate_hz: float) -> float:
 def log_dimensionless_jerk(speed: np.ndarray, rate_hz: float) -> float:
     """Return −ln(T³/v²ₚₑₐₖ · ∫ v̈² dt) (Balasubramanian et al. 2012), dimensionless.
 
-    A reach of minimum jerk has −ln 204.8 = −5.322.
-
-    Args:
-        speed: (n,) float of one movement, evenly sampled and low-pass filtered.
-        rate_hz: Samples a second.
+    A reach of minimum jerk has −ln 204.8 = −5.322. The speed, (n,) float, is of one movement,
+    evenly sampled and low-pass filtered.
     """
     speed = _checked(speed)
     jerk = np.diff(speed, 2) * rate_hz**2

@@ -29,7 +29,6 @@ from rastrainer.motion.trajectory import (
     idle_time,
     log_dimensionless_jerk,
     low_pass,
-    path_efficiency,
     path_length,
     pressing_depth,
     resample,
@@ -64,12 +63,8 @@ def effective_throughput(
     """Return the throughput of the n − 1 movements between n touches.
 
     The task axis of a movement runs from its first target to its second. The distance is measured
-    from where the movement really began.
-
-    Args:
-        targets_mm: (n, 3) float, the fiducials.
-        touches_mm: (n, 3) float, the touches, in the targets' frame.
-        touch_times_s: (n,) float, strictly rising.
+    from where the movement really began. Targets and touches are (n, 3) float in one frame; the
+    times, (n,) float, rise strictly.
     """
     targets, touches = np.asarray(targets_mm, dtype=float), np.asarray(touches_mm, dtype=float)
     durations = np.diff(np.asarray(touch_times_s, dtype=float))
@@ -122,7 +117,10 @@ def trial_motion(trajectory: Trajectory) -> dict[str, float]:
     }
     if len(trajectory.touches) > 1:
         metrics |= _of_movements(trajectory, times, tip, speed)
-        metrics |= _efficiency(trajectory, metrics["path_between_touches_mm"])
+        shortest_mm, actual_mm = trajectory.shortest_path_mm, metrics["path_between_touches_mm"]
+        is_whole = 0 < len(trajectory.fiducials_mm) == len(trajectory.touches)
+        if is_whole and shortest_mm is not None and min(shortest_mm, actual_mm) > 0:
+            metrics["path_efficiency"] = shortest_mm / actual_mm
         metrics |= _throughput(trajectory)
     return metrics
 
@@ -214,23 +212,14 @@ def _dwell(touch: Touch, times: np.ndarray, tip: np.ndarray) -> float:
     return (until - 1 - int(left[-1]) if len(left) else until) / RATE_HZ
 
 
-def _efficiency(trajectory: Trajectory, actual_mm: float) -> dict[str, float]:
-    """Return the path efficiency of a complete trial."""
-    is_whole = 0 < len(trajectory.fiducials_mm) == len(trajectory.touches)
-    if not is_whole or trajectory.shortest_path_mm is None or actual_mm <= 0:
-        return {}
-    return {"path_efficiency": path_efficiency(actual_mm, trajectory.shortest_path_mm)}
-
-
 def _throughput(trajectory: Trajectory) -> dict[str, float]:
     labels = [touch.label for touch in trajectory.touches]
     if not all(label in trajectory.fiducials_mm for label in labels):
         return {}
     fiducials = np.array([trajectory.fiducials_mm[label] for label in labels])
     with contextlib.suppress(InputError):
-        result = effective_throughput(
-            fiducials, trajectory.touch_positions_mm, trajectory.touch_times_s
-        )
+        touched = np.array([touch.position_mm for touch in trajectory.touches])
+        result = effective_throughput(fiducials, touched, trajectory.touch_times_s)
         return {
             "throughput_bit_s": result.bits_per_s,
             "effective_width_mm": result.effective_width_mm,

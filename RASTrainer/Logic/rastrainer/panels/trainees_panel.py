@@ -25,7 +25,7 @@ from rastrainer.panels.widgets import (
     setEnabled,
     setText,
 )
-from rastrainer.protocol import Mode
+from rastrainer.protocol import TRIAL_RUN, Mode
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.trainee_logic import calibration
 from rastrainer.slicer.scene.tables import showCalibration, showLearningCurve
@@ -291,7 +291,7 @@ class TraineesPanel(Panel):
 
 def _aborted(aborted: Sequence[StoredAbortedTrial]) -> str:
     """Return how many trials were aborted, trial runs counted separately; "" for none."""
-    records = [stored.record for stored in aborted if not stored.record.is_trial_run]
+    records = [stored.record for stored in aborted if stored.record.task != TRIAL_RUN]
     runs = len(aborted) - len(records)
     if not aborted:
         return ""

@@ -99,7 +99,9 @@ def _widened_distribution(
     of_nodes = areas[:, None] * shares
 
     def probability_up_to(value: float) -> float:
-        return float(np.sum(of_nodes * _chi_square_3(value / variances)))
+        # The distribution function of χ² with 3 degrees of freedom, to 10⁻⁷.
+        up_to = np.interp(np.sqrt(value / variances), *_chi_square_3_table())
+        return float(np.sum(of_nodes * up_to))
 
     return probability_up_to
 
@@ -155,11 +157,6 @@ def _chi_square_3_table() -> tuple[np.ndarray, np.ndarray]:
     root = np.linspace(0.0, 8.0, 8001)
     erf = np.array([math.erf(one / math.sqrt(2)) for one in root])
     return root, erf - math.sqrt(2 / math.pi) * root * np.exp(-(root**2) / 2)
-
-
-def _chi_square_3(values: np.ndarray) -> np.ndarray:
-    """Return the distribution function of χ² with 3 degrees of freedom, to 10⁻⁷."""
-    return np.interp(np.sqrt(values), *_chi_square_3_table())
 
 
 def _ratio_distribution(weights: np.ndarray, dof: float) -> Callable[[float], float]:

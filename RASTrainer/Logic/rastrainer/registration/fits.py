@@ -28,7 +28,9 @@ def fit(
     `weights` (n,) float, above 0, are for rigid fits; without them all points count equally.
     """
     if kind == AFFINE:
-        return _affine(moving, fixed)
+        solution, *_ = np.linalg.lstsq(_centered(moving), _centered(fixed), rcond=None)
+        linear = solution.T
+        return transforms.rigid(linear, fixed.mean(axis=0) - linear @ moving.mean(axis=0))
     scale = symmetric_scale(moving, fixed) if kind == SIMILARITY else 1.0
     linear = scale * _rotation(moving, fixed, weights)
     return transforms.rigid(linear, _center(fixed, weights) - linear @ _center(moving, weights))
@@ -105,12 +107,6 @@ def _rotation(moving: np.ndarray, fixed: np.ndarray, weights: np.ndarray | None)
     u, _, vt = np.linalg.svd((b if weights is None else weights[:, None] * b).T @ a)
     guard = np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ vt))])
     return u @ guard @ vt
-
-
-def _affine(moving: np.ndarray, fixed: np.ndarray) -> np.ndarray:
-    solution, *_ = np.linalg.lstsq(_centered(moving), _centered(fixed), rcond=None)
-    linear = solution.T
-    return transforms.rigid(linear, fixed.mean(axis=0) - linear @ moving.mean(axis=0))
 
 
 def _center(points: np.ndarray, weights: np.ndarray | None) -> np.ndarray:

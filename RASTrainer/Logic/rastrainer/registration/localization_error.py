@@ -67,9 +67,7 @@ def isotropic_error(registration: Registration) -> LocalizationError:
 def stated_error(fle_mm: np.ndarray) -> LocalizationError:
     """Return the error of points whose localization errors are known, and equal in all directions.
 
-    Args:
-        fle_mm: (n,) float, the RMS length of each point's error: √3 times the standard deviation
-            on each axis.
+    `fle_mm` is the RMS length of each, (n,): √3 times the standard deviation on each axis.
     """
     variances = np.asarray(fle_mm, dtype=float) ** 2 / 3.0
     return LocalizationError(variances[:, None, None] * np.eye(3), math.inf)
@@ -90,11 +88,7 @@ def misfit_probability(registration: Registration, fle_mm: np.ndarray) -> float:
     """Return the probability of residuals this large or larger where the stated errors are true.
 
     Σ 3|rᵢ|²/FLEᵢ² of a fit weighted by 1/FLE² is χ² with 3N − p degrees of freedom; its tail is
-    taken by the cube-root approximation (Wilson and Hilferty 1931).
-
-    Args:
-        registration: Weighted by 1/FLE².
-        fle_mm: (n,) float, the stated RMS length of each point's error.
+    taken by the cube-root approximation (Wilson and Hilferty 1931). `fle_mm` is as stated, (n,).
     """
     dof = degrees_of_freedom(registration)
     value = float(np.sum(3.0 * registration.residuals_mm**2 / np.asarray(fle_mm) ** 2))
@@ -111,9 +105,7 @@ def error_along_surface(registration: Registration, normals: np.ndarray) -> Loca
     (method of moments; a negative one counts as zero). The degrees of freedom are those of the χ²
     with the mean and variance of eᵀe (Satterthwaite 1946). It is for fits without weights.
 
-    Args:
-        registration: its residuals and fixed points are used.
-        normals: (n, 3) float, unit normals of the surface at the fixed points.
+    The unit normals (n, 3) are those of the surface at the fixed points.
     """
     count = len(registration.labels)
     degrees_of_freedom(registration)

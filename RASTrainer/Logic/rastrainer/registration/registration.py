@@ -144,8 +144,7 @@ def register_all_kinds(
 ) -> dict[str, Registration]:
     """Return the fits by kind: the rigid one, and the similarity and affine ones that are possible.
 
-    Args:
-        weights: of the points in the rigid fit; the other kinds have none.
+    Only the rigid one has weights.
     """
     fits = {RIGID: register(moving, fixed, RIGID, labels, weights)}
     for kind in (SIMILARITY, AFFINE):
@@ -172,8 +171,20 @@ def check_points(
             f"it must be one of {', '.join(KINDS)}."
         )
     sets = {"moving": _as_points(moving, "moving"), "fixed": _as_points(fixed, "fixed")}
-    _check_counts(len(sets["moving"]), len(sets["fixed"]), kind)
-    names = _checked_labels(labels, len(sets["moving"]))
+    count = len(sets["moving"])
+    if count != len(sets["fixed"]):
+        raise InputError(
+            f"There are {count} moving points and {len(sets['fixed'])} fixed points; "
+            "each must have its partner in the other list."
+        )
+    if count < MINIMUM_POINTS[kind]:
+        raise InputError(
+            f"{kind.capitalize()} registration needs at least {MINIMUM_POINTS[kind]} pairs of "
+            f"points; there {'is' if count == 1 else 'are'} only {count}."
+        )
+    if count > POINT_LIMIT:
+        raise InputError(f"There are {count} pairs of points; at most {POINT_LIMIT} are accepted.")
+    names = _checked_labels(labels, count)
     for which, points in sets.items():
         _check_numbers(points, which, names)
         _check_extent(points, which, kind, names)
@@ -218,21 +229,6 @@ def _as_points(points: object, which: str) -> np.ndarray:
     if array.ndim != 2 or array.shape[1] != 3:
         raise InputError(f"Each of the {which} points must have three coordinates (x, y, z in mm).")
     return array
-
-
-def _check_counts(moving: int, fixed: int, kind: str) -> None:
-    if moving != fixed:
-        raise InputError(
-            f"There are {moving} moving points and {fixed} fixed points; "
-            "each must have its partner in the other list."
-        )
-    if moving < MINIMUM_POINTS[kind]:
-        raise InputError(
-            f"{kind.capitalize()} registration needs at least {MINIMUM_POINTS[kind]} pairs of "
-            f"points; there {'is' if moving == 1 else 'are'} only {moving}."
-        )
-    if moving > POINT_LIMIT:
-        raise InputError(f"There are {moving} pairs of points; at most {POINT_LIMIT} are accepted.")
 
 
 def _checked_labels(labels: Sequence[str] | None, count: int) -> tuple[str, ...]:

@@ -126,38 +126,31 @@ def thinned(trace: np.ndarray, most: int = MOST_USED) -> np.ndarray:
 def find_match_warnings(
     measures: MatchMeasures, residuals_mm: np.ndarray, is_inlier: np.ndarray
 ) -> tuple[RegistrationWarning, ...]:
-    """Return what looks wrong with a match.
+    """Return what looks wrong with a match of n points, by their residuals and which are inliers.
 
     The codes are `slides`, `several-minima`, `not-converged`, `few-inliers`, `far-points` and
     `poor-fit`.
-
-    Args:
-        residuals_mm: (n,) float, of all points.
-        is_inlier: (n,) bool, whether a point counts.
     """
     found = []
     slide = measures.slide
     if slide.distance_mm > SLIDE_LIMIT_MM:
-        found.append(
-            _warning(
-                "slides",
-                f"The match may slide: targets in the brain may be off by up to "
-                f"{slide.distance_mm:.1f} mm {slide.way}, and the {slide.place} of the head most, "
-                "however small residual and interval are; trace places that face other ways, such "
-                "as nose, brows, temples and cheeks.",
-            )
+        message = (
+            f"The match may slide: targets in the brain may be off by up to "
+            f"{slide.distance_mm:.1f} mm {slide.way}, and the {slide.place} of the head most, "
+            "however small residual and interval are; trace places that face other ways, such "
+            "as nose, brows, temples and cheeks."
         )
+        found.append(RegistrationWarning("slides", (), message))
     if measures.rivals or measures.best_starts < LEAST_BEST_SHARE * measures.starts:
-        found.append(
-            _warning(
-                "several-minima",
-                f"Only {measures.best_starts} of {measures.starts} starts ended in this match; "
-                f"others ended up to {measures.spread_mm:.1f} mm away at the head's center: "
-                "check the three landmarks, and trace more of the face.",
-            )
+        message = (
+            f"Only {measures.best_starts} of {measures.starts} starts ended in this match; "
+            f"others ended up to {measures.spread_mm:.1f} mm away at the head's center: "
+            "check the three landmarks, and trace more of the face."
         )
+        found.append(RegistrationWarning("several-minima", (), message))
     if not measures.converged:
-        found.append(_warning("not-converged", "The match had not settled when it was stopped."))
+        message = "The match had not settled when it was stopped."
+        found.append(RegistrationWarning("not-converged", (), message))
     return (*found, *_misfits(measures, residuals_mm, is_inlier))
 
 
@@ -168,37 +161,25 @@ def _misfits(
     off = np.flatnonzero(~is_inlier & (residuals_mm > FAR_POINT_MM))
     names = tuple(str(row + 1) for row in off)
     if measures.inlier_share < LEAST_INLIER_SHARE:
-        found.append(
-            _warning(
-                "few-inliers",
-                f"Only {measures.inlier_share:.0%} of the points lie on the surface; keep the tip "
-                "on the skin while you draw.",
-                names,
-            )
+        message = (
+            f"Only {measures.inlier_share:.0%} of the points lie on the surface; keep the tip "
+            "on the skin while you draw."
         )
+        found.append(RegistrationWarning("few-inliers", names, message))
     elif len(off):
         those = f"{len(off)} points lie" if len(off) > 1 else f"Point {names[0]} lies"
-        found.append(
-            _warning(
-                "far-points",
-                f"{those} up to {residuals_mm[off].max():.1f} mm off the surface and "
-                f"{'do' if len(off) > 1 else 'does'} not count.",
-                names,
-            )
+        message = (
+            f"{those} up to {residuals_mm[off].max():.1f} mm off the surface and "
+            f"{'do' if len(off) > 1 else 'does'} not count."
         )
+        found.append(RegistrationWarning("far-points", names, message))
     if measures.rms_mm > POOR_RMS_MM:
-        found.append(
-            _warning(
-                "poor-fit",
-                f"The trace does not fit this head (residual {measures.rms_mm:.1f} mm); check that "
-                "head and images are of the same person and that the landmarks were not exchanged.",
-            )
+        message = (
+            f"The trace does not fit this head (residual {measures.rms_mm:.1f} mm); check that "
+            "head and images are of the same person and that the landmarks were not exchanged."
         )
+        found.append(RegistrationWarning("poor-fit", (), message))
     return found
-
-
-def _warning(code: str, message: str, points: tuple[str, ...] = ()) -> RegistrationWarning:
-    return RegistrationWarning(code, points, message)
 
 
 LEAST_NOISE_MM, ALIKE_MM = 1.0, 20.0
@@ -248,17 +229,17 @@ def slide_of(
     are alike. The covariance is propagated to the middle of the head and six places around it. The
     largest eigenvalue among them, as a 95 % limit, is the answer; it ends at 100 mm.
 
-    Args:
-        places: (n, 3) float, RAS mm, the points where the match puts them.
-        normals: (n, 3) float, the directions in which their distances grow.
-        rms_mm: σ, of the residuals; at least 1 mm.
+    The places (n, 3), RAS mm, are where the match puts the points, and the normals (n, 3) the
+    directions in which their distances grow. σ is `rms_mm`, at least 1 mm.
     """
     noise = max(rms_mm, LEAST_NOISE_MM)
     center = places.mean(axis=0)
     rows = np.concatenate([normals, np.cross(places - center, normals)], axis=1)
     half = mesh.size / 2.0
     prior = (noise / _LOOSEST_MM) ** 2 * np.diag([1.0] * 3 + [float(half.max()) ** 2] * 3)
-    weighted = rows * _shares_of_cubes(places)[:, None]
+    cubes = np.floor(places / ALIKE_MM).astype(int)
+    _, which, counts = np.unique(cubes, axis=0, return_inverse=True, return_counts=True)
+    weighted = rows * np.asarray(1.0 / counts[which.reshape(-1)])[:, None]
     covariance = noise**2 * np.linalg.inv(weighted.T @ rows + prior)
     steps = TARGETS_ASIDE_MM * np.vstack([np.zeros(3), np.eye(3), -np.eye(3)])
     variance, direction = max(
@@ -273,13 +254,6 @@ def slide_of(
     return SurfaceSlide(
         NORMAL_95 * float(np.sqrt(variance)), max(sides, key=lambda place: sides[place]), (x, y, z)
     )
-
-
-def _shares_of_cubes(places: np.ndarray) -> np.ndarray:
-    """Return 1/number of the points (n, 3) in the same cube as each, (n,) float."""
-    cubes = np.floor(places / ALIKE_MM).astype(int)
-    _, which, counts = np.unique(cubes, axis=0, return_inverse=True, return_counts=True)
-    return np.asarray(1.0 / counts[which.reshape(-1)])
 
 
 def _largest_move(covariance: np.ndarray, arm: np.ndarray) -> tuple[float, np.ndarray]:

@@ -17,11 +17,7 @@ from rastrainer.head.mesh import POINTS_AT_ONCE, HeadMesh, nearest_vertices
 from rastrainer.protocol import MAX_TRACE_POINTS
 from rastrainer.registration.fits import RIGID, motions
 from rastrainer.registration.surface_match import SurfaceMatch
-from rastrainer.registration.target_error import (
-    COMMON_BIAS_SD_MM,
-    TargetError,
-    error_of_covariance,
-)
+from rastrainer.registration.target_error import COMMON_BIAS_SD_MM, TargetError, error_of_covariance
 
 PARAMETERS = 6
 UNKNOWN_MM, UNKNOWN_RAD = 10.0, 0.2
@@ -47,14 +43,11 @@ class PoseKnowledge:
     noise_mm: float
     degrees_of_freedom: float
 
-    @property
-    def covariance(self) -> np.ndarray:
-        return self.noise_mm**2 * np.linalg.inv(self.curvature)
-
     def at_targets(self, targets: np.ndarray) -> np.ndarray:
         """Return the covariances (m, 3, 3), mm², of the error at targets (m, 3), RAS mm."""
         moved = motions(RIGID, targets - self.center)
-        return moved @ self.covariance @ np.swapaxes(moved, 1, 2)
+        covariance = self.noise_mm**2 * np.linalg.inv(self.curvature)
+        return moved @ covariance @ np.swapaxes(moved, 1, 2)
 
 
 def knowledge_of(match: SurfaceMatch) -> PoseKnowledge:
@@ -80,13 +73,9 @@ def knowledge_so_far(
 ) -> PoseKnowledge:
     """Return what the points of an unfinished trace reveal, however few; nothing without points.
 
-    Before the first point, a pose is known to 10 mm and 0.2 rad on each axis.
-
-    Args:
-        places: (n, 3) float, RAS mm, where the points lie by the pose known so far.
-        normals: (n, 3) float, unit normals of the skin there.
-        mesh: The head.
-        noise_mm: σ, assumed.
+    Before the first point, a pose is known to 10 mm and 0.2 rad on each axis. The places (n, 3),
+    RAS mm, are where the points lie by the pose known so far, with the unit normals (n, 3) of the
+    skin there; σ is assumed.
     """
     rows, center = _rows(np.reshape(places, (-1, 3)), np.reshape(normals, (-1, 3)), mesh.middle)
     known = np.diag([(noise_mm / UNKNOWN_MM) ** 2] * 3 + [(noise_mm / UNKNOWN_RAD) ** 2] * 3)
@@ -94,9 +83,7 @@ def knowledge_so_far(
 
 
 def surface_target_error(
-    knowledge: PoseKnowledge,
-    target: np.ndarray,
-    common_bias_sd_mm: float = COMMON_BIAS_SD_MM,
+    knowledge: PoseKnowledge, target: np.ndarray, common_bias_sd_mm: float = COMMON_BIAS_SD_MM
 ) -> TargetError:
     """Return the error to expect at a target (3,), RAS mm, with its interval.
 
@@ -120,25 +107,23 @@ class NextPlace:
     """Where on the skin more points would help most.
 
     Attributes:
-        vertex: Of the mesh.
         position: (3,) float, RAS mm.
+        normal: (3,) float, outward unit normal of the skin there.
     """
 
     vertex: int
     position: np.ndarray
+    normal: np.ndarray
 
 
 def next_best_place(
     knowledge: PoseKnowledge, mesh: HeadMesh, targets: np.ndarray, allowed: np.ndarray
 ) -> NextPlace:
-    """Return the place whose points would reduce the expected TRE most.
+    """Return the place whose points would reduce the expected TRE at targets (m, 3), RAS mm, most.
 
-    k points at a place with the row J change the covariance C = H⁻¹ by
-    −k·CJᵀJC/(1 + k·JCJᵀ) (Sherman and Morrison 1950), so all places are compared at once.
-
-    Args:
-        targets: (m, 3) float, RAS mm.
-        allowed: (v,) bool, the vertices that can be reached, at least one.
+    k points at a place with the row J change the covariance C = H⁻¹ by −k·CJᵀJC/(1 + k·JCJᵀ)
+    (Sherman and Morrison 1950), so all places are compared at once: the vertices (v,) bool that can
+    be reached, at least one.
     """
     rows = np.flatnonzero(allowed)
     if not len(rows):
@@ -150,8 +135,8 @@ def next_best_place(
     turned = directions @ inverse
     gain = DAB * np.einsum("vi,ij,vj->v", turned, weight, turned)
     gain /= 1.0 + DAB * np.einsum("vi,vi->v", turned, directions)
-    best = int(gain.argmax())
-    return NextPlace(int(rows[best]), mesh.vertices[rows[best]])
+    best = int(rows[gain.argmax()])
+    return NextPlace(best, mesh.vertices[best], mesh.vertex_normals[best])
 
 
 def _rows(
@@ -196,12 +181,8 @@ def guided_targets(target: np.ndarray) -> np.ndarray:
 def guided_vertices(mesh: HeadMesh, eye: np.ndarray) -> np.ndarray:
     """Return the vertices among which the next place is chosen, (c,) int, 8 mm apart.
 
-    They are seen by the eye, do not face the table, and are off the base and the ears, where the
-    skin is smooth.
-
-    Args:
-        mesh: the head, upright.
-        eye: (3,) float, RAS mm, from where the trainee looks.
+    They are seen by the trainee's eye (3,), RAS mm, do not face the table, and are off the base and
+    the ears, where the skin is smooth. The head is upright.
     """
     normals, vertices = mesh.vertex_normals, mesh.vertices
     toward, outward = _directions(vertices, eye), -_directions(vertices, mesh.middle)
@@ -260,18 +241,12 @@ class TraceGuide:
     def next_place(self, places: np.ndarray, is_drawing: bool) -> NextPlace | None:
         """Return where to draw next; None where the trace is full or covers all that is reached.
 
-        Args:
-            places: (n, 3) float, RAS mm, all points so far by the pose that is known.
-            is_drawing: whether a stroke is being drawn.
+        The places (n, 3), RAS mm, are all points so far by the pose that is known.
         """
         self._follow(places)
         if not self._is_kept(is_drawing):
             self._told, self._told_at = self._best(), len(places)
         return self._told
-
-    def normal_at(self, place: NextPlace) -> np.ndarray:
-        """Return the outward unit normal (3,) of the skin at a place."""
-        return self._mesh.vertex_normals[place.vertex]
 
     def _follow(self, places: np.ndarray) -> None:
         """Take in the points that are new; after an undone stroke, all that are left."""

@@ -67,13 +67,9 @@ def plane_normals(
 ) -> np.ndarray:
     """Return the unit directions (…, 3) in which the distances grow.
 
-    It is the line from the nearest point; for a point on the surface, the triangle's normal.
-
-    Args:
-        mesh: The surface.
-        offsets: (…, 3) float, mm, of points from the nearest ones of the surface.
-        distances: (…) float, their lengths.
-        triangles: (…) int, on which the nearest points lie.
+    It is the line from the nearest point; for a point on the surface, the triangle's normal. The
+    offsets (…, 3), mm, are those of points from the nearest ones, which lie on the triangles (…)
+    int.
     """
     normals = offsets / np.where(distances > 0.0, distances, 1.0)[..., None]
     close = np.nonzero(distances < 1e-6)
@@ -232,11 +228,9 @@ def fit_to_surface(
 
     Args:
         points: (n, 3) float, World mm.
-        mesh: The surface, RAS mm.
         starts: (s, 4, 4) float, rigid, World→RAS.
         tolerance_mm: A start has converged when its next whole step would move no point farther.
         gate_mm: Up to which distance points count; infinite, all count; None: by their spread.
-        max_iterations: For each start.
         around: (4, 4) float, a matrix near all starts; the surface is searched there once for all.
     """
     size, count = len(starts), len(points)
@@ -331,9 +325,7 @@ def lowest_nearby(
 ) -> SurfaceFit:
     """Return the lowest minimum found next to a fit of one start, as a fit of one start.
 
-    Args:
-        gate_mm: Up to which distance points count.
-        seed: Of the places from which the fit is repeated.
+    The seed draws the places from which the fit is repeated.
     """
     begun = np.concatenate([fit.matrices, _moved(points, mesh, fit, gate_mm, seed)])
     first = fit_to_surface(

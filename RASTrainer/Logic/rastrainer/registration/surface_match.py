@@ -224,6 +224,10 @@ def _match(
     normals = plane_normals(mesh, residuals, nearest.distances, nearest.triangles)
     is_inlier = nearest.distances <= gate
     rms = float(np.sqrt(np.mean(nearest.distances[is_inlier] ** 2)))
+    # Rivals lie elsewhere and fit hardly worse than the best one.
+    score = costs(fit.distances_mm, gate)
+    is_near = score <= RIVAL_COST * score[0] + 1e-9
+    elsewhere = _apart(fit.matrices[0], fit.matrices, mesh) > OTHER_MINIMUM_MM
     measures = MatchMeasures(
         rms_mm=rms,
         inlier_share=float(is_inlier.mean()),
@@ -231,7 +235,7 @@ def _match(
         starts=int(ended.sum()),
         best_starts=int(ended[0]),
         spread_mm=float(_apart(matrix, np.vstack([fit.matrices, hopeless]), mesh).max()),
-        rivals=_rivals(fit, mesh, gate),
+        rivals=int(np.count_nonzero(is_near & elsewhere)),
         slide=slide_of(places[is_inlier], normals[is_inlier], rms, mesh),
     )
     for values in (matrix, nearest.positions, nearest.distances, normals, is_inlier):
@@ -254,11 +258,3 @@ def _apart(matrix: np.ndarray, others: np.ndarray, mesh: HeadMesh) -> np.ndarray
     """Return how far other matrices (s, 4, 4) put the head's center from where one does, mm."""
     center = transforms.apply(transforms.inverse(matrix), mesh.middle)
     return np.linalg.norm(transforms.apply_each(others, center[None])[:, 0] - mesh.middle, axis=1)
-
-
-def _rivals(fit: SurfaceFit, mesh: HeadMesh, gate: float) -> int:
-    """Return how many minima lie elsewhere and fit hardly worse than the best one."""
-    score = costs(fit.distances_mm, gate)
-    is_near = score <= RIVAL_COST * score[0] + 1e-9
-    elsewhere = _apart(fit.matrices[0], fit.matrices, mesh) > OTHER_MINIMUM_MM
-    return int(np.count_nonzero(is_near & elsewhere))

@@ -82,15 +82,12 @@ def expected_tre(
     localization: LocalizationError | None = None,
     common_bias_sd_mm: float = COMMON_BIAS_SD_MM,
 ) -> np.ndarray:
-    """Return √E[TRE²] at targets of the fixed space, (m,) float, in mm.
+    """Return √E[TRE²] at targets (m, 3) of the fixed space, (m,) float, in mm.
 
     For a rigid registration with isotropic FLE, alike at all points, and without a common offset
     this is Fitzpatrick's equation 46 (1998), E[TRE²] = E[FLE²]/N · (1 + ⅓ Σₖ dₖ²/fₖ²). An offset of
-    standard deviation σ on each axis adds 3σ².
-
-    Args:
-        targets: (m, 3) float, in mm.
-        localization: The FLE; by default the isotropic one that explains the residuals.
+    standard deviation σ on each axis adds 3σ². By default, the FLE is the isotropic one that
+    explains the residuals.
     """
     localization = localization or isotropic_error(registration)
     covariances = _propagated(registration, targets, localization.covariances)
@@ -171,12 +168,9 @@ def error_of_covariance(
 def true_errors(
     world_to_head: np.ndarray, head_to_world: np.ndarray, points: np.ndarray
 ) -> np.ndarray:
-    """Return how far a registration puts points from where they are, (..., 3) float, mm.
+    """Return how far a registration puts points (..., 3) from where they are, (..., 3), RAS mm.
 
-    Args:
-        world_to_head: (4, 4) float, mm, the registration.
-        head_to_world: (4, 4) float, mm, where the head really is.
-        points: (..., 3) float, RAS mm.
+    Both matrices are (4, 4) float, mm; `head_to_world` is where the head really is.
     """
     return transforms.apply(world_to_head @ head_to_world, points) - points
 
@@ -250,12 +244,9 @@ class CommonBias:
 def true_touch_errors(
     touches_mm: np.ndarray, head_to_world: np.ndarray, fiducials_mm: np.ndarray
 ) -> np.ndarray:
-    """Return how far touches are from their fiducials, (n, 3) float, RAS mm.
+    """Return how far touches (n, 3), World, are from their fiducials (n, 3), RAS, (n, 3), RAS mm.
 
-    Args:
-        touches_mm: (n, 3) float, World mm.
-        head_to_world: (4, 4) float, mm, the true pose.
-        fiducials_mm: (n, 3) float, RAS mm, paired with the touches.
+    `head_to_world` is the true pose, (4, 4) float, mm.
     """
     try:
         world_to_head = transforms.inverse(head_to_world)
@@ -265,11 +256,9 @@ def true_touch_errors(
 
 
 def common_bias(errors_mm: np.ndarray, normals: np.ndarray) -> CommonBias:
-    """Return the bias that best explains the errors of touches along the skin.
+    """Return the bias that best explains the errors (n, 3) of touches along the skin.
 
-    Args:
-        errors_mm: (n, 3) float, as `true_touch_errors` returns them.
-        normals: (n, 3) float, unit normals of the skin at the fiducials, in the same frame.
+    `true_touch_errors` returns them. The unit normals (n, 3) of the skin are in the same frame.
     """
     along = _along_skin(normals)
     bias = np.einsum("inj,nj->i", bias_of_errors(normals), errors_mm)
@@ -287,10 +276,7 @@ def bias_of_errors(normals: np.ndarray) -> np.ndarray:
     """Return the linear map from the errors of touches to their common bias, (3, n, 3) float.
 
     It is that of least squares, b = (Σ Pᵢ)⁻¹ Σ Pᵢ eᵢ with Pᵢ = I − nᵢnᵢᵀ: what leads into the skin
-    or off it moves no touch.
-
-    Args:
-        normals: (n, 3) float, unit normals of the skin at the fiducials.
+    or off it moves no touch. The unit normals nᵢ of the skin are (n, 3) float.
     """
     along = _along_skin(normals)
     shares, axes = _axes(along)

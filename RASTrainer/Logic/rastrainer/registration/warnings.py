@@ -70,7 +70,13 @@ def find_warnings(
         # The larger set is taken to be in mm, so that later sentences give true distances.
         moving, fixed = moving * max(scale, 1.0), fixed / min(scale, 1.0)
     if is_mirrored(moving, fixed):
-        warnings.append(_mirrored(moving, fixed, labels))
+        before, after = rigid_fre(moving, fixed), rigid_fre(mirrored(moving), fixed)
+        message = (
+            f"The moving points ({', '.join(labels)}) are a mirror image of the fixed points "
+            f"(rigid FRE {before:.1f} mm, mirrored {after:.1f} mm); check the sign of each axis "
+            "and the coordinate system."
+        )
+        warnings.append(RegistrationWarning("mirrored", labels, message))
         moving = mirrored(moving)
     order = find_order(moving, fixed)
     if order is not None:
@@ -124,17 +130,6 @@ def _unit_advice(scale: float) -> str:
         if abs(scale * factor - 1) < 0.05:
             return f"the fixed points seem to be in {unit}, they must be in millimeters"
     return "check that both are in millimeters and of the same head"
-
-
-def _mirrored(
-    moving: np.ndarray, fixed: np.ndarray, labels: tuple[str, ...]
-) -> RegistrationWarning:
-    message = (
-        f"The moving points ({', '.join(labels)}) are a mirror image of the fixed points (rigid "
-        f"FRE {rigid_fre(moving, fixed):.1f} mm, mirrored {rigid_fre(mirrored(moving), fixed):.1f} "
-        "mm); check the sign of each axis and the coordinate system."
-    )
-    return RegistrationWarning("mirrored", labels, message)
 
 
 def _order(

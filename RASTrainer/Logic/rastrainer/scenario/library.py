@@ -66,11 +66,7 @@ def list_scenarios(
     """Return the scenarios in the subfolders of these folders, by title.
 
     Unusable ones are listed with their problem. Of two with the same name, the first folder's is
-    listed.
-
-    Args:
-        libraries: folders of folders.
-        list_one: lists the scenario of a folder; by default `list_folder`.
+    listed. `list_one` lists the scenario of a folder; by default `list_folder`.
     """
     folders = [
         path.parent
@@ -170,11 +166,6 @@ def unpack(package: Path, library: Path, progress: Progress = no_progress) -> Pa
     """Unpack a scenario into a new folder of `library` named like it, and return the folder.
 
     If that fails, nothing is left behind.
-
-    Args:
-        package: the zip file.
-        library: folder of folders.
-        progress: receives the step's name and the share of work done; may raise to cancel.
     """
     package, library = Path(package), Path(library).absolute()
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as temporary:
@@ -182,7 +173,12 @@ def unpack(package: Path, library: Path, progress: Progress = no_progress) -> Pa
         folder.mkdir()
         _read_archive(package, folder, progress)
         progress(CHECKING, UNPACKED_SHARE)
-        scenario = _checked(package, folder)
+        try:
+            scenario = checked_scenario(folder)
+        except InputError as error:
+            # Remove the temporary folder from the message.
+            sentence = str(error).replace(f"{folder.resolve()}/", "").replace(f"{folder}/", "")
+            raise InputError(f"{package} cannot be used: {sentence}") from None
         goal = library / scenario.name
         if goal.exists():
             raise InputError(f"The scenario {scenario.name} is in {library} already.")
@@ -289,15 +285,6 @@ def _extract_member(
                 raise _refused(package, f"holds more than {MAX_BYTES // 10**6} MB")
             file.write(chunk)
     return left
-
-
-def _checked(package: Path, folder: Path) -> Scenario:
-    try:
-        return checked_scenario(folder)
-    except InputError as error:
-        # Remove the temporary folder from the message.
-        sentence = str(error).replace(f"{folder.resolve()}/", "").replace(f"{folder}/", "")
-        raise InputError(f"{package} cannot be used: {sentence}") from None
 
 
 def _refused(package: Path, reason: str) -> InputError:

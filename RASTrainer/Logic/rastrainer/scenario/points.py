@@ -160,13 +160,22 @@ def check_landmarks(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> list[str]:
         ]
     names = [landmark.name for landmark in landmarks]
     twice = [name for name in dict.fromkeys(names) if names.count(name) > 1]
-    return [
-        *[f"{name} is placed {names.count(name)} times; keep one." for name in twice],
-        *_off_skin(mesh, landmarks),
-        *_on_other_side(mesh, landmarks),
-        *_close(landmarks),
-        *_in_line(landmarks[:COARSE_LANDMARKS]),
-    ]
+    wrong = [f"{name} is placed {names.count(name)} times; keep one." for name in twice]
+    for landmark in landmarks:
+        away = nearest_on_mesh(mesh, landmark.position_ras).distance
+        if away > SNAP_MM:
+            wrong.append(
+                f"{landmark.name} is {away:.0f} mm off the skin; place it within {SNAP_MM:g} mm."
+            )
+    wrong += _on_other_side(mesh, landmarks)
+    for one, other in combinations(landmarks, 2):
+        apart = float(np.linalg.norm(one.position_ras - other.position_ras))
+        if apart < APART_MM and one.name != other.name:
+            wrong.append(
+                f"{one.name} and {other.name} are {apart:.1f} mm apart; landmarks must be "
+                f"{APART_MM:g} mm apart."
+            )
+    return wrong + _in_line(landmarks[:COARSE_LANDMARKS])
 
 
 def spread_first(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
@@ -184,17 +193,6 @@ def spread_first(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
 def _area(three: Sequence[Landmark]) -> float:
     a, b, c = (landmark.position_ras for landmark in three)
     return float(np.linalg.norm(np.cross(b - a, c - a)))
-
-
-def _off_skin(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> list[str]:
-    wrong = []
-    for landmark in landmarks:
-        away = nearest_on_mesh(mesh, landmark.position_ras).distance
-        if away > SNAP_MM:
-            wrong.append(
-                f"{landmark.name} is {away:.0f} mm off the skin; place it within {SNAP_MM:g} mm."
-            )
-    return wrong
 
 
 def _on_other_side(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> list[str]:
@@ -219,18 +217,6 @@ def _on_other_side(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> list[str]:
 
 
 _OTHER = {"right": "left", "left": "right"}
-
-
-def _close(landmarks: Sequence[Landmark]) -> list[str]:
-    wrong = []
-    for one, other in combinations(landmarks, 2):
-        apart = float(np.linalg.norm(one.position_ras - other.position_ras))
-        if apart < APART_MM and one.name != other.name:
-            wrong.append(
-                f"{one.name} and {other.name} are {apart:.1f} mm apart; landmarks must be "
-                f"{APART_MM:g} mm apart."
-            )
-    return wrong
 
 
 def _in_line(three: Sequence[Landmark]) -> list[str]:

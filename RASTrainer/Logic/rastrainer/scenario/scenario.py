@@ -195,7 +195,6 @@ class Scenario:
     """Everything that a trial needs; see the module's description.
 
     Attributes:
-        folder: where it was read from.
         name: short, for records; `title` is for people.
         head_mesh: path of the head's mesh, for `rastrainer.head.mesh.read_head_mesh`.
         target_name: of the point at which the target error is reported, such as the head's center.
@@ -204,11 +203,7 @@ class Scenario:
         perturbation: how far a trial's pose may be from it.
         tasks: in order of difficulty.
         cameras: by name, "close-up" (the default view) and "far".
-        skull_mesh: path of the skull's mesh, or None.
         is_skull_approximate: whether the skull is only estimated from the skin, as from MRI.
-        targets: further planned targets.
-        trajectory: the planned trajectory, or None.
-        volume: the images, or None.
         procedures: planned; a trial may carry one of them out.
         landmarks: by which a trial may be registered without fiducials, in order of touching.
         skin: how the skin lies in trials that do not set it otherwise; each has its own seed.

@@ -10,7 +10,6 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import MAX_RECORD_BYTES, read_json
-from rastrainer.files.writing import write_json
 from rastrainer.head.trial_head import Perturbation
 from rastrainer.json_checks import number, numbers
 from rastrainer.json_records import record_from_json, record_to_json
@@ -37,9 +36,8 @@ class HeadPlace:
 class SetUp:
     """A set-up, in the table's frame: World of a robot at the default place.
 
-    Attributes:
-        perturbation: how far a trial's pose may be from it.
-        robot_base_mm: x and y of the robot's base on the table.
+    The perturbation is how far a trial's pose may be from it; the robot's base has x and y on the
+    table.
     """
 
     head: HeadPlace = HeadPlace()
@@ -96,8 +94,3 @@ def read_setup(path: Path) -> SetUp:
         is_nested = isinstance(value, dict) and isinstance(values.get(name), dict)
         values[name] = {**values[name], **value} if is_nested else value
     return record_from_json(SetUp, values, str(path), only_known=True)
-
-
-def write_setup(path: Path, setup: SetUp) -> None:
-    """Write a set-up for `read_setup`."""
-    write_json(path, record_to_json(setup, with_defaults=True))

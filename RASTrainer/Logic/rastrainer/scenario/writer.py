@@ -20,12 +20,7 @@ from rastrainer.files.point_list import PointList
 from rastrainer.files.reading import read_record
 from rastrainer.files.writing import make_private_folder, rounded, write_json
 from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
-from rastrainer.head.volume import (
-    HeadVolume,
-    VolumeFile,
-    read_head_volume,
-    write_nrrd,
-)
+from rastrainer.head.volume import HeadVolume, VolumeFile, read_head_volume, write_nrrd
 from rastrainer.json_checks import identifier_of, text
 from rastrainer.json_records import record_to_json
 from rastrainer.procedure.plan import NO_GO_FOLDER, POINT_DECIMALS, procedure_json
@@ -88,15 +83,8 @@ def write_scenario(
 ) -> None:
     """Write `scenario.json`, meshes, volume and tasks into an existing folder.
 
-    Procedures are written only with a skull.
-
-    Args:
-        folder: such as from `new_folder`.
-        scenario: the scenario; its own paths are ignored.
-        head: the head's mesh.
-        skull: the skull's mesh, or None.
-        volume: the images, or None.
-        no_go: the meshes of the procedures' no-go structures, by file name.
+    The scenario's own paths are ignored. Procedures are written only with a skull; their no-go
+    structures have their meshes by file name.
     """
     (folder / "tasks").mkdir(exist_ok=True)
     write_head_mesh(folder / HEAD_NAME, head)
@@ -182,9 +170,7 @@ class HeadDraft:
     Attributes:
         head: closed, with a flat base, RAS mm.
         method: how it was made, for the provenance.
-        skull: or None.
         is_skull_approximate: whether the skull is only the skin moved inward.
-        volume: the images, or None.
     """
 
     head: HeadMesh
@@ -203,11 +189,7 @@ def write_draft(folder: Path, draft: HeadDraft) -> None:
         write_head_mesh(folder / SKULL_NAME, draft.skull)
     if volume is not None:
         write_nrrd(folder / VOLUME_NAME, volume.values, volume.ijk_to_ras)
-    file = DraftFile(
-        draft.method,
-        kind if draft.skull else None,
-        _volume_file(volume),
-    )
+    file = DraftFile(draft.method, kind if draft.skull else None, _volume_file(volume))
     write_json(folder / DRAFT_NAME, record_to_json(file))
 
 

@@ -131,7 +131,7 @@ class RatingStore:
         Args:
             count: How many there shall be at least; fewer if there are no more.
         """
-        rater = accepted(pseudonym(), rater, "The name of a rater")
+        rater = accepted(pseudonym, rater, "The name of a rater")
         with self._database.writing():
             rows = self._database.rows("SELECT DISTINCT trial_id FROM rated_replays")
             chosen = {trial_id for (trial_id,) in rows}

@@ -10,6 +10,7 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.files.writing import write_text
 from rastrainer.procedure.errors import SplitError, TrajectoryErrors
+from rastrainer.protocol import TRIAL_RUN
 from rastrainer.registration.fits import RIGID
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredAbortedTrial, StoredTrial
@@ -104,7 +105,7 @@ def aborted_csv(trials: Iterable[StoredAbortedTrial]) -> str:
                 record.started_utc,
                 record.aborted_utc,
                 record.scenario,
-                int(record.is_trial_run),
+                int(record.task == TRIAL_RUN),
                 record.phase,
                 record.reason,
                 record.elapsed_s,

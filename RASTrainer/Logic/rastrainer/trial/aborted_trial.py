@@ -52,11 +52,6 @@ class AbortedTrial(AnyTrial):
         return f"{landmarks} and {self.traced} points traced"
 
     @property
-    def is_trial_run(self) -> bool:
-        """Whether it was a trial run, which is neither passed nor failed."""
-        return self.task == TRIAL_RUN
-
-    @property
     def is_after_all_touches(self) -> bool:
         """Whether all fiducials were touched and only Register was missing."""
         return self.phase == Phase.COMPLETE.value
@@ -70,4 +65,4 @@ class AbortedTrial(AnyTrial):
     @property
     def counts_as_failed(self) -> bool:
         """Whether it counts as not passed: a scored task with a kept or undone touch."""
-        return not self.is_trial_run and len(self.points) + self.undone_touches > 0
+        return self.task != TRIAL_RUN and len(self.points) + self.undone_touches > 0

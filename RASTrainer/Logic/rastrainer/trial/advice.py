@@ -83,9 +83,8 @@ def touch_findings(
 ) -> tuple[TouchFinding, ...]:
     """Return a finding for each touch of a registration, in its order.
 
-    Args:
-        normals: (n, 3) float, outward unit normals of the skin at the fixed points, RAS.
-        trajectory: Of the trial; touches are found in it by label.
+    The outward unit normals (n, 3) are those of the skin at the fixed points, RAS. Touches are
+    found in the trajectory by label.
     """
     squares = registration.residuals_mm**2
     total = float(squares.sum())
@@ -173,11 +172,7 @@ MAX_ADVICE = 3
 
 @dataclass(frozen=True)
 class Advice:
-    """One improvement.
-
-    Attributes:
-        gain: Approximate gain in points.
-    """
+    """One improvement, and about how many points it gains."""
 
     topic: str
     sentence: Sentence
@@ -198,7 +193,10 @@ def advise(
     """
     if score is None or score.is_unbiased is None:
         return tuple(_contacts(motion, 0.0))
-    first = [*_safety(score, motion)]
+    first = list(_contacts(motion, _gain(score, contact_time_s=0.0, contact_path_mm=0.0)))
+    depth, gain = score.measures.pressing_depth_mm, _gain(score, pressing_depth_mm=0.0)
+    if depth > DEPTH_LIMIT_MM or gain >= MIN_GAIN:
+        first.append(Advice("pressing", say("pressing", depth=depth), gain))
     candidates = [*_accuracy(score, findings), *_time(score, motion)]
     if bias is not None and score.is_unbiased is False:
         first.append(_common_bias(score, bias))
@@ -207,14 +205,6 @@ def advise(
     ranked = sorted(candidates, key=lambda advice: -advice.gain)
     worth = [advice for advice in ranked if advice.gain >= MIN_GAIN]
     return (*first, *worth)[:MAX_ADVICE]
-
-
-def _safety(score: TrialScore, motion: Mapping[str, float]) -> Iterator[Advice]:
-    yield from _contacts(motion, _gain(score, contact_time_s=0.0, contact_path_mm=0.0))
-    depth = score.measures.pressing_depth_mm
-    gain = _gain(score, pressing_depth_mm=0.0)
-    if depth > DEPTH_LIMIT_MM or gain >= MIN_GAIN:
-        yield Advice("pressing", say("pressing", depth=depth), gain)
 
 
 def _contacts(motion: Mapping[str, float], gain: float) -> Iterator[Advice]:

@@ -27,21 +27,17 @@ from rastrainer.trial.advice import advise
 from rastrainer.trial.procedure_outcome import ProcedureOutcome, procedure_outcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.score_reference import region_of, score_reference
-from rastrainer.trial.scoring import (
-    ScoreMeasures,
-    ScoreReference,
-    TrialScore,
-    score_trial,
-)
+from rastrainer.trial.scoring import ScoreMeasures, ScoreReference, TrialScore, score_trial
 from rastrainer.trial.touch_registration import (
     GivenPoints,
     TouchRegistration,
     normals_at,
     register_trial,
-    skin_sentence,
+    skin_sentences,
     unshifted_tre_mm,
 )
 from rastrainer.trial.trial_feedback import TrialFeedback, trial_feedback
+from rastrainer.trial.wording import Sentence
 
 
 @dataclass(frozen=True)
@@ -65,11 +61,9 @@ class RevealedTruth:
 
 @dataclass(frozen=True)
 class PublishedScore:
-    """CTPS of a trial within a cohort; `rastrainer.trial.ctps` describes its weaknesses.
+    """CTPS of a trial within a cohort, as in the paper's tables, and by its equation 3: half of it.
 
-    Attributes:
-        published: 100·(CT score − RMSE penalty), as in the paper's tables.
-        equation_3: the paper's equation 3 as printed: half of it.
+    `rastrainer.trial.ctps` describes its weaknesses.
     """
 
     published: float
@@ -103,10 +97,6 @@ class TrialAnalysis:
     def rigid(self) -> Registration:
         return self.fits[RIGID]
 
-    @property
-    def expected_tre(self) -> TargetError:
-        return self.target_errors[RIGID]
-
     def scored(
         self,
         scenario: Scenario,
@@ -117,12 +107,8 @@ class TrialAnalysis:
         """Return the analysis with the truth and its score.
 
         The score uses the true error of the rigid registration and, of a trial by fiducials, the
-        common bias of its touches. A landmark has no exact place, and a trace no bias.
-
-        Args:
-            references: of the score, by task, from a study's protocol; the scenario's for other
-                tasks.
-            trajectory: from the journal; it explains inaccurate touches.
+        common bias of its touches. A landmark has no exact place, and a trace no bias. The
+        arguments are those of `analyze_trial`.
         """
         record = self.record
         tre_mm = region_of(scenario).tre_mm(self.rigid.matrix, truth.matrix)
@@ -141,7 +127,7 @@ class TrialAnalysis:
         score = replace(score, unshifted_tre_mm=unshifted)
         normals = normals_at(scenario, record.task, self.rigid.labels, record.method)
         feedback = trial_feedback(score, self.rigid, normals, record.motion, trajectory, bias=bias)
-        feedback = replace(feedback, skin=skin_sentence(truth.skin, truth.true_tre_mm, unshifted))
+        feedback = replace(feedback, skin=skin_sentences(truth.skin, truth.true_tre_mm, unshifted))
         procedure = procedure_outcome(record, scenario, truth.matrix, references)
         return replace(self, truth=truth, score=score, feedback=feedback, procedure=procedure)
 
@@ -151,10 +137,10 @@ class TrialAnalysis:
         """Return the analysis with a stored score and the stored truth."""
         bias = None if truth is None else self._common_bias(scenario, truth)
         advice = advise(score, self.feedback.touches, self.record.motion, bias)
-        skin = None
+        skin: tuple[Sentence, ...] = ()
         if truth is not None:
             unshifted = None if score is None else score.unshifted_tre_mm
-            skin = skin_sentence(self.record.skin, truth.true_tre_mm, unshifted)
+            skin = skin_sentences(self.record.skin, truth.true_tre_mm, unshifted)
         return replace(
             self,
             truth=truth,
@@ -219,12 +205,8 @@ def published_score(
         reference = ctps.CohortReference.of([t for t in cohort if t.mode == record.mode])
     except InputError:
         return None
-    time = record.completion_time_s
-    return PublishedScore(
-        ctps.published_ctps(time, fre_mm, reference),
-        ctps.equation_3_ctps(time, fre_mm, reference),
-        reference,
-    )
+    published = ctps.published_ctps(record.completion_time_s, fre_mm, reference)
+    return PublishedScore(published, published / 2, reference)
 
 
 def registration_arguments(analysis: TrialAnalysis) -> dict[str, Any]:
@@ -252,7 +234,7 @@ def score_arguments(analysis: TrialAnalysis) -> dict[str, Any]:
         "details": {
             "scoreVersion": score.version,
             "residualsMm": analysis.rigid.residuals_mm.tolist(),
-            "treIntervalMm": list(analysis.expected_tre.interval_mm),
+            "treIntervalMm": list(analysis.target_errors[RIGID].interval_mm),
             "regionTreMm": measures.tre_mm,
             "regionLimitMm": score.reference.limit_mm,
             "commonBiasMm": measures.common_bias_mm,

@@ -20,7 +20,7 @@ from typing import Annotated
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.csv_table import number_in, read_rows
+from rastrainer.files.csv_table import number_in, read_table
 from rastrainer.files.reading import read_record
 from rastrainer.json_checks import list_of, number, one_of, text
 
@@ -35,12 +35,7 @@ CTPS_WARNING = (
 
 @dataclass(frozen=True)
 class Trial:
-    """One trial of a cohort.
-
-    Attributes:
-        mode: How the scene was seen, such as `desktop` or `hmd`.
-        rmse_mm: Fiducial registration error of the rigid fit, in mm.
-    """
+    """One trial of a cohort; its RMSE is the fiducial registration error of the rigid fit."""
 
     mode: str
     subject: str
@@ -105,16 +100,10 @@ def published_ctps(completion_time_s: float, rmse_mm: float, reference: CohortRe
     return 100 * (ct_score - rmse_penalty)
 
 
-def equation_3_ctps(completion_time_s: float, rmse_mm: float, reference: CohortReference) -> float:
-    """Return 100·(CT score − RMSE penalty)/2 of one trial, the paper's equation 3 as printed."""
-    return published_ctps(completion_time_s, rmse_mm, reference) / 2
-
-
 def score_cohort(trials: Sequence[Trial], mean_ct_s: float | None = None) -> CohortScores:
     """Return the CTPS table of the trials of one mode.
 
-    Args:
-        mean_ct_s: Mean CT to use instead of the trials' own; the paper used a rounded one.
+    A mean CT can be given instead of the trials' own; the paper used a rounded one.
     """
     reference = CohortReference.of(trials, mean_ct_s)
     scores = [published_ctps(t.completion_time_s, t.rmse_mm, reference) for t in trials]
@@ -178,27 +167,20 @@ NUMBER_LIMIT = 1e6
 
 def read_trials(path: str | os.PathLike[str]) -> list[Trial]:
     """Return the trials of a file, one a row: `ct` in s above 0, `rmse` in mm, 0 or above."""
-    rows = read_rows(path, ("mode", "subject", "task", "ct", "rmse"))
-    return [_trial(path, line, cells) for line, cells in rows]
-
-
-def _trial(path: object, line: int, cells: dict[str, str]) -> Trial:
-    for column in ("mode", "subject", "task"):
-        if not 1 <= len(cells[column]) <= TEXT_LIMIT or not cells[column].isprintable():
-            raise InputError(
-                f"Line {line} of {path}: {column} must be printable text of 1 to {TEXT_LIMIT} "
-                "characters."
-            )
-    completion_time = number_in(path, line, cells, "ct", 0, NUMBER_LIMIT)
-    if completion_time == 0:
-        raise InputError(f"Line {line} of {path}: ct must be above 0 s.")
-    return Trial(
-        mode=cells["mode"],
-        subject=cells["subject"],
-        task=cells["task"],
-        completion_time_s=completion_time,
-        rmse_mm=number_in(path, line, cells, "rmse", 0, NUMBER_LIMIT),
-    )
+    trials = []
+    for line, cells in read_table(path).rows(("mode", "subject", "task", "ct", "rmse")):
+        for column in ("mode", "subject", "task"):
+            if not 1 <= len(cells[column]) <= TEXT_LIMIT or not cells[column].isprintable():
+                raise InputError(
+                    f"Line {line} of {path}: {column} must be printable text of 1 to {TEXT_LIMIT} "
+                    "characters."
+                )
+        time_s = number_in(path, line, cells, "ct", 0, NUMBER_LIMIT)
+        if time_s == 0:
+            raise InputError(f"Line {line} of {path}: ct must be above 0 s.")
+        rmse_mm = number_in(path, line, cells, "rmse", 0, NUMBER_LIMIT)
+        trials.append(Trial(cells["mode"], cells["subject"], cells["task"], time_s, rmse_mm))
+    return trials
 
 
 QUANTITIES = (
@@ -240,11 +222,7 @@ class Claim:
 
 @dataclass(frozen=True)
 class StudyNotes:
-    """Notes on a study.
-
-    Attributes:
-        mean_ct_s: Mean completion times that the authors used, by mode.
-    """
+    """Notes on a study; the mean completion times are those that the authors used, by mode."""
 
     title: Annotated[str, text(200)]
     source: Annotated[str, text(400)]

@@ -134,7 +134,6 @@ class ProcedureScore:
 
     Attributes:
         desirabilities: by measure: `time`, `target`, `entry`, `angle`, `plunge` and `distance`.
-        is_safe: whether no no-go structure is hit, and the drill stopped in time.
         reference_s: duration of half the range of the time desirability.
     """
 
@@ -153,12 +152,9 @@ class ProcedureScore:
 
 
 def reference_duration_s(touching_s: float, procedure: Procedure, self_aligned: int = 0) -> float:
-    """Return the reference duration of a procedure.
+    """Return the reference duration of a procedure, after the touches of the trial's task.
 
-    Args:
-        touching_s: reference time of the trial's task, which is touched first.
-        procedure: the plan; a longer trajectory takes longer.
-        self_aligned: on how many trajectories the robot aligned the guide, which takes less time.
+    It takes less time where the robot aligned the guide: on `self_aligned` trajectories.
     """
     inserting = sum(
         (STAND_OFF_MM + trajectory.length_mm) / INSERTION_MM_S
@@ -250,9 +246,8 @@ def procedure_outcome(
 ) -> ProcedureOutcome | None:
     """Return the errors and the score of a trial's procedure; None for touches alone.
 
-    Args:
-        head_to_world: (4, 4) float, mm, the true pose.
-        references: of the score of touches, by task, as a study's protocol sets them.
+    The true pose is (4, 4) float, mm. The references of the score of touches are by task, as a
+    study's protocol sets them.
     """
     done = record.procedure
     if done is None:

@@ -56,18 +56,16 @@ def trace_points(value: Any) -> tuple[TracePoint, ...]:
     """Accept a trace: a list of positions in World with their times, which do not fall."""
     if isinstance(value, (list, tuple)) and len(value) <= MAX_TRACE_POINTS:
         with contextlib.suppress(ValueError, TypeError, LookupError):
-            points = tuple(_trace_point(*item) for item in value)
+            points: list[TracePoint] = []
+            for *place, time_s in value:
+                x, y, z = _IN_WORLD(place)
+                points.append((x, y, z, _AT_TIME(time_s)))
             if all(later[3] >= earlier[3] for earlier, later in itertools.pairwise(points)):
-                return points
+                return tuple(points)
     raise ValueError(
         f"a list of at most {MAX_TRACE_POINTS} points [x, y, z, simTimeS], mm and s, in order of "
         "time"
     )
-
-
-def _trace_point(x: float, y: float, z: float, time_s: float) -> TracePoint:
-    x, y, z = _IN_WORLD((x, y, z))
-    return x, y, z, _AT_TIME(time_s)
 
 
 _IN_WORLD = json_checks.numbers(3, WORLD_LIMIT_MM, "mm")
@@ -211,11 +209,6 @@ class TrialRecord(AnyTrial):
     def positions_mm(self) -> np.ndarray:
         """Touched points in `World`, (n, 3) float, in mm."""
         return np.array([point.position_mm for point in self.points], dtype=float)
-
-    @property
-    def touch_times_s(self) -> np.ndarray:
-        """Simulated time of each touch, (n,) float, in s."""
-        return np.array([point.sim_time_s for point in self.points], dtype=float)
 
     @property
     def trace_mm(self) -> np.ndarray:

@@ -44,7 +44,7 @@ def fiducial_normals(scenario: Scenario, task_name: str) -> np.ndarray:
 def point_normals(scenario: Scenario, task: Task) -> np.ndarray:
     """Return the skin's outward unit normals at a task's points, (n, 3) float, RAS; read-only."""
     points = np.asarray(task.fiducials, dtype=float)
-    return computed_once(scenario, _normals, tuple(map(tuple, points.tolist())))
+    return computed_once(scenario, outward_normals, tuple(map(tuple, points.tolist())))
 
 
 def computed_once(
@@ -68,10 +68,6 @@ def _computed(
     return result
 
 
-def _normals(head: HeadMesh, fiducials: Points) -> np.ndarray:
-    return outward_normals(head, np.array(fiducials))
-
-
 SPACING_MM = 10.0
 UNDER_SKIN_MM = 15.0
 BELOW_VERTEX_MM = 120.0
@@ -79,12 +75,7 @@ BELOW_VERTEX_MM = 120.0
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """Where a registration has to be right.
-
-    Attributes:
-        targets: (m, 3) float, RAS mm, at least one.
-        grid: (n, 3) float, RAS mm, of the brain's volume.
-    """
+    """Targets (m, 3) and brain grid (n, 3), RAS mm, where a registration has to be right."""
 
     targets: np.ndarray
     grid: np.ndarray
@@ -94,12 +85,7 @@ class Region:
         return float((np.mean(of_targets) + np.mean(of_grid)) / 2)
 
     def tre_mm(self, world_to_head: np.ndarray, head_to_world: np.ndarray) -> float:
-        """Return the RMS true TRE of a registration.
-
-        Args:
-            world_to_head: (4, 4) float, mm, the registration.
-            head_to_world: (4, 4) float, mm, the true pose.
-        """
+        """Return the RMS true TRE of a registration; matrices as in `true_errors`."""
         squares = [
             np.sum(true_errors(world_to_head, head_to_world, points) ** 2, axis=1)
             for points in (self.targets, self.grid)
@@ -111,11 +97,8 @@ class Region:
 
         The touching errors are independent, with an FLE of 1 mm, and isotropic along the skin:
         Cov(eᵢ) = ½ (I − nᵢnᵢᵀ). To first order they move the fit by Σ (Σ JᵀJ)⁻¹ Jᵢᵀ eᵢ, and a point
-        r by J(r) times that, with J the motions of a point.
-
-        Args:
-            fiducials: (n, 3) float, RAS mm, not collinear.
-            normals: (n, 3) float, unit normals of the skin there, RAS.
+        r by J(r) times that, with J the motions of a point. The fiducials (n, 3), RAS mm, are not
+        collinear, and the unit normals (n, 3) of the skin there are in RAS.
         """
         center = fiducials.mean(axis=0)
         moved = motions(RIGID, fiducials - center)
@@ -183,10 +166,7 @@ def score_reference(
     Whatever the method is, the error is measured against that of the task's fiducials: what an
     operation needs does not depend on how its head was registered. The reference time is that of
     the points which the method has touched, and of a trace of `REFERENCE_TRACE_MM`. References of a
-    protocol hold for fiducials.
-
-    Args:
-        of_protocol: references by task from a study's protocol, which take precedence.
+    protocol, by task, take precedence for fiducials.
     """
     is_by_fiducials = method is RegistrationMethod.FIDUCIALS
     if of_protocol and task_name in of_protocol and is_by_fiducials:
@@ -195,19 +175,12 @@ def score_reference(
     normals = fiducial_normals(scenario, task_name)
     touched = task_by_method(scenario, task_name, method)
     trace_mm = REFERENCE_TRACE_MM if method in TRACED_METHODS else 0.0
-    touching_s = _time_s(touched.fiducials, point_normals(scenario, touched))
+    # The tip moves straight between points above the fiducials; where the skin and the tool turn
+    # between two, the path is longer.
+    above = touched.fiducials + LIFT_MM * point_normals(scenario, touched)
+    path_mm = np.linalg.norm(np.diff(above, axis=0), axis=1).sum()
+    touching_s = float(TOUCH_S * len(above) + path_mm / SPEED_MM_S)
     return ScoreReference(
         time_s=touching_s + trace_mm / TRACE_SPEED_MM_S,
         tre_mm=float(REFERENCE_FLE_MM * region_of(scenario).tre_per_fle(fiducials, normals)),
     )
-
-
-def _time_s(fiducials: np.ndarray, normals: np.ndarray) -> float:
-    """Return the reference time of fiducials (n, 3) with the skin's outward unit normals (n, 3).
-
-    The tip moves straight between points above the fiducials; where the skin and the tool turn
-    between two, the path is longer.
-    """
-    above = fiducials + LIFT_MM * normals
-    path_mm = np.linalg.norm(np.diff(above, axis=0), axis=1).sum()
-    return float(TOUCH_S * len(fiducials) + path_mm / SPEED_MM_S)

@@ -21,7 +21,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, NamedTuple
+from typing import Annotated
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import number
@@ -68,22 +68,12 @@ class ScoreReference:
     limit_mm: _Measure = LIMIT_MM
 
 
-class SafetyMeasures(NamedTuple):
-    """Time and path of unintended contact (s, mm) and how deep the tool was pressed in (mm)."""
-
-    contact_time_s: float
-    contact_path_mm: float
-    pressing_depth_mm: float
-
-
 @dataclass(frozen=True)
 class ScoreMeasures:
     """The measures of a trial that count for its score.
 
     Attributes:
         tre_mm: RMS true TRE over the region.
-        contact_time_s: of unintended contact.
-        contact_path_mm: of the tip during that.
         pressing_depth_mm: RMS over the fiducials of how deep the tool was pressed in.
         common_bias_mm: length of the bias that all touches share; None of a trial without
             fiducials.
@@ -113,10 +103,6 @@ class ScoreMeasures:
                 "cannot be scored."
             ) from None
         return cls(completion_time_s, tre_mm, time_s, path_mm, depth_mm, common_bias_mm)
-
-    @property
-    def safety(self) -> SafetyMeasures:
-        return SafetyMeasures(self.contact_time_s, self.contact_path_mm, self.pressing_depth_mm)
 
     def check(self, has_bias: bool) -> None:
         """Raise `InputError` unless all are numbers of a trial, with a common bias or without."""
@@ -195,17 +181,16 @@ def score_trial(
     compared with those of the same method alone.
     """
     measures.check(has_bias=method is RegistrationMethod.FIDUCIALS)
-    safety_measures = measures.safety
     bias_mm = measures.common_bias_mm
     time = of_time(measures.completion_time_s, reference.time_s)
     accuracy = _accuracy(measures.tre_mm, bias_mm, reference)
-    safety = _safety(*safety_measures)
+    safety = _safety(measures.contact_time_s, measures.contact_path_mm, measures.pressing_depth_mm)
     is_accurate = measures.tre_mm <= reference.limit_mm
     is_unbiased = None if bias_mm is None else bias_mm <= COMMON_BIAS_LIMIT_MM
     is_safe = (
-        safety_measures.contact_time_s <= CONTACT_LIMIT_S
-        and safety_measures.contact_path_mm <= CONTACT_PATH_LIMIT_MM
-        and safety_measures.pressing_depth_mm <= DEPTH_LIMIT_MM
+        measures.contact_time_s <= CONTACT_LIMIT_S
+        and measures.contact_path_mm <= CONTACT_PATH_LIMIT_MM
+        and measures.pressing_depth_mm <= DEPTH_LIMIT_MM
     )
     product = time * accuracy * safety
     if not (is_accurate and is_unbiased is not False and is_safe):

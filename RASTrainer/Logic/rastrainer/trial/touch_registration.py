@@ -164,7 +164,6 @@ class TouchRegistration:
     """Possible registrations of a trial, and their expected errors.
 
     Attributes:
-        fits: by kind; rigid is always included.
         target_errors: expected error at the scenario's target, by kind.
         match: of the trace, where the method has one.
     """
@@ -193,15 +192,29 @@ def register_trial(
 ) -> TouchRegistration:
     """Register what was touched and traced in a trial, by the trial's method.
 
-    Args:
-        given: the touches are paired by label with the fiducials of the task, or the landmarks.
-        pause: called between the steps, every 10 ms or so; a worker may wait in it.
+    The touches are paired by label with the fiducials of the task, or the landmarks. `pause` is
+    called between the steps, every 10 ms or so; a worker may wait in it.
     """
     task = task_by_method(scenario, given.task, given.method)
     labels, moving, fixed = pair(given.touches, PointList(task.labels, task.fiducials))
     fits = register_all_kinds(moving, fixed, labels)
     if given.method in TRACED_METHODS:
-        return _by_trace(given, scenario, fits[RIGID], pause)
+        # The rigid one alone: a scaled or sheared head would fit any trace. It is that of the
+        # landmarks with the matrix that fits the trace to the surface.
+        coarse = fits[RIGID]
+        match = match_surface(given.trace_mm, head_of(scenario), coarse.matrix)
+        pause()
+        error = surface_target_error(knowledge_of(match), scenario.target_position)
+        vectors = transforms.apply(match.matrix, coarse.moving_mm) - coarse.fixed_mm
+        matched = replace(
+            coarse,
+            matrix=match.matrix,
+            fre_mm=match.rms_mm,
+            residual_vectors_mm=vectors,
+            residuals_mm=np.linalg.norm(vectors, axis=1),
+            warnings=(*coarse.warnings, *match.warnings),
+        )
+        return TouchRegistration({RIGID: matched}, {RIGID: error}, match)
     normals = normals_at(scenario, given.task, labels, given.method)
     errors = {}
     for kind, fit in fits.items():
@@ -212,28 +225,6 @@ def register_trial(
         errors[kind] = target_error(fit, scenario.target_position, localization)
     pause()
     return TouchRegistration(fits, errors)
-
-
-def _by_trace(
-    given: GivenPoints, scenario: Scenario, coarse: Registration, pause: Callable[[], None]
-) -> TouchRegistration:
-    """Return the rigid registration alone: a scaled or sheared head would fit any trace.
-
-    It is that of the landmarks with the matrix that fits the trace to the surface.
-    """
-    match = match_surface(given.trace_mm, head_of(scenario), coarse.matrix)
-    pause()
-    error = surface_target_error(knowledge_of(match), scenario.target_position)
-    vectors = transforms.apply(match.matrix, coarse.moving_mm) - coarse.fixed_mm
-    matched = replace(
-        coarse,
-        matrix=match.matrix,
-        fre_mm=match.rms_mm,
-        residual_vectors_mm=vectors,
-        residuals_mm=np.linalg.norm(vectors, axis=1),
-        warnings=(*coarse.warnings, *match.warnings),
-    )
-    return TouchRegistration({RIGID: matched}, {RIGID: error}, match)
 
 
 def head_of(scenario: Scenario) -> HeadMesh:
@@ -265,14 +256,7 @@ def unshifted_tre_mm(
     """Return the true TRE that a trial would have had with the skin as in the images, mm.
 
     Its touches and its trace are put back to where they would have been measured, and registered
-    again.
-
-    Args:
-        head_to_world: (4, 4) float, mm, the true pose.
-        skin: How the skin lay, with its seed.
-
-    Returns:
-        None if the skin lay as in the images, or where the points cannot be registered so.
+    again. None if the skin lay as in the images, or where the points cannot be registered so.
     """
     if skin.is_none:
         return None
@@ -292,13 +276,13 @@ def unshifted_tre_mm(
     return float(np.linalg.norm(true_errors(matrix, head_to_world, scenario.target_position)))
 
 
-def skin_sentence(
+def skin_sentences(
     skin: SkinShift, true_tre_mm: float, unshifted_mm: float | None
-) -> Sentence | None:
-    """Return what the trainee reads after a trial; None if the skin lay as in the images."""
+) -> tuple[Sentence, ...]:
+    """Return what the trainee reads after a trial; none if the skin lay as in the images."""
     if skin.is_none:
-        return None
+        return ()
     amounts = {"shift": skin.shift_mm, "indentation": skin.indentation_mm, "tre": true_tre_mm}
     if unshifted_mm is None:
-        return say("skin", **amounts)
-    return say("skin and error", **amounts, without=unshifted_mm)
+        return (say("skin", **amounts),)
+    return (say("skin and error", **amounts, without=unshifted_mm),)

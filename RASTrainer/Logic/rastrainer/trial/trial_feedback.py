@@ -120,9 +120,8 @@ def progress_of(
 ) -> TraineeProgress:
     """Return the progress at a trial.
 
-    Args:
-        past: All scored trials of the trainee without trial runs, and aborted ones that count as
-            not passed, in order; later ones are ignored.
+    The past are all scored trials of the trainee without trial runs, and aborted ones that count as
+    not passed, in order; later ones are ignored.
     """
     ids = ["" if other.is_aborted else other.trial_id for other in past]
     if trial_id not in ids:
@@ -133,22 +132,24 @@ def progress_of(
     scores = tuple(
         other.score for other in in_mode if other.task == trial.task and not other.is_aborted
     )
-    is_best = len(scores) > 1 and scores[-1] > max(scores[:-1])
     has_others = any(
         (other.mode, other.task) == (trial.mode, trial.task) and not other.is_aborted
         for other in until[:-1]
     )
-    about_scores = _about_scores(scores, is_best, has_others)
+    about_scores = _about_scores(scores, has_others)
+    if not trial.acceptable:
+        about_mark = say("unacceptable")
+    elif pass_mark is None:
+        about_mark = say("no mark")
+    elif trial.score >= pass_mark:
+        about_mark = say("passed", mark=pass_mark)
+    else:
+        about_mark = say("not passed", points=pass_mark - trial.score, mark=pass_mark)
     if pass_mark is None:
-        about_mark = say("no mark") if trial.acceptable else say("unacceptable")
         return TraineeProgress(scores, None, None, (about_scores, about_mark))
     failures = [not passes(other.score, other.acceptable, pass_mark) for other in in_mode]
     competence = competence_of(failures)
-    sentences = (
-        about_scores,
-        _about_mark(trial.score, trial.acceptable, pass_mark),
-        _about_competence(competence, len(failures)),
-    )
+    sentences = (about_scores, about_mark, _about_competence(competence, len(failures)))
     return TraineeProgress(scores, pass_mark, competence, sentences)
 
 
@@ -157,24 +158,16 @@ def competence_of(failures: Sequence[bool]) -> LcCusum:
     return lc_cusum(failures, ADEQUATE_FAILURES, INADEQUATE_FAILURES, limit)
 
 
-def _about_scores(scores: Sequence[float], is_best: bool, has_others: bool) -> Sentence:
+def _about_scores(scores: Sequence[float], has_others: bool) -> Sentence:
     if len(scores) == 1:
         return say("first by this method" if has_others else "first trial")
     earlier = scores[:-1][-3:]
     change = scores[-1] - float(np.mean(earlier))
     key = "more points" if change >= 0 else "less points"
-    best = say("best") if is_best else ""
+    best = say("best") if scores[-1] > max(scores[:-1]) else ""
     if len(earlier) == 1:
         return say(f"{key} than last", points=abs(change), best=best)
     return say(key, points=abs(change), trials=len(earlier), best=best)
-
-
-def _about_mark(score: float, acceptable: bool, pass_mark: float) -> Sentence:
-    if not acceptable:
-        return say("unacceptable")
-    if score >= pass_mark:
-        return say("passed", mark=pass_mark)
-    return say("not passed", points=pass_mark - score, mark=pass_mark)
 
 
 def _about_competence(chart: LcCusum, trials: int) -> Sentence:
@@ -200,9 +193,8 @@ class TrialFeedback:
     Attributes:
         score: With its parts; None if the trial has none.
         worst: The touch with the largest error; its `replay_s` is what to look at again.
-        progress: None if there is no history.
         paused_s: How long the trial was paused in all, as far as that is known.
-        skin: How the skin had shifted, and what that did; None if it had not.
+        skin: How the skin had shifted, and what that did; empty if it had not.
     """
 
     score: TrialScore | None
@@ -211,12 +203,7 @@ class TrialFeedback:
     advice: tuple[Advice, ...]
     progress: TraineeProgress | None = None
     paused_s: float = 0.0
-    skin: Sentence | None = None
-
-    @property
-    def skin_sentences(self) -> tuple[Sentence, ...]:
-        """How the skin had shifted; none where it had not."""
-        return () if self.skin is None else (self.skin,)
+    skin: tuple[Sentence, ...] = ()
 
     @property
     def score_sentences(self) -> tuple[str, ...]:
@@ -229,8 +216,8 @@ class TrialFeedback:
                 f"Score {fixed(score.score, 0)} of 100{beyond}",
                 f"Time: {seconds} s, worth {fixed(100 * score.time_desirability, 0)} of 100.",
                 _accuracy_sentence(score),
+                _safety_sentence(score),
             ]
-            sentences.append(_safety_sentence(score))
         if self.paused_s > LONG_PAUSE_S:
             sentences.append(
                 f"Paused for {fixed(self.paused_s, 0)} s in all, which the score leaves out: "
@@ -251,7 +238,7 @@ class TrialFeedback:
         """All sentences in display order."""
         progress = () if self.progress is None else self.progress.sentences
         improve = tuple(f"{i}. {a.sentence}" for i, a in enumerate(self.advice, start=1))
-        scored = (*self.score_sentences, *self.skin_sentences)
+        scored = (*self.score_sentences, *self.skin)
         return (*scored, *self.touch_sentences, *improve, *progress)
 
     @property
@@ -262,7 +249,7 @@ class TrialFeedback:
         """
         trend = () if self.progress is None else self.progress.sentences[:1]
         first = (each.sentence for each in self.advice[:1])
-        return [*self.skin_sentences, self.touch_sentences[0], *first, *trend]
+        return [*self.skin, self.touch_sentences[0], *first, *trend]
 
 
 def trial_feedback(
@@ -275,9 +262,8 @@ def trial_feedback(
 ) -> TrialFeedback:
     """Return the feedback on a trial; what is not known is left out.
 
-    Args:
-        normals: (n, 3) float, outward unit normals of the skin at the fiducials, RAS.
-        motion: Motion metrics; with `path_efficiency`, detours are advised on too.
+    The outward unit normals (n, 3) are those of the skin at the fiducials, RAS. With the metric
+    `path_efficiency`, detours are advised on too.
     """
     findings = touch_findings(registration, normals, trajectory)
     return TrialFeedback(

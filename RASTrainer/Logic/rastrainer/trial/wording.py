@@ -83,11 +83,7 @@ _ROUND_UP = 1 + 1e-12
 
 
 class Sentence(str):
-    """An English sentence with its key and values.
-
-    Attributes:
-        values: numbers, texts, and partial sentences.
-    """
+    """An English sentence with its key and values: numbers, texts, and partial sentences."""
 
     key: str
     values: Mapping[str, Any]

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from rastrainer.protocol import FREE, StepKind
+from rastrainer.protocol import FREE, AssignmentState, GoalKind, StepKind
 from rastrainer.study.protocol.steps import StepAnswers
 from rastrainer.study_messages import FIDUCIALS, AssignmentStanding, CurriculumMessage, StudyStep
 from rastrainer_simulator.texts.texts import Texts
@@ -117,17 +117,17 @@ class AssignmentTexts:
         return " · ".join(filter(None, (self._task_title(each.task), special)))
 
     def progress(self, each: AssignmentStanding) -> str:
-        if each.is_reached:
+        if each.state is AssignmentState.REACHED:
             return self._say("assignments.reached")
-        if each.is_locked:
+        if each.state is AssignmentState.LOCKED:
             return self._say("assignments.locked")
-        key = "assignments.percent" if each.is_by_competence else "assignments.count"
+        key = "assignments.percent" if each.goal is GoalKind.COMPETENT else "assignments.count"
         return self._say(key, done=each.done, needed=each.needed)
 
     def goal(self, each: AssignmentStanding) -> str:
         if not each.mark:
             return self._say("assignments.no mark")
-        if each.is_by_competence:
+        if each.goal is GoalKind.COMPETENT:
             return self._say("assignments.competent", mark=each.mark)
         key = "assignments.one trial" if each.needed == 1 else "assignments.trials"
         return self._say(key, needed=each.needed, mark=each.mark)
@@ -139,7 +139,9 @@ class AssignmentTexts:
 
     def summary(self, curriculum: CurriculumMessage) -> str:
         return self._say(
-            "assignments.summary", reached=curriculum.reached, count=len(curriculum.assignments)
+            "assignments.summary",
+            reached=sum(each.state is AssignmentState.REACHED for each in curriculum.assignments),
+            count=len(curriculum.assignments),
         )
 
     def in_brief(self, curriculum: CurriculumMessage) -> str:

@@ -7,6 +7,7 @@ import numpy as np
 from rastrainer.commands import CommandName
 from rastrainer.protocol import (
     TRIAL_RUN,
+    AssignmentState,
     GhostRule,
     Guidance,
     RegistrationMethod,
@@ -107,7 +108,7 @@ def obstacle(session: TrainingSession, task: str) -> str:
     assigned = () if curriculum is None else curriculum.assignments
     head = session.scenario.name
     own = [each for each in assigned if each.is_played_as(head, task, *played_as)]
-    if curriculum is not None and own and all(each.is_locked for each in own):
+    if curriculum is not None and own and all(each.state is AssignmentState.LOCKED for each in own):
         return session.assignment_texts.gate(curriculum, own[0])
     return _missing_before(session, task, is_assigned=bool(own))
 
@@ -117,7 +118,7 @@ def assignment_obstacle(session: TrainingSession, each: AssignmentStanding) -> s
     unready, curriculum = _unready(session), session.curriculum
     if unready or curriculum is None:
         return unready
-    if each.is_locked:
+    if each.state is AssignmentState.LOCKED:
         return session.assignment_texts.gate(curriculum, each)
     scenario = session.scenario
     is_on_head = (

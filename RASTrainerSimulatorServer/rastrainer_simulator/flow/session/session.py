@@ -13,7 +13,7 @@ from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals_of
 from rastrainer.procedure.geometry import BoneAhead
-from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Mode, RegistrationMethod
+from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, AssignmentState, Mode, RegistrationMethod
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
 from rastrainer.study_messages import CurriculumMessage, StudyStep
@@ -337,7 +337,8 @@ class TrainingSession:
             return
         for each in now.assignments:
             earlier = before.find(each.name)
-            if each.is_reached and earlier is not None and not earlier.is_reached:
+            is_new = earlier is not None and earlier.state is not AssignmentState.REACHED
+            if each.state is AssignmentState.REACHED and is_new:
                 title = self.assignment_texts.title(each)
                 said = self.texts.say("assignments.just reached", assignment=title)
                 self.notices.add(said, Tone.GOOD, REACHED_S)

@@ -117,5 +117,5 @@ class TracePlaces:
         found = guide.next_place(places, trace.is_on)
         if found is None:
             return None
-        position, normal = np.round(found.position, 2), np.round(guide.normal_at(found), 4)
+        position, normal = np.round(found.position, 2), np.round(found.normal, 4)
         return SkinPlace(vector(position.tolist()), vector(normal.tolist()))

@@ -13,10 +13,12 @@ from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.point_files import write_markups
+from rastrainer.files.writing import write_json
+from rastrainer.json_records import record_to_json
 from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.scenario.points import touch_order
 from rastrainer.scenario.scenario import UNKNOWN_LICENSE, Scenario
-from rastrainer.scenario.setup import SetUp, write_setup
+from rastrainer.scenario.setup import SetUp
 from rastrainer.scenario.writer import HeadDraft, write_draft
 from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.logic.head_preview import HeadPreview
@@ -140,7 +142,7 @@ class ScenarioMaker:
 
         with tempfile.TemporaryDirectory() as temporary:
             setUp = Path(temporary, "setup.json")
-            write_setup(setUp, options.setUp)
+            write_json(setUp, record_to_json(options.setUp, with_defaults=True))
             words += ["--setup", str(setUp), *planArguments(options.targets, options.trajectory)]
             tasks = [Path(temporary, f"task-{index}.mrk.json") for index in range(len(lists))]
             for path, node in zip(tasks, lists, strict=True):

@@ -11,7 +11,7 @@ from typing import Any
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
-from rastrainer.json_records import record_from_json
+from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import FREE, StepKind
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.practice_monitor import PracticeMonitor
@@ -280,4 +280,4 @@ class StudyLogic(Listening):
 
     def _send(self, step: StudyStep) -> None:
         # Without a connection nothing is sent; a new connection is sent everything.
-        self._link.send(CommandName.STUDY_STEP, step.arguments())
+        self._link.send(CommandName.STUDY_STEP, record_to_json(step))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
+from rastrainer.json_records import record_to_json
 from rastrainer.slicer.background_work import CancelableUntilBegun, inBackground
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.signal import Listening, Signal
@@ -235,5 +236,5 @@ class CurriculumLogic(Listening):
                 if self._sent.get(name, nothing) != message:
                     self._sent[name] = message
                     # Without a connection nothing is sent; a new connection gets everything.
-                    self._link.send(CommandName.CURRICULUM, message.arguments())
+                    self._link.send(CommandName.CURRICULUM, record_to_json(message))
         self.changed.emit()

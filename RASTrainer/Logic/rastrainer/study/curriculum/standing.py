@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from statistics import fmean
 
 from rastrainer.number_text import fixed
-from rastrainer.protocol import AssignmentState
+from rastrainer.protocol import AssignmentState, GoalKind
 from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.database.values import day_of, moment
 from rastrainer.study.protocol.steps import trial_title
@@ -40,7 +40,7 @@ class CurriculumStanding:
 
     @property
     def reached(self) -> int:
-        return sum(each.is_reached for each in self.standings)
+        return sum(each.state is AssignmentState.REACHED for each in self.standings)
 
     @property
     def next_best(self) -> AssignmentStanding | None:
@@ -97,7 +97,7 @@ def standing_in(
     for assignment in curriculum.assignments:
         own = [trial for trial in trials if _counts_for(trial, assignment)]
         standing = _standing(assignment, own, reached, pass_mark_of)
-        if standing.is_reached:
+        if standing.state is AssignmentState.REACHED:
             reached[assignment.name] = standing.reached_utc
         standings.append(standing)
     played = sum(
@@ -127,7 +127,7 @@ def _standing(
     mark = pass_mark_of(assignment) if assignment.mark is None else assignment.mark
     reaching, done = (None, 0) if mark is None else _progress(assignment, own, mark)
     missing = tuple(name for name in assignment.after if name not in reached)
-    needed = WHOLE_WAY if assignment.is_by_competence else assignment.trials
+    needed = WHOLE_WAY if assignment.goal is GoalKind.COMPETENT else assignment.trials
     state = AssignmentState.OPEN if reaching is None else AssignmentState.REACHED
     reached_utc = ""
     if reaching is not None and not missing:
@@ -152,7 +152,7 @@ def _progress(
 ) -> tuple[PastTrial | None, int]:
     """Return which of the trials reaches the goal, and how far they are now."""
     passed = [passes(trial.score, trial.acceptable, mark) for trial in trials]
-    if assignment.is_by_competence:
+    if assignment.goal is GoalKind.COMPETENT:
         chart = competence_of([not each for each in passed])
         share = chart.scores[-1] / chart.limit if chart.scores else 0.0
         # Rounded down: 100 % is shown only at competence.
@@ -198,7 +198,7 @@ def title_of(assignment: Assignment) -> str:
 
 def progress_of_assignment(standing: AssignmentStanding) -> str:
     """Return the progress of a trainee, such as "1 of 3 trials in a row at 70 or more"."""
-    if standing.mark is not None and standing.is_by_competence:
+    if standing.mark is not None and standing.goal is GoalKind.COMPETENT:
         return f"{standing.done} % of the way to {goal_of(standing)}"
     done = "" if standing.mark is None else f"{standing.done} of "
     return f"{done}{goal_of(standing)}"
@@ -209,7 +209,7 @@ def goal_of(standing: AssignmentStanding) -> str:
     if standing.mark is None:
         return "no pass mark set for its score"
     mark = f"{standing.mark:g} or more"
-    if standing.is_by_competence:
+    if standing.goal is GoalKind.COMPETENT:
         return f"competence (LC-CUSUM), a trial passes at {mark}"
     trials = "trial" if standing.needed == 1 else "trials in a row"
     return f"{standing.needed} {trials} at {mark}"
@@ -219,7 +219,7 @@ def short_progress_of(standing: AssignmentStanding) -> str:
     """Return the state for a narrow column: the day (UTC) if reached, the progress if open."""
     if standing.state is not AssignmentState.OPEN:
         return f"{standing.state.value} {day_of(standing.reached_utc)}".rstrip()
-    if standing.is_by_competence:
+    if standing.goal is GoalKind.COMPETENT:
         return f"{standing.done} %"
     return f"{standing.done} of {standing.needed}"
 

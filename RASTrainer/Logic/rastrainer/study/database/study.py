@@ -137,7 +137,7 @@ class Study:
         """Add a trainee, by default under the next free pseudonym (`T001`, `T002`, …)."""
         with self.database.writing():
             pseudonym = self.next_pseudonym() if pseudonym is None else pseudonym
-            json_checks.accepted(json_checks.pseudonym(), pseudonym, "A pseudonym")
+            json_checks.accepted(json_checks.pseudonym, pseudonym, "A pseudonym")
             if self.has_trainee(pseudonym):
                 raise InputError(f"The pseudonym {json.dumps(pseudonym)} is taken; choose another.")
             self.database.insert(
@@ -276,7 +276,7 @@ class Study:
                     raise _other_trial(record.trial_id)
                 return False
             if not self.has_trainee(record.trainee):
-                json_checks.accepted(json_checks.pseudonym(), record.trainee, "A pseudonym")
+                json_checks.accepted(json_checks.pseudonym, record.trainee, "A pseudonym")
             return True
 
     def has(self, table: str, trial_id: str) -> bool:
