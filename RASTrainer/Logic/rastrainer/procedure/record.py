@@ -131,7 +131,7 @@ class PlacedInstrument:
 
     Attributes:
         guide_tip_mm: tip of the guide as it was locked last, World.
-        guide_direction: its axis, a unit vector into the head, World.
+        guide_direction: a unit vector into the head, World.
         drill_depth_mm: the deepest that the drill was beyond the guide's tip.
         instrument_depth_mm: where the instrument was released, beyond the guide's tip.
         self_aligned: whether the robot brought the guide onto the line, before hands changed it or
@@ -167,7 +167,7 @@ class ProcedureRecord:
     Attributes:
         sha256: of the procedure's content, from `Procedure.sha256`.
         duration_s: from the start of the trial to the last release, without pauses.
-        attempts: at registering, in order; the last one was accepted.
+        attempts: at registering; the last one was accepted.
         instruments: one per planned trajectory, in the order of the plan.
         phase_times_s: by phase, over all attempts and trajectories, without pauses.
     """

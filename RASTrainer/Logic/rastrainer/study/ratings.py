@@ -168,13 +168,8 @@ class RatingStore:
             raise InputError(f"{form.title} has no domain {domain[:40]!r}.")
         if mark is not None and (isinstance(mark, bool) or mark not in MARKS):
             raise InputError(f"A mark is a whole number from {MARKS[0]} to {MARKS[-1]}.")
-        given: dict[str, Any] = {
-            "rater": rater,
-            "trial_id": trial_id,
-            "form": form.name,
-            "domain": domain,
-            "mark": mark,
-        }
+        given: dict[str, Any] = {"rater": rater, "trial_id": trial_id, "form": form.name}
+        given |= {"domain": domain, "mark": mark}
         with self._database.writing():
             query = f"SELECT {', '.join(given)} FROM rating_marks WHERE mark_id = ?"
             row = self._database.row(query, mark_id)
@@ -209,7 +204,7 @@ class RatingStore:
         found = []
         for (form, rater, trial_id), marks in sorted(given.items()):
             latest = _latest(marks)
-            if form in FORMS and set(latest) == {each.name for each in find_form(form).domains}:
+            if form in FORMS and set(latest) == {each.name for each in FORMS[form].domains}:
                 found.append(Rating(rater, trial_id, form, latest))
         return tuple(found)
 

@@ -56,11 +56,11 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
         ],
         "curricula": [
             {
-                "curriculum": None if chosen.curriculum is None else chosen.curriculum.to_json(),
-                "stored_utc": chosen.stored_utc,
+                "curriculum": None if curriculum is None else curriculum.to_json(),
+                "stored_utc": stored_utc,
             }
-            for chosen in CurriculumStore(study).choices()
-            if chosen.trainee == pseudonym
+            for name, curriculum, stored_utc in CurriculumStore(study).choices()
+            if name == pseudonym
         ],
         "ratings": [
             {"trial_id": rating.trial_id, "form": rating.form, "marks": dict(rating.marks)}
@@ -77,7 +77,7 @@ class Erasure:
     """What was deleted, and what may remain.
 
     Attributes:
-        journals: Number of deleted journals, including those of unfinished trials.
+        journals: Including those of unfinished trials.
         missing: UUIDs of deleted trials whose journals were not found.
         unreadable: Journals that name no trainee.
     """

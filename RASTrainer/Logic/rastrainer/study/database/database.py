@@ -134,9 +134,8 @@ def _address(text: str) -> PostgresAddress:
 
 
 BUSY_TIMEOUT_S = 30.0
-INTERACTIVE_TIMEOUT_S = 0.05
-"""Not noticeable in a window."""
-REST_S = 1.0
+INTERACTIVE_WAIT_S = (0.05, 1.0)
+"""For a window's `LockWait`: not noticeable, and its rest."""
 
 
 class Connection(Protocol):
@@ -156,8 +155,8 @@ class Connection(Protocol):
 class LockWait:
     """How long to wait for a lock; for some time after a timeout, not at all.
 
-    A panel queries a study ten times in a row: if another program holds a lock, it waits once, not
-    ten times. Several connections may share one.
+    A panel queries a study ten times in a row: if another program holds a lock, it waits `most_s`
+    once, and not again within `rest_s`. Several connections may share one.
     """
 
     def __init__(
@@ -166,15 +165,9 @@ class LockWait:
         rest_s: float = 0.0,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Wait `most_s` for a lock, but not within `rest_s` after a timeout."""
         self._most_s, self._rest_s, self._clock = most_s, rest_s, clock
         self._retry_at = float("-inf")
         self._has_timed_out = False
-
-    @classmethod
-    def interactive(cls) -> LockWait:
-        """Return the waiting times of a GUI thread."""
-        return cls(INTERACTIVE_TIMEOUT_S, REST_S)
 
     @property
     def timeout_s(self) -> float:

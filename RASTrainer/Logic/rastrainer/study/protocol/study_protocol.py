@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import (
@@ -17,7 +16,6 @@ from rastrainer.json_checks import (
     texts,
     whole_number,
 )
-from rastrainer.json_records import record_to_json
 from rastrainer.protocol import (
     SKIN_KEYS,
     TRIAL_RUN,
@@ -25,7 +23,7 @@ from rastrainer.protocol import (
     RegistrationMethod,
     StepKind,
 )
-from rastrainer.study.protocol.plan_file import plan_from_json, read_plan
+from rastrainer.study.protocol.plan_file import PlanFile
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study_messages import (
     FIDUCIALS,
@@ -49,8 +47,6 @@ BEFORE_ALL, BEFORE_MODE, AFTER_TASK, AFTER_MODE, AFTER_ALL = OCCASIONS = (
     "after-all",
 )
 MAX_STEPS = 1000
-_VERSIONS = {"formatVersion": 1, "scoreVersion": SCORE_VERSION}
-"""A study started with an earlier one continues with the present; each score holds its own."""
 _MODES = tuple(mode.value for mode in Mode)
 _ALLOWANCES = tuple(each.value for each in Allowance)
 
@@ -83,7 +79,7 @@ class ScheduledQuestionnaire:
 
 
 @dataclass(frozen=True)
-class StudyProtocol:
+class StudyProtocol(PlanFile):
     """What every trainee of a study does.
 
     Attributes:
@@ -104,6 +100,9 @@ class StudyProtocol:
         check_journals: Whether a trial is scored only if it follows from its journal.
     """
 
+    WHAT = "The protocol"
+    VERSIONS: ClassVar = {"formatVersion": 1, "scoreVersion": SCORE_VERSION}
+    """A study started with an earlier one continues with the present; each score holds its own."""
     name: Annotated[str, identifier]
     title: Annotated[str, text(120)]
     modes: Annotated[tuple[str, ...], texts(1, len(_MODES), _MODES)]
@@ -152,10 +151,6 @@ class StudyProtocol:
                 "trials."
             )
 
-    def to_json(self) -> dict[str, Any]:
-        """Return the object that the file holds."""
-        return {**_VERSIONS, **record_to_json(self)}
-
 
 def pass_mark_of(
     protocol: StudyProtocol | None, method: str, is_procedure: bool = False
@@ -169,14 +164,6 @@ def pass_mark_of(
         return PASS_MARK
     is_meant = method == RegistrationMethod.FIDUCIALS and not is_procedure
     return protocol.pass_mark if is_meant else None
-
-
-def read_study_protocol(path: Path | str) -> StudyProtocol:
-    return read_plan(StudyProtocol, path, _VERSIONS)
-
-
-def study_protocol_from_json(value: Any) -> StudyProtocol:
-    return plan_from_json(StudyProtocol, value, _VERSIONS, "The protocol")
 
 
 def protocol_text(protocol: StudyProtocol) -> str:
