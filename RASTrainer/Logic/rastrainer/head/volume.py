@@ -62,7 +62,6 @@ class HeadVolume:
 
 
 def read_head_volume(file: VolumeFile) -> HeadVolume:
-    """Read the volume of a scenario."""
     return HeadVolume(*read_nrrd(file.file), file.window, file.level)
 
 

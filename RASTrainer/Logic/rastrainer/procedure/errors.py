@@ -197,7 +197,7 @@ def analyze_procedure(
         target_point_error_by_hand_rms_mm=_rms([each.by_hand_mm for each in targets]),
         entry_point_error_rms_mm=_rms([each.entry_point_error.mm for each in errors]),
         angular_deviation_rms_deg=_rms([each.angular_deviation_deg for each in errors]),
-        alignments=record.alignments,
+        alignments=sum(each.alignments for each in record.instruments),
         attempts=len(record.attempts),
         duration_s=record.duration_s,
         phase_times_s=record.phase_times_s,

@@ -119,9 +119,6 @@ def read_study_data(place: StudyPlace, allow_incomplete: bool = False) -> StudyD
     """Read a study's database, or a CSV file with the header `mode,subject,task,ct,rmse`.
 
     Notes beside a CSV file `NAME.csv` are read from `NAME.json`.
-
-    Raises:
-        IncompleteStudyError: the cohort is incomplete.
     """
     if isinstance(place, Path) and not place.is_file():
         raise InputError(f"There is no file {place}.")
@@ -324,5 +321,5 @@ def _score_parts(score: TrialScore) -> dict[str, float]:
 
 
 def _by_number(task: str) -> tuple[str, int]:
-    digits = task[len(task.rstrip("0123456789")) :]
-    return task[: len(task) - len(digits)], int(digits[:9] or 0)
+    name = task.rstrip("0123456789")
+    return name, int(task[len(name) :][:9] or 0)

@@ -115,7 +115,6 @@ class TreCalibration:
         return TreCalibration(tuple(point for point in self.points if point.mode == mode))
 
     def sentences(self) -> list[str]:
-        """Return the findings as sentences."""
         count, inside = len(self.points), self.inside
         found = []
         if inside is None:
