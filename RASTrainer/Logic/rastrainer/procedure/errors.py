@@ -261,10 +261,7 @@ def _across(part: np.ndarray, direction: np.ndarray) -> np.ndarray:
 class TrueLine(NamedTuple):
     """The line of one instrument in the head, from outside to inside: (2, 3) float each, RAS mm.
 
-    Attributes:
-        planned: from entry to target.
-        shown: where the plan, as it was shown, truly lay.
-        placed: from the guide's tip to the instrument's.
+    `shown` is where the plan, as it was shown, truly lay; `placed` begins at the guide's tip.
     """
 
     trajectory: str

@@ -105,11 +105,7 @@ class ProcedureTrajectory:
 
 @dataclass(frozen=True)
 class NoGoStructure:
-    """A structure that no instrument may touch, such as a vessel.
-
-    Attributes:
-        file: path of its closed surface, a mesh like the head's, RAS mm.
-    """
+    """A structure that no instrument may touch, such as a vessel: a closed mesh, RAS mm."""
 
     name: _Name
     file: Annotated[Path, _no_go_path]
@@ -199,11 +195,9 @@ MAX_NO_GO_TRIANGLES = 200_000
 
 @dataclass(frozen=True, eq=False)
 class ProcedureMeshes:
-    """The obstacles of a procedure's instruments; RAS mm.
+    """The obstacles of a procedure's instruments, closed surfaces in RAS mm.
 
-    Attributes:
-        skull: bone between its outer and its inner table; closed.
-        no_go: the closed surfaces of the no-go structures by name, in the procedure's order.
+    Those of the no-go structures are by name, in the procedure's order.
     """
 
     skull: HeadMesh

@@ -93,10 +93,8 @@ def scored_with_journal(
 ) -> TrialAnalysis:
     """Score a registered trial, with the feedback of its journal.
 
-    Args:
-        references: those of the trial's study, as `score_references` returns them.
-        records: folder of journals; None, or one that is not there, explains less of the touches.
-        pause: called again and again while the journal is read; a thread may wait in it.
+    Without the folder of journals, less of the touches is explained. `pause` is called again and
+    again while the journal is read; a thread may wait in it.
     """
     trajectory = trajectory_of(analysis.record, records, pause)
     return analysis.scored(scenario, truth, references, trajectory)

@@ -125,11 +125,8 @@ class RatingStore:
         """Assign replays to a rater; return their trials in the rater's order.
 
         All raters get the same trials: those that somebody has, and more of `trial_ids`, drawn at
-        random, where these are too few. Each rater gets them in their own order. What a rater
-        has already keeps its place.
-
-        Args:
-            count: How many there shall be at least; fewer if there are no more.
+        random, where these are fewer than `count`. Each rater gets them in their own order. What a
+        rater has already keeps its place.
         """
         rater = accepted(pseudonym(), rater, "The name of a rater")
         with self._database.writing():
@@ -161,8 +158,7 @@ class RatingStore:
     ) -> bool:
         """Store a mark, or with None that the latest is taken back; return whether it was new.
 
-        Args:
-            mark_id: UUID of this mark: the same one again changes nothing.
+        The same UUID (`mark_id`) again changes nothing.
         """
         if domain not in {each.name for each in form.domains}:
             raise InputError(f"{form.title} has no domain {domain[:40]!r}.")

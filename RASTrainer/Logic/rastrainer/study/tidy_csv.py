@@ -68,8 +68,7 @@ def write_history(study: Study, pseudonyms: Iterable[str], path: Path | str) -> 
 def write_histories(study: Study, path: Path | str) -> tuple[int, int]:
     """Write all trials of consenting trainees, including trial runs, as CSV.
 
-    Returns:
-        The number of trials, and the number of trainees without consent, who are left out.
+    Return the number of trials, and of trainees without consent, who are left out.
     """
     everyone = (*study.trainees(), *study.trainees(archived=True))
     consenting = sorted(trainee.pseudonym for trainee in everyone if trainee.consent)

@@ -35,10 +35,8 @@ _MAX_LENGTH = 1000
 class PostgresAddress:
     """A database of a PostgreSQL server.
 
-    Attributes:
-        host: name or number of its computer, or the folder of its socket on this one.
-        user: the role; "" for the name of the system's user.
-        port: None for 5432.
+    The host is a computer's name or number, or the folder of the socket on this one. Without user,
+    it is the system's; without port, 5432.
     """
 
     host: str

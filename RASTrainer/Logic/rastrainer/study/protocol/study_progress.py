@@ -141,12 +141,7 @@ class StudyProgress:
     def finish(
         self, pseudonym: str, step: str, details: Mapping[str, Any] | None = None
     ) -> StepProgress:
-        """Store that the next step was done and return the new progress.
-
-        Args:
-            details: `trialId` of a stored trial, `answers` of a questionnaire, or `minutes` of a
-                trial run or break.
-        """
+        """Store that the next step was done, with details of `StepEntry`; return the progress."""
         with self._database.writing():
             progress = self.progress(pseudonym)
             expected = progress.expected(step)

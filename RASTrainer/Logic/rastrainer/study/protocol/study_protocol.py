@@ -201,7 +201,8 @@ def _steps(protocol: StudyProtocol, place: int) -> Iterator[StudyStep]:
     yield from _questions(protocol, BEFORE_ALL, "", "before-all")
     for index, mode in enumerate(mode_order(protocol, place)):
         if index and protocol.break_between_modes_min:
-            yield _step(StepKind.BREAK, f"{mode}/break", minutes=protocol.break_between_modes_min)
+            minutes = protocol.break_between_modes_min
+            yield StudyStep("", StepKind.BREAK, name=f"{mode}/break", minutes=minutes)
         yield from _in_mode(protocol, place, index, mode)
     yield from _questions(protocol, AFTER_ALL, "", "after-all")
 
@@ -209,10 +210,11 @@ def _steps(protocol: StudyProtocol, place: int) -> Iterator[StudyStep]:
 def _in_mode(protocol: StudyProtocol, place: int, index: int, mode: str) -> Iterator[StudyStep]:
     yield from _questions(protocol, BEFORE_MODE, mode, f"{mode}/before")
     if protocol.trial_run_min:
-        yield _step(
+        yield StudyStep(
+            "",
             StepKind.TRIAL_RUN,
-            f"{mode}/{TRIAL_RUN}",
-            mode,
+            name=f"{mode}/{TRIAL_RUN}",
+            mode=mode,
             task=TRIAL_RUN,
             minutes=protocol.trial_run_min,
             guidance=protocol.guidance,
@@ -224,12 +226,14 @@ def _in_mode(protocol: StudyProtocol, place: int, index: int, mode: str) -> Iter
             name = f"{mode}/{round_ + 1}/{task}"
             if not is_first and protocol.break_between_tasks_min:
                 minutes = protocol.break_between_tasks_min
-                yield _step(StepKind.BREAK, f"{name}/break", mode, minutes=minutes)
+                pause = f"{name}/break"
+                yield StudyStep("", StepKind.BREAK, name=pause, mode=mode, minutes=minutes)
             is_first = False
-            yield _step(
+            yield StudyStep(
+                "",
                 StepKind.TRIAL,
-                name,
-                mode,
+                name=name,
+                mode=mode,
                 task=task,
                 guidance=protocol.guidance,
                 ghost=protocol.ghost,
@@ -248,11 +252,8 @@ def _questions(
     for asked in protocol.questionnaires:
         if asked.when == occasion and (not asked.modes or mode in asked.modes):
             name = f"{prefix}/{asked.name}"
-            yield _step(StepKind.QUESTIONNAIRE, name, mode, questionnaire=asked.name)
-
-
-def _step(kind: StepKind, name: str, mode: str = "", **others: Any) -> StudyStep:
-    return StudyStep("", kind, name=name, mode=mode, **others)
+            kind = StepKind.QUESTIONNAIRE
+            yield StudyStep("", kind, name=name, mode=mode, questionnaire=asked.name)
 
 
 def williams_design(count: int) -> tuple[tuple[int, ...], ...]:
