@@ -21,7 +21,7 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.questionnaires import SUS
 from rastrainer.study.protocol.study_progress import StudyProgress
-from rastrainer.study.protocol.study_protocol import study_protocol_from_json
+from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.record.trial_archive import SUFFIX, find_unacknowledged
 from Testing.domain.study.played_study import STUDIES
@@ -127,7 +127,7 @@ class Lab:
         with Study.open(self.place) as study:
             progress = StudyProgress(study)
             shipped = json.loads((STUDIES / "published-protocol.json").read_text())
-            progress.set_protocol(study_protocol_from_json(shipped | PROTOCOL))
+            progress.set_protocol(StudyProtocol.from_json(shipped | PROTOCOL))
             for name in TRAINEES:
                 study.create_trainee(name, consent=True)
                 progress.enroll(name)

@@ -13,7 +13,7 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.questionnaires import NASA_TLX, SUS
 from rastrainer.study.protocol.study_progress import StudyProgress
-from rastrainer.study.protocol.study_protocol import study_protocol_from_json
+from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer_simulator.assets import asset_path
 from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.end_to_end.study_side import RECORDS, STUDY, StudySide
@@ -50,7 +50,7 @@ class Lab:
             study.create_trainee(TRAINEE, True)
             progress = StudyProgress(study)
             changed = json.loads(SHIPPED.read_text()) | SHORT
-            progress.set_protocol(study_protocol_from_json(changed))
+            progress.set_protocol(StudyProtocol.from_json(changed))
             progress.enroll(TRAINEE)
         self.start_simulator()
         self.slicer = StudySide(folder, self.port)

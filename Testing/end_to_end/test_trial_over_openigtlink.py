@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.head.mesh import outward_normal, read_head_mesh
+from rastrainer.head.mesh import outward_normals, read_head_mesh
 from rastrainer.igtl.client import Client
 from rastrainer.json_records import record_from_json
 from rastrainer.protocol import PROTOCOL_VERSION
@@ -73,7 +73,7 @@ def play(player: Player, scenario: Scenario, **start: str) -> dict:
     """
     task, head_to_world = scenario.task(TASK), scenario.perturbed_head_to_world(SEED)
     head = read_head_mesh(scenario.head_mesh)
-    normals = np.array([outward_normal(head, fiducial) for fiducial in task.fiducials])
+    normals = outward_normals(head, task.fiducials)
     fiducials = transforms.apply(head_to_world, task.fiducials)
     above = fiducials + ABOVE_MM * normals @ head_to_world[:3, :3].T
     answers = {"StartTask": player.do("StartTask", task=TASK, trainee="anna", seed=SEED, **start)}

@@ -7,7 +7,7 @@ import json
 import numpy as np
 
 from rastrainer import transforms
-from rastrainer.head.mesh import outward_normal, read_head_mesh
+from rastrainer.head.mesh import outward_normals, read_head_mesh
 from rastrainer.protocol import Proximity
 from rastrainer.scenario.scenario import Scenario, method_of, task_by_method
 from Testing.end_to_end.test_trial_over_openigtlink import Player
@@ -92,7 +92,7 @@ class TracingTrainee:
 
     def _send(self, place, above_mm: float, speed_mm_s: float) -> np.ndarray:
         """Send the tip above a place of the head, or below it; return where to, World, mm."""
-        normal = outward_normal(self._head, place)
+        normal = outward_normals(self._head, [place])[0]
         goal = transforms.apply(self._to_world, place + above_mm * normal)
         direction = self._lean - self._to_world[:3, :3] @ normal
         self.player.do(

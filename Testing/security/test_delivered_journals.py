@@ -16,7 +16,7 @@ from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.study.database.study import Study
 from rastrainer.study.journal_check import check_journal
 from rastrainer.study.protocol.study_progress import StudyProgress
-from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.cli.main import main
@@ -50,7 +50,7 @@ def received(folder, port, scenario, **protocol):
     """Receive one trial in a study with a protocol; return its score, and what was reported."""
     path = folder / "study.db"
     with Study.open(path) as study:
-        published = read_study_protocol(STUDIES / "published-protocol.json")
+        published = StudyProtocol.read(STUDIES / "published-protocol.json")
         StudyProgress(study).set_protocol(replace(published, **protocol))
     scored, problems = [], []
     slicer = SlicerSide(path, port, TrialLogic, lambda _name: scenario)

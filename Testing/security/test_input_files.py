@@ -22,9 +22,9 @@ from rastrainer.procedure.plan import read_procedure
 from rastrainer.scenario.library import checked_scenario, unpack
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.setup import read_setup
-from rastrainer.study.curriculum.curriculum import read_curriculum
+from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.database.study import Study
-from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.trial.ctps import read_notes
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.settings import SimulationSettings
@@ -83,10 +83,10 @@ JSON_FAMILIES = {
     "set-up": Family(read_setup, lambda _: b'{"robotBaseMm": [0, 0]}'),
     "markups": Family(read_markups, lambda _: TASK.read_bytes()),
     "study protocol": Family(
-        read_study_protocol, lambda _: (STUDIES / "published-protocol.json").read_bytes()
+        StudyProtocol.read, lambda _: (STUDIES / "published-protocol.json").read_bytes()
     ),
     "curriculum": Family(
-        read_curriculum, lambda _: (STUDIES / "example-curriculum.json").read_bytes()
+        Curriculum.read, lambda _: (STUDIES / "example-curriculum.json").read_bytes()
     ),
     "study notes": Family(read_notes, lambda _: (STUDIES / "published.json").read_bytes()),
     "bindings": Family(read_bindings, _saved(lambda path: write_bindings(path, DEFAULT_BINDINGS))),

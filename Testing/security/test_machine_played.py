@@ -8,7 +8,7 @@ from rastrainer.errors import InputError
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
-from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.study_data import read_study_data
 from rastrainer.trial.how_played import Allowance, HowPlayed, MovedBy, SeedSource
 from rastrainer.trial.record import TrialRecord
@@ -46,7 +46,7 @@ def scenario():
 @pytest.fixture
 def study(tmp_path):
     """A study whose only step is a trial in the headset."""
-    protocol = read_study_protocol(asset_path("studies", "published-protocol.json"))
+    protocol = StudyProtocol.read(asset_path("studies", "published-protocol.json"))
     step = {"modes": ("hmd",), "tasks": (TASK,), "repetitions": 1, "trial_run_min": 0.0}
     with Study.open(tmp_path / "study.db") as study:
         study.create_trainee("anna", consent=True)

@@ -8,7 +8,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.logic.trainee_logic import CurriculumLogic, TraineeLogic
-from rastrainer.study.curriculum.curriculum import read_curriculum
+from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.database.study import Study
 from Testing.domain.trial.trial_records import gentle_score, make_record
 from Testing.slicer.training_room import Room
@@ -57,7 +57,7 @@ def states(message):
 
 
 def test_everybodys_progress_is_sent_first_and_then_only_what_is_new(lesson):
-    lesson.logic.choose(read_curriculum(SHIPPED), isForEverybody=True)
+    lesson.logic.choose(Curriculum.read(SHIPPED), isForEverybody=True)
     sent = lesson.sent
     assert [each["trainee"] for each in sent] == ["A", "B"]
     assert states(sent[0]) == ["open"] + ["locked"] * 5
@@ -76,13 +76,13 @@ def test_everybodys_progress_is_sent_first_and_then_only_what_is_new(lesson):
 
 def test_a_curriculum_of_one_trainee_ends_for_that_trainee_alone(lesson):
     with pytest.raises(InputError, match="use name, title, assignments"):
-        read_curriculum(SHIPPED.with_name("published-protocol.json"))
+        Curriculum.read(SHIPPED.with_name("published-protocol.json"))
     lesson.trainees.choose("")
     with pytest.raises(InputError, match="Choose a trainee"):
-        lesson.logic.choose(read_curriculum(SHIPPED), isForEverybody=False)
+        lesson.logic.choose(Curriculum.read(SHIPPED), isForEverybody=False)
     assert lesson.logic.standing() is None
     lesson.trainees.choose("B")
-    lesson.logic.choose(read_curriculum(SHIPPED), isForEverybody=False)
+    lesson.logic.choose(Curriculum.read(SHIPPED), isForEverybody=False)
     assert lesson.logic.standing().reached == 0
     lesson.logic.choose(None, isForEverybody=False)
     sent = lesson.sent
@@ -92,14 +92,14 @@ def test_a_curriculum_of_one_trainee_ends_for_that_trainee_alone(lesson):
 
 
 def test_a_simulator_that_connects_later_is_sent_everything_again(lesson):
-    lesson.logic.choose(read_curriculum(SHIPPED), isForEverybody=True)
+    lesson.logic.choose(Curriculum.read(SHIPPED), isForEverybody=True)
     before = lesson.sent
     lesson.room.link.opened.emit()
     assert json.dumps(lesson.sent) == json.dumps(2 * before)
 
 
 def test_a_deleted_or_archived_trainee_is_sent_as_one_without_a_curriculum(lesson):
-    lesson.logic.choose(read_curriculum(SHIPPED), isForEverybody=True)
+    lesson.logic.choose(Curriculum.read(SHIPPED), isForEverybody=True)
     lesson.trainees.choose("A")
     lesson.trainees.setArchived(True)
     last = lesson.sent[2]
@@ -107,7 +107,7 @@ def test_a_deleted_or_archived_trainee_is_sent_as_one_without_a_curriculum(lesso
 
 
 def test_a_trainee_deleted_at_another_seat_is_gone_once_a_simulator_connects(lesson, tmp_path):
-    lesson.logic.choose(read_curriculum(SHIPPED), isForEverybody=True)
+    lesson.logic.choose(Curriculum.read(SHIPPED), isForEverybody=True)
     assert list(lesson.logic.standings()) == ["A", "B"]
     with Study.open(tmp_path / "study.db") as elsewhere:
         elsewhere.delete_trainee("A")

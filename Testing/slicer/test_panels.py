@@ -20,7 +20,7 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
-from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli.main import main
 from Testing.end_to_end.module.installed_simulator import write_program
@@ -581,7 +581,7 @@ def test_deleting_a_trainee_leaves_no_trace_in_database_journals_and_later_expor
         for name in ("T-001", "other"):
             study.change_trainee(name, consent=True)
         progress = StudyProgress(study)
-        progress.set_protocol(read_study_protocol(PROTOCOL))
+        progress.set_protocol(StudyProtocol.read(PROTOCOL))
         progress.enroll("T-001")
         progress.skip("T-001", "hmd/before/ssq", "a reason nobody else has")
         progress.practice("T-001", "hmd/trial-run", 9.0)

@@ -17,7 +17,7 @@ from rastrainer import transforms
 from rastrainer.files.point_files import write_markups
 from rastrainer.files.point_list import PointList
 from rastrainer.files.writing import write_json
-from rastrainer.head.mesh import outward_normal, read_head_mesh
+from rastrainer.head.mesh import outward_normals, read_head_mesh
 from rastrainer.head.trial_head import Perturbation, perturbed_pose
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import FILE_NAME
@@ -99,7 +99,7 @@ def proposed(bench: Workbench) -> list[Proposal]:
 
 def is_touchable(bench: Workbench, proposal: Proposal) -> bool:
     """Tell whether all fiducials of a task can be touched in the poses of many trials."""
-    normals = np.array([outward_normal(bench.mesh, point) for point in proposal.fiducials])
+    normals = outward_normals(bench.mesh, proposal.fiducials)
     can_be = bench.touchable(proposal.fiducials, normals, PERTURBATION, range(POSES_CHECKED))
     missed = [label for label, can in zip(LABELS, can_be, strict=True) if not can]
     print(f"{proposal.plan.title}: {'not ' + ', '.join(missed) if missed else 'all'} touchable.")

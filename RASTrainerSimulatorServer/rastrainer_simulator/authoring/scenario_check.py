@@ -12,7 +12,7 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.files.point_files import read_markups
-from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, outward_normal, read_head_mesh
+from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, outward_normals, read_head_mesh
 from rastrainer.procedure.checks import ENTRY_OFF_SKIN_MM
 from rastrainer.scenario.library import checked_scenario
 from rastrainer.scenario.points import LABELS, Task, touch_order
@@ -219,7 +219,7 @@ def _wrong_places(planning: PlanningSetup, task: Task) -> list[str]:
 
 
 def _untouchable(planning: PlanningSetup, task: Task, first_seed: int) -> list[str]:
-    normals = np.array([outward_normal(planning.mesh, point) for point in task.fiducials])
+    normals = outward_normals(planning.mesh, task.fiducials)
     poses = planning.poses(range(first_seed, first_seed + POSES_TRIED))
     nominal = planning.touchable(task.fiducials, normals, poses[:1])
     always = nominal & planning.touchable(task.fiducials, normals, poses[1:])

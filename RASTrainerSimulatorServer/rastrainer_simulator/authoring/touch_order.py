@@ -24,7 +24,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rastrainer.head.mesh import HeadMesh, NearestPoint, hides, nearest_on_mesh, outward_normal
+from rastrainer.head.mesh import HeadMesh, NearestPoint, hides, nearest_on_mesh, outward_normals
 
 LENGTH_UNIT_MM = 100.0
 ANGLE_UNIT_DEG = 90.0
@@ -61,7 +61,7 @@ def complexity(
     `graph` has the paths over the mesh; `eye` is the position (3,) of the default view.
     """
     fiducials = np.asarray(fiducials, dtype=float)
-    normals = np.array([outward_normal(mesh, point) for point in fiducials])
+    normals = outward_normals(mesh, fiducials)
     return Complexity(
         path_length_mm=sum(itertools.starmap(graph.distance, itertools.pairwise(fiducials))),
         turning_deg=float(
@@ -294,7 +294,7 @@ def shortest_path_mm(fiducials: np.ndarray, mesh: HeadMesh, graph: SurfaceGraph)
     skin, about 2.5 % too long in the graph. Takes about half a second.
     """
     fiducials = np.asarray(fiducials, dtype=float)
-    normals = [outward_normal(mesh, point) for point in fiducials]
+    normals = list(outward_normals(mesh, fiducials))
     return sum(
         float(np.linalg.norm(fiducials[i + 1] - fiducials[i]))
         if _is_free(mesh, fiducials[i : i + 2], normals[i : i + 2])

@@ -13,7 +13,6 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.protocol.study_protocol import (
     StudyProtocol,
     mode_order,
-    read_study_protocol,
 )
 from rastrainer.trial.score_reference import score_reference
 from rastrainer_simulator.assets import asset_path
@@ -32,7 +31,7 @@ MAX_STUDIES = 100_000
 
 
 def run(arguments: argparse.Namespace) -> int:
-    protocol = read_study_protocol(arguments.protocol or asset_path(*SHIPPED_PROTOCOL))
+    protocol = StudyProtocol.read(arguments.protocol or asset_path(*SHIPPED_PROTOCOL))
     if arguments.power is not None:
         print(_power(protocol, arguments))
         return 0

@@ -11,7 +11,7 @@ from rastrainer.errors import InputError
 from rastrainer.files.writing import write_text
 from rastrainer.number_text import fixed, percent
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.study.curriculum.curriculum import read_curriculum
+from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import (
     CurriculumStanding,
@@ -21,7 +21,7 @@ from rastrainer.study.curriculum.standing import (
     title_of,
 )
 from rastrainer.study.database.study import Study
-from rastrainer.study.protocol.study_protocol import protocol_text, read_study_protocol
+from rastrainer.study.protocol.study_protocol import StudyProtocol, protocol_text
 from rastrainer.trial.trial_feedback import PastTrial
 from rastrainer_simulator.cli import arg
 from rastrainer_simulator.cli.options import Subcommand, aligned
@@ -31,7 +31,7 @@ HEADER = ("assignment", "trial", "so far", "goal", "after", "trials", "mean")
 
 
 def follow_curriculum(arguments: argparse.Namespace) -> int:
-    curriculum = None if arguments.set is None else read_curriculum(arguments.set)
+    curriculum = None if arguments.set is None else Curriculum.read(arguments.set)
     who = arguments.trainee or ""
     if curriculum is not None or arguments.end:
         with Study.open(arguments.study, must_exist=True) as opened:
@@ -97,7 +97,7 @@ def compute_pass_mark(arguments: argparse.Namespace) -> int:
         )
     if arguments.write is not None:
         # People are shown whole points, so the mark is in whole points.
-        protocol = read_study_protocol(arguments.write)
+        protocol = StudyProtocol.read(arguments.write)
         if method is not RegistrationMethod.FIDUCIALS:
             raise InputError(
                 f"The mark is of trials registered by {method.value}, and a protocol's is for "

@@ -9,7 +9,7 @@ from rastrainer.head.mesh import (
     HeadMesh,
     hides,
     nearest_on_mesh,
-    outward_normal,
+    outward_normals,
     read_head_mesh,
     write_head_mesh,
 )
@@ -167,7 +167,7 @@ def test_barycentric_weights_give_the_nearest_point_back():
 
 def test_normals_point_away_from_the_center():
     for point in (on_sphere(10, 80), on_sphere(200, -20)):
-        normal = outward_normal(sphere_mesh(), point)
+        normal = outward_normals(sphere_mesh(), [point])[0]
         assert normal @ point / np.linalg.norm(point) > 0.9995
 
 

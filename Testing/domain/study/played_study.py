@@ -7,7 +7,7 @@ from rastrainer.protocol import StepKind
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study.protocol.study_progress import StudyProgress
-from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.study.protocol.study_protocol import StudyProtocol
 from Testing.domain.trial.trial_records import gentle_score, make_record
 
 STUDIES = Path(__file__).parents[3] / "assets" / "studies"
@@ -17,7 +17,7 @@ def study_with_trials(path, consent=True):
     """A has done all steps and repeated the last task, B only the first trial."""
     with Study.open(path) as study:
         progress = StudyProgress(study)
-        published = read_study_protocol(STUDIES / "published-protocol.json")
+        published = StudyProtocol.read(STUDIES / "published-protocol.json")
         progress.set_protocol(replace(published, tasks=("task-1",)))
         for name in ("A", "B"):
             study.create_trainee(name, consent=consent if name == "A" else True)

@@ -20,14 +20,12 @@ from rastrainer.protocol import (
 )
 from rastrainer.study.curriculum.curriculum import (
     Curriculum,
-    curriculum_from_json,
-    read_curriculum,
 )
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import standing_in
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
-from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.trainee_data import export_trainee
 from rastrainer.study_messages import Assignment, CurriculumMessage
 from rastrainer.trial.trial_feedback import PastTrial
@@ -52,14 +50,14 @@ def states(trials, *assignments):
 
 
 def test_the_shipped_curriculum_is_read_and_written_unchanged():
-    curriculum = read_curriculum(SHIPPED)
+    curriculum = Curriculum.read(SHIPPED)
     written = json.loads(SHIPPED.read_text(encoding="utf-8"))
     for each in written["assignments"]:
         if each["goal"] == "score":
             # The default.
             del each["goal"]
     assert curriculum.to_json() == written
-    assert curriculum_from_json(curriculum.to_json()) == curriculum
+    assert Curriculum.from_json(curriculum.to_json()) == curriculum
     assert [each.goal for each in curriculum.assignments].count(GoalKind.COMPETENT) == 1
 
 
@@ -82,7 +80,7 @@ def file_with(**changes):
 )
 def test_an_invalid_file_is_refused_with_the_field_and_what_would_be_right(changes, said):
     with pytest.raises(InputError, match=said):
-        curriculum_from_json(file_with(**changes))
+        Curriculum.from_json(file_with(**changes))
 
 
 @pytest.mark.parametrize(
@@ -117,9 +115,9 @@ def test_an_invalid_file_is_refused_with_the_field_and_what_would_be_right(chang
 def test_an_invalid_assignment_is_refused_with_the_field(changes, said):
     first = file_with()["assignments"][0]
     with pytest.raises(InputError, match=said):
-        curriculum_from_json(file_with(assignments=[{**first, **changes}]))
+        Curriculum.from_json(file_with(assignments=[{**first, **changes}]))
     with pytest.raises(InputError, match="one that no other assignment has"):
-        curriculum_from_json(file_with(assignments=[first, first]))
+        Curriculum.from_json(file_with(assignments=[first, first]))
 
 
 def test_a_score_goal_is_reached_by_consecutive_trials_and_stays_reached():
@@ -179,12 +177,12 @@ def test_a_goal_without_a_mark_uses_that_of_the_study_and_is_never_reached_witho
 
 
 def test_an_assignment_that_the_mark_of_the_study_could_never_reach_is_refused(study):
-    published = read_study_protocol(SHIPPED.with_name("published-protocol.json"))
+    published = StudyProtocol.read(SHIPPED.with_name("published-protocol.json"))
     marked = replace(published, pass_mark=80.0)
     StudyProgress(study).set_protocol(marked)
     store = CurriculumStore(study)
     with pytest.raises(InputError, match="biopsy could never be reached"):
-        store.choose(read_curriculum(SHIPPED))
+        store.choose(Curriculum.read(SHIPPED))
     assert store.choices() == ()
     store.choose(Curriculum("c", "C", (ONE, replace(TWO, procedure="biopsy", mark=60.0))))
     assert [each.mark for each in store.standing("A").standings] == [80.0, 60.0]
@@ -277,7 +275,7 @@ def test_the_latest_choice_counts_whether_for_one_trainee_or_for_everybody(study
     assert list(store.standings()) == ["A", "later"]
     store.choose(first)
     assert [store.standing(name).curriculum for name in "AB"] == [first, first]
-    chosen = [(each.trainee, each.curriculum) for each in store.choices()]
+    chosen = [(name, curriculum) for name, curriculum, _utc in store.choices()]
     assert chosen == [("", first), ("A", second), ("B", None), ("", first)]
     with pytest.raises(InputError, match="no trainee"):
         store.choose(first, "C")

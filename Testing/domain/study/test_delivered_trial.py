@@ -21,7 +21,7 @@ from rastrainer.study.delivered_trial import (
     with_progress,
 )
 from rastrainer.study.protocol.study_progress import StudyProgress
-from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.trial.analysis import RevealedTruth, analyze_trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import SAFETY_METRICS
@@ -73,7 +73,7 @@ def test_trials_get_progress_feedback_and_trial_runs_do_not(study):
 
 def test_the_pass_mark_is_that_of_the_studys_protocol(study):
     assert reviewed(study, 1).feedback.progress.sentences[1].startswith("Passed")
-    published = read_study_protocol(STUDIES / "published-protocol.json")
+    published = StudyProtocol.read(STUDIES / "published-protocol.json")
     StudyProgress(study).set_protocol(replace(published, pass_mark=100.0))
     assert reviewed(study, 2).feedback.progress.pass_mark == 100.0
     assert not reviewed(study, 3).feedback.progress.sentences[1].startswith("Passed")

@@ -22,12 +22,11 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.steps import instruction
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import (
+    StudyProtocol,
     mode_order,
     pass_mark_of,
     protocol_text,
-    read_study_protocol,
     steps_for,
-    study_protocol_from_json,
     task_order,
     williams_design,
 )
@@ -40,7 +39,7 @@ NOW = datetime(2999, 1, 1, tzinfo=timezone.utc)
 
 
 def protocol(**changes):
-    return study_protocol_from_json({**json.loads(SHIPPED.read_text()), **changes})
+    return StudyProtocol.from_json({**json.loads(SHIPPED.read_text()), **changes})
 
 
 def trial_of(step, number, trainee="T001"):
@@ -78,7 +77,7 @@ def test_the_design_for_four_is_williams_own():
 
 
 def test_the_shipped_protocol_is_that_of_the_paper():
-    shipped = read_study_protocol(SHIPPED)
+    shipped = StudyProtocol.read(SHIPPED)
     steps = steps_for(shipped, 0)
     assert [step.name for step in steps][:4] == [
         "hmd/before/ssq",
@@ -92,7 +91,7 @@ def test_the_shipped_protocol_is_that_of_the_paper():
     assert len({step.name for step in steps}) == len(steps)
     assert instruction(steps[1]) == "Get to know the trial run with the headset for 5 minutes."
     assert instruction(trials[0]) == "Play Task 1 with the headset."
-    assert study_protocol_from_json(json.loads(protocol_text(shipped))) == shipped
+    assert StudyProtocol.from_json(json.loads(protocol_text(shipped))) == shipped
 
 
 def test_balanced_orders_are_balanced_over_trainees():
@@ -109,7 +108,7 @@ def test_a_trainee_follows_the_steps_and_resumes_after_an_interruption(study_pla
     with Study.open(study_place) as study:
         study.create_trainee()
         progress = StudyProgress(study)
-        progress.set_protocol(read_study_protocol(SHIPPED))
+        progress.set_protocol(StudyProtocol.read(SHIPPED))
         assert progress.enroll("T001") == progress.enroll("T001") == 0
         assert progress.progress("T001").sentence == ("Step 1 of 19: Answer the questionnaire SSQ.")
         progress.finish("T001", "hmd/before/ssq", {"answers": [0] * 16})
@@ -121,7 +120,7 @@ def test_a_trainee_follows_the_steps_and_resumes_after_an_interruption(study_pla
         progress.finish("T001", "hmd/trial-run", {"minutes": 300.5 / 60})
     with Study.open(study_place) as study:
         progress = StudyProgress(study)
-        progress.set_protocol(read_study_protocol(SHIPPED))
+        progress.set_protocol(StudyProtocol.read(SHIPPED))
         state = progress.progress("T001")
         assert state.next_step.name == "hmd/1/task-1"
         assert state.check_start("hmd", "task-1") is state.next_step
@@ -186,13 +185,13 @@ def test_a_protocol_may_set_the_pass_mark():
         PLAYED_METHODS
     )
     assert pass_mark_of(None, RegistrationMethod.FIDUCIALS) == PASS_MARK
-    assert study_protocol_from_json(json.loads(protocol_text(silent))) == silent
+    assert StudyProtocol.from_json(json.loads(protocol_text(silent))) == silent
     own = protocol(passMark=62)
     assert own.pass_mark == pass_mark_of(own, RegistrationMethod.FIDUCIALS) == 62.0
     # A mark is made of trials registered by fiducials.
     assert pass_mark_of(own, RegistrationMethod.SURFACE) is None
     assert pass_mark_of(own, RegistrationMethod.FIDUCIALS, is_procedure=True) is None
-    assert study_protocol_from_json(json.loads(protocol_text(own))) == own
+    assert StudyProtocol.from_json(json.loads(protocol_text(own))) == own
     with pytest.raises(InputError, match="passMark must be a number from 1 to 100"):
         protocol(passMark=0)
 
@@ -200,7 +199,7 @@ def test_a_protocol_may_set_the_pass_mark():
 def test_a_protocol_may_set_the_guidance_to_the_next_point_and_a_ghost(study):
     assert not {"guidance", "ghost"} & protocol().to_json().keys()
     own = protocol(guidance="arrow", ghost="own best")
-    assert study_protocol_from_json(json.loads(protocol_text(own))) == own
+    assert StudyProtocol.from_json(json.loads(protocol_text(own))) == own
     progress = StudyProgress(study)
     progress.set_protocol(own)
     progress.enroll("T001")
@@ -220,7 +219,7 @@ def test_a_protocol_may_set_the_guidance_to_the_next_point_and_a_ghost(study):
 def test_a_protocol_may_require_the_tutorial_before_each_trial_run_or_skip_it():
     assert "tutorial" not in protocol().to_json()
     own = protocol(tutorial="skipped")
-    assert study_protocol_from_json(own.to_json()) == own
+    assert StudyProtocol.from_json(own.to_json()) == own
     steps = [step for step in steps_for(own, 0) if step.tutorial]
     assert {(step.kind, step.tutorial) for step in steps} == {("trial-run", "skipped")}
     sent = record_to_json(StudyStep("P07", "trial-run", tutorial="skipped"))
@@ -232,7 +231,7 @@ def test_a_protocol_may_require_the_tutorial_before_each_trial_run_or_skip_it():
 def test_a_protocol_may_name_a_procedure_for_the_trials_of_a_task():
     assert "procedures" not in protocol().to_json()
     own = protocol(procedures={"task-1": "dbs"})
-    assert study_protocol_from_json(own.to_json()) == own
+    assert StudyProtocol.from_json(own.to_json()) == own
     steps = [step for step in steps_for(own, 0) if step.procedure]
     assert {(step.kind, step.task, step.procedure) for step in steps} == {
         ("trial", "task-1", "dbs")
@@ -412,7 +411,7 @@ def test_an_invalid_protocol_is_refused_in_one_sentence_that_names_the_field(
     path = tmp_path / "protocol.json"
     path.write_text(json.dumps({**json.loads(SHIPPED.read_text()), **change}))
     with pytest.raises(InputError, match=words) as caught:
-        read_study_protocol(path)
+        StudyProtocol.read(path)
     assert "\n" not in str(caught.value)
 
 
@@ -421,7 +420,7 @@ def test_a_protocol_may_set_how_the_trials_of_a_task_are_registered():
     assert "methods" not in silent.to_json()
     assert {step.method for step in steps_for(silent, 0)} == {"fiducials"}
     own = protocol(methods={"task-2": "surface", "task-3": "landmarks"})
-    assert study_protocol_from_json(json.loads(protocol_text(own))) == own
+    assert StudyProtocol.from_json(json.loads(protocol_text(own))) == own
     trials = [step for step in steps_for(own, 0) if step.kind is StepKind.TRIAL]
     assert {(step.task, step.method) for step in trials} == {
         ("task-1", "fiducials"),
@@ -446,7 +445,7 @@ def test_a_protocol_may_set_how_the_skin_shifts_in_the_trials_of_a_task_without_
     silent = protocol()
     assert "skin" not in silent.to_json()
     own = protocol(skin={"task-2": {"shiftMm": 2, "indentationMm": 0.5}, "task-3": {}})
-    assert study_protocol_from_json(json.loads(protocol_text(own))) == own
+    assert StudyProtocol.from_json(json.loads(protocol_text(own))) == own
     trials = {step.task: step for step in steps_for(own, 0) if step.kind is StepKind.TRIAL}
     assert trials["task-2"].skin == {"shiftMm": 2.0, "indentationMm": 0.5}
     first, second = (instruction(trials[task]) for task in ("task-1", "task-2"))

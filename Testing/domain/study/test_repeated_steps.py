@@ -9,7 +9,7 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import REPEAT, StepKind
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
-from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.study.protocol.study_protocol import StudyProtocol
 from Testing.domain.study.played_study import STUDIES
 from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record
 
@@ -24,7 +24,7 @@ def study(study_place):
         progress = StudyProgress(study)
         progress.set_protocol(
             replace(
-                read_study_protocol(SHIPPED),
+                StudyProtocol.read(SHIPPED),
                 tasks=("task-1",),
                 modes=("desktop",),
                 repetitions=2,
@@ -147,7 +147,7 @@ def by_landmarks(tmp_path):
     methods = {"task-1": "landmarks-surface"}
     progress.set_protocol(
         replace(
-            read_study_protocol(SHIPPED),
+            StudyProtocol.read(SHIPPED),
             **dict.fromkeys(("trial_run_min", "break_between_tasks_min"), 0.0),
             tasks=("task-1",),
             modes=("desktop",),

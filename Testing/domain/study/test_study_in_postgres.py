@@ -15,11 +15,16 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.study.database import postgres_connecting, postgres_database
-from rastrainer.study.database.database import LockWait, StudyBusyError, StudyUnreachableError
+from rastrainer.study.database.database import (
+    INTERACTIVE_WAIT_S,
+    LockWait,
+    StudyBusyError,
+    StudyUnreachableError,
+)
 from rastrainer.study.database.schema import TABLES
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
-from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.ratings import FORMS, RatingStore
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.cli.study_management import copy_study
@@ -109,7 +114,7 @@ def test_a_change_whose_answer_was_lost_is_stored_once_when_it_is_retried(place)
     with Study.open(place) as study:
         study.create_trainee("A")
         progress, ratings = StudyProgress(study), RatingStore(study)
-        progress.set_protocol(read_study_protocol(STUDIES / "published-protocol.json"))
+        progress.set_protocol(StudyProtocol.read(STUDIES / "published-protocol.json"))
         form, mark_id = FORMS["gears"], "00000000-0000-0000-0000-0000000000aa"
         domain = form.domains[0].name
         changes = {
@@ -197,7 +202,9 @@ class HastyClock:
         return time.monotonic() + self._ahead_s
 
 
-@pytest.mark.parametrize("lock_wait", [LockWait(), LockWait.interactive()], ids=["work", "window"])
+@pytest.mark.parametrize(
+    "lock_wait", [LockWait(), LockWait(*INTERACTIVE_WAIT_S)], ids=["work", "window"]
+)
 def test_windows_and_waiting_commands_give_up_on_a_server_that_hangs(lock_wait, place, monkeypatch):
     clock = HastyClock()
     monkeypatch.setattr(postgres_connecting, "time", clock)
@@ -220,7 +227,7 @@ import os, signal, sys
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.schema import TABLES
 from rastrainer.study.protocol.study_progress import StudyProgress
-from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.ratings import FORMS
 from rastrainer.study.ratings import RatingStore
 study = Study.open(sys.argv[1])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.head.mesh import nearest_on_mesh, outward_normal, read_head_mesh
+from rastrainer.head.mesh import nearest_on_mesh, outward_normals, read_head_mesh
 from rastrainer.registration.localization_error import LocalizationError
 from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import expected_tre
@@ -149,7 +149,7 @@ def test_the_robot_can_touch_every_fiducial_in_other_poses_of_the_head(count):
     robot = load_robot()
     collision = Collision(robot_shape(robot), MESH.vertices / MM_PER_M, MESH.triangles)
     fiducials = np.concatenate([task.fiducials for task in SCENARIO.tasks])
-    normals = np.array([outward_normal(MESH, point) for point in fiducials])
+    normals = outward_normals(MESH, fiducials)
     seeds = range(90_000, 90_000 + count)
     poses = [SCENARIO.head_to_world, *map(SCENARIO.perturbed_head_to_world, seeds)]
     can_be = touchable(TouchPlanner(robot, collision), collision, fiducials, normals, poses)

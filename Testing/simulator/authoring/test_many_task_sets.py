@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from rastrainer import transforms
-from rastrainer.head.mesh import nearest_on_mesh, outward_normal
+from rastrainer.head.mesh import nearest_on_mesh, outward_normals
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer.transforms import MM_PER_M
@@ -52,7 +52,7 @@ def broken_promises(planning, tasks):
     if max(nearest_on_mesh(planning.mesh, point).distance for point in fiducials) > ON_SKIN_MM:
         broken.append("a fiducial is off the skin")
     unique = np.unique(fiducials, axis=0)
-    normals = np.array([outward_normal(planning.mesh, point) for point in unique])
+    normals = outward_normals(planning.mesh, unique)
     # The nominal pose, and poses that the proposal has not tried.
     if not planning.touchable(unique, normals, planning.poses(OTHER_POSES)).all():
         broken.append("a fiducial cannot be touched with 5 mm clearance")
@@ -79,7 +79,7 @@ def crowded(planning, places, poses):
             each.set_head_pose(head_to_world)
         for place in places:
             position = transforms.apply(head_to_world, place / MM_PER_M)
-            normal = head_to_world[:3, :3] @ outward_normal(planning.mesh, place)
+            normal = head_to_world[:3, :3] @ outward_normals(planning.mesh, [place])[0]
             touch = planner.touch(position, normal)
             near = collision.check(kinematics.links(touch.q))
             least = min(near.links_m, near.self_m, near.table_m)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.protocol import TRACED_METHODS
-from rastrainer.study.curriculum.curriculum import Curriculum, read_curriculum
+from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import standing_in
 from rastrainer.study.database.database import StudyPlace
@@ -27,7 +27,7 @@ def play_class(
     place: StudyPlace, names: list[str], trials: int, curriculum: Curriculum | None = None
 ) -> None:
     """Have each trainee practice up to a number of trials, from their own tempo, by a seed."""
-    rng, follows = random.Random(23), curriculum or read_curriculum(SHIPPED)
+    rng, follows = random.Random(23), curriculum or Curriculum.read(SHIPPED)
     with Study.open(place) as study:
         CurriculumStore(study).choose(follows)
         # In one transaction: a trial alone costs a sync of the disk.

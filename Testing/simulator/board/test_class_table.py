@@ -12,7 +12,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_to_json
-from rastrainer.study.curriculum.curriculum import read_curriculum
+from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.database.database import LockWait, StudyBusyError
 from rastrainer.study.database.study import Study
@@ -196,7 +196,7 @@ def test_the_table_is_served_only_to_paired_clients_and_to_no_other_page(open_bo
 
 def test_a_class_with_two_curricula_has_two_tables(study):
     with Study.open(study) as opened:
-        own = read_curriculum(SHIPPED)
+        own = Curriculum.read(SHIPPED)
         other = type(own)("other", "Others", own.assignments[:1])
         CurriculumStore(opened).choose(other, "T002")
     reader = ClassReader(study)

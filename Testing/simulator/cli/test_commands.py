@@ -20,7 +20,7 @@ from rastrainer.files.point_files import write_markups
 from rastrainer.files.point_list import PointList
 from rastrainer.registration.registration import register
 from rastrainer.study.database.study import Study
-from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer_simulator.cli.main import _parser, main
 from rastrainer_simulator.cli.replays import _summary
 from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record, make_traced
@@ -346,10 +346,10 @@ def test_a_pass_mark_of_another_method_is_reported_and_not_written_into_a_protoc
 def test_the_pass_mark_is_written_into_the_protocol_of_the_next_study(study, tmp_path, capsys):
     protocol = tmp_path / "next.json"
     shutil.copy(SHIPPED, protocol)
-    before = read_study_protocol(protocol)
+    before = StudyProtocol.read(protocol)
     assert main(words(study, "--write", str(protocol))) == 0
     mark = float(capsys.readouterr().out.split()[2])
-    after = read_study_protocol(protocol)
+    after = StudyProtocol.read(protocol)
     assert after.pass_mark == round(mark)
     assert (after.tasks, after.questionnaires) == (before.tasks, before.questionnaires)
 

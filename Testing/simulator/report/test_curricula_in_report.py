@@ -4,7 +4,7 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
-from rastrainer.study.curriculum.curriculum import Curriculum, read_curriculum
+from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
@@ -24,7 +24,7 @@ def test_each_trainee_has_a_row_and_each_goal_a_sentence(tmp_path):
     study_with_trials(path, consent=False)
     assert curricula(read_study_data(path)) == ""
     with Study.open(path) as study:
-        CurriculumStore(study).choose(read_curriculum(SHIPPED))
+        CurriculumStore(study).choose(Curriculum.read(SHIPPED))
     page = report_html(read_study_data(path))
     (found,) = re.findall(r"<section><h2>Curriculum</h2>.*?</section>", page, re.DOTALL)
     words = text_of(found)
@@ -41,7 +41,7 @@ def test_each_trainee_has_a_row_and_each_goal_a_sentence(tmp_path):
 def test_a_trial_that_counts_for_two_assignments_is_one_trial(tmp_path):
     path = tmp_path / "study.db"
     study_with_trials(path, consent=False)
-    first = read_curriculum(SHIPPED).assignments[0]
+    first = Curriculum.read(SHIPPED).assignments[0]
     twice = (first, replace(first, name="again", mark=50.0))
     with Study.open(path) as study:
         CurriculumStore(study).choose(Curriculum("c", "C", twice))

@@ -15,7 +15,7 @@ from scipy.stats import pearsonr
 from rastrainer.errors import InputError
 from rastrainer.study.database.study import Study
 from rastrainer.study.outcomes import MAIN_OUTCOMES
-from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.study_data import StudyData, TrialRow, read_study_data
 from rastrainer.trial.scoring import LONG_PAUSE_S
 from rastrainer.trial.trial_feedback import competence_of
@@ -355,7 +355,7 @@ def test_passed_trials_and_competent_trainees_are_counted():
     for trainee, score, acceptable in (("A", 70.0, True), ("B", 69.9, True), ("C", 90.0, False)):
         for number in range(1, 31):
             rows.append(scored(trainee, number, score, acceptable=acceptable))
-    protocol = replace(read_study_protocol(STUDIES / "published-protocol.json"), pass_mark=70.0)
+    protocol = replace(StudyProtocol.read(STUDIES / "published-protocol.json"), pass_mark=70.0)
     words = words_of(report_html(StudyData("One mode", tuple(rows), protocol=protocol)))
     assert "passes with 70 of 100 points (set by the protocol)" in words
     assert "Fewer than 11 trials in a mode cannot show it" in words
@@ -393,7 +393,7 @@ def test_a_report_explains_the_score_of_its_method():
 
 
 def test_a_pass_mark_of_fiducials_passes_no_trial_of_another_method_and_the_report_says_so():
-    published = read_study_protocol(STUDIES / "published-protocol.json")
+    published = StudyProtocol.read(STUDIES / "published-protocol.json")
     protocol = replace(published, pass_mark=65.0)
     rows = tuple(scored("A", number, 80.0, "surface") for number in range(1, 31))
     words = words_of(report_html(StudyData("One", rows, protocol=protocol)))
@@ -405,7 +405,7 @@ def test_a_pass_mark_of_fiducials_passes_no_trial_of_another_method_and_the_repo
 
 @pytest.mark.parametrize("has_protocol", [True, False], ids=["silent protocol", "no protocol"])
 def test_a_pass_mark_without_protocol_is_called_the_default(has_protocol):
-    published = read_study_protocol(STUDIES / "published-protocol.json")
+    published = StudyProtocol.read(STUDIES / "published-protocol.json")
     values = {"completion_time_s": 90.0, "rmse_mm": 1.0, "score": 80.0}
     rows = (TrialRow("A", "hmd", "task-1", 1, values, acceptable=True),)
     words = words_of(

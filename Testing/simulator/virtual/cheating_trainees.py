@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer.commands import CommandName, check_arguments
-from rastrainer.head.mesh import outward_normal, read_head_mesh
+from rastrainer.head.mesh import outward_normals, read_head_mesh
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.protocol import Proximity, TouchRule
@@ -226,7 +226,7 @@ class Pilot:
 
     def _outward_at_tip(self) -> np.ndarray:
         truth = self._simulation.truth
-        normal = outward_normal(self._mesh, truth.in_head(self.tip))
+        normal = outward_normals(self._mesh, [truth.in_head(self.tip)])[0]
         return truth.head_to_world[:3, :3] @ normal
 
     def _rest(self) -> None:

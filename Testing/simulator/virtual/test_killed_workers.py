@@ -165,7 +165,7 @@ def test_a_complete_cohort_has_nothing_left_to_play(played, copied, protocol, po
 def test_trials_of_a_deleted_trainee_are_not_played_again(copied, protocol, population):
     with Study.open(copied / DATABASE) as study:
         study.delete_trainee("V0001")
-        assert CohortStore(study).state().is_finished
+        assert CohortStore(study).gap() == ""
     words = (protocol, population, 2, 7, copied, PlaySettings(), True)
     run = simulate_cohort(*words, workers=1)
     assert (run.found, run.played) == (4, 0)
@@ -225,9 +225,9 @@ def test_trials_that_got_stuck_are_reported_and_not_played_again(tmp_path):
         store.start({"seed": 1}, 40)
         store.add_stuck("00000000-0000-0000-0000-000000000001")
         assert store.has_played("00000000-0000-0000-0000-000000000001")
-        assert "0 of 40 trials are stored, and 1 got stuck" in store.state().gap
+        assert "0 of 40 trials are stored, and 1 got stuck" in store.gap()
         store.finish()
-        assert store.state().gap == ""
+        assert store.gap() == ""
 
 
 @pytest.fixture(scope="module")

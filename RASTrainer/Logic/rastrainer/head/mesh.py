@@ -5,7 +5,7 @@ The file is a PLY in mm; ours are binary, in RAS.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -226,13 +226,9 @@ begin threads for many more, which take longer to start than this takes."""
 
 @dataclass(frozen=True)
 class NearestPoint:
-    """The point of a surface nearest to a given one; mm.
+    """The point (3,) of a surface nearest to a given one, and its distance, mm.
 
-    Attributes:
-        position: (3,) float.
-        distance: to the given point.
-        triangle: index of the triangle that it lies on.
-        weights: (3,) float, its barycentric coordinates there.
+    Its weights (3,) are barycentric coordinates in the triangle of this index.
     """
 
     position: np.ndarray
@@ -270,20 +266,15 @@ def nearest_vertices(mesh: HeadMesh, points: np.ndarray) -> tuple[np.ndarray, np
     return np.linalg.norm(mesh.vertices[indices] - points, axis=1), indices
 
 
-def outward_normal(mesh: HeadMesh, point: np.ndarray) -> np.ndarray:
-    """Return the outward unit normal (3,) of the surface where it is nearest to `point`."""
-    return normal_at(mesh, nearest_on_mesh(mesh, point))
-
-
 def normal_at(mesh: HeadMesh, nearest: NearestPoint) -> np.ndarray:
     """Return the outward unit normal (3,) at a place of the surface."""
     normal = nearest.weights @ mesh.vertex_normals[mesh.triangles[nearest.triangle]]
     return normal / np.linalg.norm(normal)
 
 
-def outward_normals(mesh: HeadMesh, points: np.ndarray) -> np.ndarray:
+def outward_normals(mesh: HeadMesh, points: Sequence[np.ndarray] | np.ndarray) -> np.ndarray:
     """Return the outward unit normals (n, 3) where the surface is nearest to `points` (n, 3)."""
-    return np.array([outward_normal(mesh, point) for point in points])
+    return np.array([normal_at(mesh, nearest_on_mesh(mesh, point)) for point in points])
 
 
 def hides(mesh: HeadMesh, eye: np.ndarray, point: np.ndarray, slack_mm: float = 1.0) -> bool:

@@ -62,7 +62,6 @@ class HeadVolume:
 
 
 def read_head_volume(file: VolumeFile) -> HeadVolume:
-    """Read the volume of a scenario."""
     return HeadVolume(*read_nrrd(file.file), file.window, file.level)
 
 
@@ -117,7 +116,17 @@ def read_nrrd(path: Path) -> tuple[np.ndarray, np.ndarray]:
     fields = _fields(path, rest)
     blank_line = re.search(rb"\r?\n\r?\n", content[:_MAX_HEADER_BYTES])
     assert blank_line is not None  # The separator was found above.
-    dtype, shape, matrix = _dtype(path, fields), _shape(path, fields), _matrix(path, fields)
+    kind = fields.get("type", "").lower()
+    name = next((name for name, words in _KINDS.items() if kind in words), None)
+    if name is None:
+        raise _wrong(path, "have the type uint8 (unsigned char) or int16 (short)")
+    if fields.get("encoding", "").lower() not in ("gzip", "gz"):
+        raise _wrong(path, "be compressed by gzip")
+    endian = fields.get("endian", "little").lower()
+    if endian not in ("little", "big"):
+        raise _wrong(path, "be little or big endian")
+    dtype = np.dtype(name).newbyteorder("<" if endian == "little" else ">")
+    shape, matrix = _shape(path, fields), _matrix(path, fields)
     count = math.prod(shape) * dtype.itemsize
     stream = zlib.decompressobj(wbits=31)
     try:
@@ -170,19 +179,6 @@ def _fields(path: Path, text: str) -> dict[str, str]:
     if any(name in fields for name in _ELSEWHERE):
         raise _wrong(path, "hold its voxels itself, right after its header")
     return fields
-
-
-def _dtype(path: Path, fields: dict[str, str]) -> np.dtype:
-    kind = fields.get("type", "").lower()
-    name = next((name for name, words in _KINDS.items() if kind in words), None)
-    if name is None:
-        raise _wrong(path, "have the type uint8 (unsigned char) or int16 (short)")
-    if fields.get("encoding", "").lower() not in ("gzip", "gz"):
-        raise _wrong(path, "be compressed by gzip")
-    endian = fields.get("endian", "little").lower()
-    if endian not in ("little", "big"):
-        raise _wrong(path, "be little or big endian")
-    return np.dtype(name).newbyteorder("<" if endian == "little" else ">")
 
 
 def _shape(path: Path, fields: dict[str, str]) -> tuple[int, int, int]:

@@ -81,8 +81,7 @@ MAX_STRING_BYTES = 65_535
 class Transform:
     """A homogeneous transform in mm; becomes a linear transform node in Slicer.
 
-    Attributes:
-        columns: twelve numbers, the three columns of the rotation and then the translation.
+    Its twelve numbers are the three columns of the rotation and then the translation.
     """
 
     TYPE: ClassVar[str] = "TRANSFORM"
@@ -170,12 +169,9 @@ _T = TypeVar("_T", bound="_NumberedText")
 
 @dataclass(frozen=True)
 class _NumberedText:
-    """What a command and its answer have in common.
+    """What a command and its answer have in common: the sender's 32-bit number and the name.
 
-    Attributes:
-        command_id: the sender's 32-bit number; the answer has the same.
-        name: at most 128 ASCII characters.
-        body: arguments or results; ours are JSON objects.
+    The name has at most 128 ASCII characters; bodies, arguments or results, are JSON objects.
     """
 
     command_id: int

@@ -106,7 +106,6 @@ class Header:
 
 
 def pack(message: Message) -> bytes:
-    """Return the bytes of a message."""
     if type(message.content) not in CONTENTS.values():
         known = ", ".join(CONTENTS)
         raise InputError(f"The content of a message must be one of {known}.")

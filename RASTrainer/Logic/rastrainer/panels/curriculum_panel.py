@@ -13,7 +13,7 @@ from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.widgets import fillTable, setEnabled, setText
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.translation import _
-from rastrainer.study.curriculum.curriculum import read_curriculum
+from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.standing import (
     advice_of,
     progress_of_assignment,
@@ -38,7 +38,7 @@ class CurriculumPanel(Panel):
         self._show()
 
     def setCurriculum(self) -> None:
-        curriculum = read_curriculum(Path(self._ui.curriculumPathLineEdit.currentPath))
+        curriculum = Curriculum.read(Path(self._ui.curriculumPathLineEdit.currentPath))
         self._logic.choose(curriculum, self._ui.everybodyCheckBox.checked)
 
     def endCurriculum(self) -> None:

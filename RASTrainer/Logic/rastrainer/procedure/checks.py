@@ -67,15 +67,10 @@ class MeasuredProcedure:
     wrong: tuple[Annotated[str, text(2000)], ...]
 
 
-def measure_lines(procedure: Procedure, meshes: ProcedureMeshes) -> list[LineMeasures]:
-    return [_measured(trajectory, procedure, meshes) for trajectory in procedure.trajectories]
-
-
 def planned_bone(trajectory: ProcedureTrajectory, skull: HeadMesh) -> BoneAhead | None:
     """Return where the planned line goes through bone, as distances from the entry in mm.
 
-    They are below 0 if the entry is planned below the bone's surface. None if the line does
-    not go through bone.
+    They are below 0 if the entry is planned below the bone's surface.
     """
     direction = trajectory.direction
     start = trajectory.entry_ras - OUTSIDE_MM * direction
@@ -98,10 +93,7 @@ def planned_skull_angle_deg(trajectory: ProcedureTrajectory, skull: HeadMesh) ->
 def distances_to_no_go(
     trajectory: ProcedureTrajectory, meshes: ProcedureMeshes
 ) -> dict[str, float]:
-    """Return how far the instrument's surface stays from each no-go structure, mm, by name.
-
-    Below 0 the instrument overlaps the structure.
-    """
+    """Return how far the instrument's surface stays from each no-go structure, mm, by name."""
     radius = trajectory.diameter_mm / 2
     return {
         name: axis_distance_mm(mesh, trajectory.entry_ras, trajectory.target_ras) - radius
@@ -117,23 +109,26 @@ def line_distance_mm(one: ProcedureTrajectory, other: ProcedureTrajectory) -> fl
     return float(axes[0]) - (one.diameter_mm + other.diameter_mm) / 2
 
 
-def _measured(
-    trajectory: ProcedureTrajectory, procedure: Procedure, meshes: ProcedureMeshes
-) -> LineMeasures:
-    others = {
-        other.name: line_distance_mm(trajectory, other)
-        for other in procedure.trajectories
-        if other is not trajectory
-    }
-    nearest = min(others, key=others.__getitem__, default="")
-    return LineMeasures(
-        name=trajectory.name,
-        length_mm=trajectory.length_mm,
-        skull_angle_deg=planned_skull_angle_deg(trajectory, meshes.skull),
-        no_go_mm=distances_to_no_go(trajectory, meshes),
-        nearest_line=nearest,
-        nearest_line_mm=others.get(nearest),
-    )
+def measure_lines(procedure: Procedure, meshes: ProcedureMeshes) -> list[LineMeasures]:
+    measured = []
+    for trajectory in procedure.trajectories:
+        others = {
+            other.name: line_distance_mm(trajectory, other)
+            for other in procedure.trajectories
+            if other is not trajectory
+        }
+        nearest = min(others, key=others.__getitem__, default="")
+        measured.append(
+            LineMeasures(
+                name=trajectory.name,
+                length_mm=trajectory.length_mm,
+                skull_angle_deg=planned_skull_angle_deg(trajectory, meshes.skull),
+                no_go_mm=distances_to_no_go(trajectory, meshes),
+                nearest_line=nearest,
+                nearest_line_mm=others.get(nearest),
+            )
+        )
+    return measured
 
 
 ENTRY_OFF_SKIN_MM = 10.0
@@ -148,18 +143,20 @@ APART_MM = 1.0
 
 
 def check_procedure(procedure: Procedure, head: HeadMesh, meshes: ProcedureMeshes) -> list[str]:
-    """Return a sentence for each error of a plan, in the order of its trajectories.
-
-    Args:
-        head: the closed skin, RAS mm.
-    """
+    """Return a sentence for each error of a plan; `head` is the closed skin, RAS mm."""
     wrong = unusable_lines(procedure, head, meshes.skull)
     if wrong:
         return wrong
     for trajectory in procedure.trajectories:
-        about = _about(procedure, trajectory)
+        about = f"{procedure.title}: {trajectory.name}"
         wrong += [f"{about} {what}" for what in _questionable(trajectory, meshes)]
-    wrong += _too_near_each_other(procedure)
+    for one, other in combinations(procedure.trajectories, 2):
+        distance = line_distance_mm(one, other)
+        if distance < APART_MM:
+            wrong.append(
+                f"{procedure.title}: {one.name} and {other.name} come within "
+                f"{max(distance, 0.0):.1f} mm of each other; they must stay {APART_MM:g} mm apart."
+            )
     for checkpoint in procedure.checkpoints:
         away = nearest_on_mesh(head, checkpoint.position_ras).distance
         if away > CHECKPOINT_OFF_SKIN_MM:
@@ -173,19 +170,13 @@ def check_procedure(procedure: Procedure, head: HeadMesh, meshes: ProcedureMeshe
 def unusable_lines(procedure: Procedure, head: HeadMesh, skull: HeadMesh) -> list[str]:
     """Return a sentence for each trajectory along which nothing can be drilled and placed.
 
-    Args:
-        head: the closed skin, RAS mm.
-        skull: closed, RAS mm.
+    Skin (`head`) and skull are closed surfaces, RAS mm.
     """
     return [
-        f"{_about(procedure, trajectory)} {what}"
+        f"{procedure.title}: {trajectory.name} {what}"
         for trajectory in procedure.trajectories
         if (what := _unusable(trajectory, head, skull))
     ]
-
-
-def _about(procedure: Procedure, trajectory: ProcedureTrajectory) -> str:
-    return f"{procedure.title}: {trajectory.name}"
 
 
 def _unusable(trajectory: ProcedureTrajectory, head: HeadMesh, skull: HeadMesh) -> str | None:
@@ -233,14 +224,4 @@ def _questionable(trajectory: ProcedureTrajectory, meshes: ProcedureMeshes) -> I
             yield (
                 f"comes within {distance:.1f} mm of {name}; its safety distance is "
                 f"{trajectory.safety_mm:g} mm."
-            )
-
-
-def _too_near_each_other(procedure: Procedure) -> Iterator[str]:
-    for one, other in combinations(procedure.trajectories, 2):
-        distance = line_distance_mm(one, other)
-        if distance < APART_MM:
-            yield (
-                f"{procedure.title}: {one.name} and {other.name} come within "
-                f"{max(distance, 0.0):.1f} mm of each other; they must stay {APART_MM:g} mm apart."
             )

@@ -67,7 +67,6 @@ class SplitError:
     """An error from the planned to the reached point: lengths, and vectors in RAS.
 
     Attributes:
-        mm: length of the sum of both parts.
         by_registration_ras: from the planned point to where the registration put it.
         by_hand_ras: from there to the point that was reached.
     """
@@ -95,7 +94,6 @@ class TrajectoryErrors:
     are no vectors.
 
     Attributes:
-        trajectory: its name in the plan.
         entry_point_error: across the axis of the instrument.
         radial_error: the target point error, across the planned line.
         angular_deviation_by_registration_deg: by how much the registration turned the shown line.
@@ -105,8 +103,6 @@ class TrajectoryErrors:
         plunge_mm: how deep the drill was past the inner table; None if the axis misses it.
         kept_mm: distances from the surface of the instrument (or of the drill, where it went
             deeper; taken as thick) to each no-go structure, by name; 0 or less is a hit.
-        guide_tip_ras: where the guide's tip truly was.
-        tip_ras: where the tip of the instrument truly is.
         self_aligned: whether the robot brought the guide onto the line.
     """
 
@@ -133,13 +129,7 @@ class TrajectoryErrors:
 
 @dataclass(frozen=True)
 class ProcedureAnalysis:
-    """The errors of a whole procedure; those in RMS are over its trajectories.
-
-    Attributes:
-        procedure: its name in the scenario.
-        alignments: how often the guide was locked, over all trajectories.
-        trajectories: their errors, in the order of the plan.
-    """
+    """The errors of a whole procedure; those in RMS, and alignments, are over its trajectories."""
 
     procedure: Annotated[str, text(40)]
     kind: ProcedureKind
@@ -181,12 +171,17 @@ def analyze_procedure(
     meshes: ProcedureMeshes,
     head_to_world: np.ndarray,
 ) -> ProcedureAnalysis:
-    """Return the errors of a procedure against the truth.
-
-    Args:
-        head_to_world: (4, 4) float, rigid, mm: where the head really was.
-    """
-    _check_same(record, procedure)
+    """Return the errors of a procedure; `head_to_world` (4, 4), mm, is the truth."""
+    planned = [(each.name, each.entry_ras, each.target_ras) for each in procedure.trajectories]
+    placed = [(each.trajectory, each.entry_ras, each.target_ras) for each in record.instruments]
+    is_same = len(planned) == len(placed) and all(
+        one[0] == other[0] and np.allclose(one[1:], other[1:], rtol=0.0, atol=SAME_MM)
+        for one, other in zip(planned, placed, strict=True)
+    )
+    if not is_same or record.procedure != procedure.name:
+        raise InputError(
+            f"The record is of another plan than the procedure {procedure.name!r} of this scenario."
+        )
     world_to_ras = transforms.inverse(head_to_world)
     shown = world_to_ras @ transforms.inverse(record.accepted.world_to_head)
     errors = tuple(
@@ -202,7 +197,7 @@ def analyze_procedure(
         target_point_error_by_hand_rms_mm=_rms([each.by_hand_mm for each in targets]),
         entry_point_error_rms_mm=_rms([each.entry_point_error.mm for each in errors]),
         angular_deviation_rms_deg=_rms([each.angular_deviation_deg for each in errors]),
-        alignments=record.alignments,
+        alignments=sum(each.alignments for each in record.instruments),
         attempts=len(record.attempts),
         duration_s=record.duration_s,
         phase_times_s=record.phase_times_s,
@@ -266,10 +261,7 @@ def _across(part: np.ndarray, direction: np.ndarray) -> np.ndarray:
 class TrueLine(NamedTuple):
     """The line of one instrument in the head, from outside to inside: (2, 3) float each, RAS mm.
 
-    Attributes:
-        planned: from entry to target.
-        shown: where the plan, as it was shown, truly lay.
-        placed: from the guide's tip to the instrument's.
+    `shown` is where the plan, as it was shown, truly lay; `placed` begins at the guide's tip.
     """
 
     trajectory: str
@@ -295,19 +287,6 @@ def true_lines(record: ProcedureRecord, head_to_world: np.ndarray) -> list[TrueL
             )
         )
     return lines
-
-
-def _check_same(record: ProcedureRecord, procedure: Procedure) -> None:
-    planned = [(each.name, each.entry_ras, each.target_ras) for each in procedure.trajectories]
-    done = [(each.trajectory, each.entry_ras, each.target_ras) for each in record.instruments]
-    is_same = len(planned) == len(done) and all(
-        one[0] == other[0] and np.allclose(one[1:], other[1:], rtol=0.0, atol=SAME_MM)
-        for one, other in zip(planned, done, strict=True)
-    )
-    if not is_same or record.procedure != procedure.name:
-        raise InputError(
-            f"The record is of another plan than the procedure {procedure.name!r} of this scenario."
-        )
 
 
 def _rms(values: list[float]) -> float:

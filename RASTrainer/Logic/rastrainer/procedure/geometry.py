@@ -22,10 +22,9 @@ class MeshCrossing(NamedTuple):
 
 
 class BoneAhead(NamedTuple):
-    """Where a line goes through the skull, as distances from its start in mm.
+    """Where a line goes through the outer and the inner table, as distances from its start in mm.
 
-    Attributes:
-        inner_mm: the inner table; None if the line does not leave the bone.
+    The inner is None if the line does not leave the bone.
     """
 
     outer_mm: float
@@ -38,11 +37,7 @@ def mesh_crossings(
     """Return where a line goes through a closed surface, in order.
 
     The triangles are intersected as by Möller and Trumbore (1997). A line through an edge or a
-    corner crosses once.
-
-    Args:
-        start: (3,) float, mm, in the frame of the mesh.
-        direction: (3,) float, unit vector.
+    corner crosses once. Start (3,), mm, and direction (3,), a unit vector, are in the mesh's frame.
     """
     centers, radii = mesh.triangle_spheres
     to_center = centers - start
@@ -75,9 +70,7 @@ def bone_ahead(
 ) -> BoneAhead | None:
     """Return where a line first goes through bone, or None if it does not.
 
-    Args:
-        start: (3,) float, mm, outside of the skull, in its frame.
-        direction: (3,) float, unit vector into the head.
+    It starts outside of the skull, (3,), mm, in its frame; the direction (3,) is a unit vector.
     """
     outer = inner = None
     for distance, is_entering in mesh_crossings(skull, start, direction, length_mm):
@@ -101,9 +94,7 @@ def angle_deg(a: np.ndarray, b: np.ndarray) -> float:
 def skull_angle_deg(skull: HeadMesh, point: np.ndarray, direction: np.ndarray) -> float:
     """Return the angle between a direction into the head and the skull's inward normal, degrees.
 
-    Args:
-        point: (3,) float, mm, where the line enters it.
-        direction: (3,) float, unit vector.
+    The line enters it at `point` (3,), mm, along a unit vector (3,).
     """
     return angle_deg(-normal_at(skull, nearest_on_mesh(skull, point)), direction)
 
@@ -121,11 +112,7 @@ def axis_distance_mm(mesh: HeadMesh, start: np.ndarray, end: np.ndarray) -> floa
     """Return the distance of a straight segment from a closed body, 0 if they meet.
 
     Unless they meet, the shortest path to a triangle begins at an end of the segment, or ends on a
-    side of the triangle.
-
-    Args:
-        start: (3,) float, mm, in the frame of the mesh.
-        end: (3,) float, mm.
+    side of the triangle. Start and end (3,), mm, are in the frame of the mesh.
     """
     length = float(np.linalg.norm(end - start))
     if is_inside(mesh, start):
@@ -151,13 +138,7 @@ def segment_distances_mm(
     """Return the distances between one segment and others, (n,) float, mm.
 
     The closest points of both lines, clamped to the segments (Ericson 2005, Real-Time Collision
-    Detection, 5.1.9).
-
-    Args:
-        start: (3,) float, mm.
-        end: (3,) float, mm, another point.
-        starts: (n, 3) float, mm.
-        ends: (n, 3) float, mm; a segment may be a point.
+    Detection, 5.1.9). Start and end are (3,), and differ; the others' (n, 3) may be the same point.
     """
     along, others, offset = end - start, ends - starts, start - starts
     aa = float(along @ along)

@@ -82,7 +82,6 @@ class ProcedureTrajectory:
     """The planned straight path of one instrument.
 
     Attributes:
-        name: for people and records; unique in its procedure.
         entry_ras: (3,) float, mm, near the skin.
         target_ras: (3,) float, mm, where the instrument's tip is to be.
         safety_mm: least planned distance of the instrument's surface to a no-go structure.
@@ -106,12 +105,7 @@ class ProcedureTrajectory:
 
 @dataclass(frozen=True)
 class NoGoStructure:
-    """A structure that no instrument may touch, such as a vessel.
-
-    Attributes:
-        name: for people; unique in its procedure.
-        file: path of its closed surface, a mesh like the head's, RAS mm.
-    """
+    """A structure that no instrument may touch, such as a vessel: a closed mesh, RAS mm."""
 
     name: _Name
     file: Annotated[Path, _no_go_path]
@@ -119,12 +113,7 @@ class NoGoStructure:
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """A landmark of the skin at which a registration can be verified.
-
-    Attributes:
-        name: for people and records; unique in its procedure.
-        position_ras: (3,) float, mm.
-    """
+    """A landmark of the skin at which a registration can be verified; (3,) float, mm."""
 
     name: _Name
     position_ras: _Point
@@ -132,12 +121,7 @@ class Checkpoint:
 
 @dataclass(frozen=True)
 class Procedure:
-    """A planned procedure.
-
-    Attributes:
-        source: of the plan: where the coordinates come from.
-        checkpoints: landmarks for verifying the registration.
-    """
+    """A planned procedure; its source is where the coordinates come from."""
 
     name: Annotated[str, identifier]
     title: Annotated[str, text(80)]
@@ -148,7 +132,6 @@ class Procedure:
     checkpoints: Annotated[tuple[Checkpoint, ...], named_once(0, MAX_CHECKPOINTS)] = ()
 
     def trajectory(self, name: str) -> ProcedureTrajectory:
-        """Return the trajectory of this name."""
         for trajectory in self.trajectories:
             if trajectory.name == name:
                 return trajectory
@@ -159,10 +142,7 @@ class Procedure:
         """Return a hash of what a trial with this procedure depends on, for a journal's header.
 
         It covers trajectories, checkpoints, no-go structures and the skull, but neither title nor
-        source.
-
-        Raises:
-            OSError: a mesh cannot be read.
+        source. `OSError` if a mesh cannot be read.
         """
         content = procedure_json(self)
         del content["title"], content["source"]
@@ -215,11 +195,9 @@ MAX_NO_GO_TRIANGLES = 200_000
 
 @dataclass(frozen=True, eq=False)
 class ProcedureMeshes:
-    """The obstacles of a procedure's instruments; RAS mm.
+    """The obstacles of a procedure's instruments, closed surfaces in RAS mm.
 
-    Attributes:
-        skull: bone between its outer and its inner table; closed.
-        no_go: the closed surfaces of the no-go structures by name, in the procedure's order.
+    Those of the no-go structures are by name, in the procedure's order.
     """
 
     skull: HeadMesh
@@ -227,7 +205,6 @@ class ProcedureMeshes:
 
 
 def read_procedure_meshes(procedure: Procedure, skull: Path) -> ProcedureMeshes:
-    """Read the meshes of a procedure."""
     mesh = read_head_mesh(skull)
     if not mesh.is_closed:
         raise InputError(f"The skull {skull} is not closed: it has a hole.")
@@ -249,7 +226,6 @@ def check_no_go_mesh(mesh: HeadMesh, name: str) -> None:
 
 
 def check_no_go_size(triangles: int, name: str) -> None:
-    """Raise `InputError` if a no-go structure has more triangles than one may have."""
     if triangles > MAX_NO_GO_TRIANGLES:
         raise InputError(
             f"The no-go structure {name} has {triangles} triangles; it may have "

@@ -88,7 +88,6 @@ class UsedRegistration:
 
     @classmethod
     def from_arguments(cls, arguments: Mapping[str, Any]) -> UsedRegistration:
-        """Return the registration in a command's checked arguments."""
         return cls(tuple(arguments["matrix"]), arguments["freMm"], arguments["expectedTreMm"])
 
     def agrees_with(self, other: UsedRegistration) -> bool:
@@ -97,11 +96,9 @@ class UsedRegistration:
         Slicer's numpy and the simulator's may round the last digits otherwise; who knows the truth
         gains nothing from so little.
         """
-        pairs = zip(self._numbers(), other._numbers(), strict=True)
+        sides = ((*each.matrix, each.fre_mm, each.expected_tre_mm) for each in (self, other))
+        pairs = zip(*sides, strict=True)
         return all(math.isclose(a, b, rel_tol=SAME, abs_tol=SAME) for a, b in pairs)
-
-    def _numbers(self) -> tuple[float, ...]:
-        return (*self.matrix, self.fre_mm, self.expected_tre_mm)
 
     @property
     def world_to_head(self) -> np.ndarray:
@@ -113,9 +110,7 @@ class UsedRegistration:
 class RecordedAttempt:
     """One round of touching, registering and verifying.
 
-    Attributes:
-        touches: that were registered; may be left out of the accepted one, whose touches are the
-            trial's.
+    Registered touches may be left out of the accepted one: they are the trial's.
     """
 
     touches: Annotated[tuple[RegisteredTouch, ...], list_of(0, FIDUCIAL_COUNT, "touches")] = ()
@@ -131,7 +126,7 @@ class PlacedInstrument:
 
     Attributes:
         guide_tip_mm: tip of the guide as it was locked last, World.
-        guide_direction: its axis, a unit vector into the head, World.
+        guide_direction: a unit vector into the head, World.
         drill_depth_mm: the deepest that the drill was beyond the guide's tip.
         instrument_depth_mm: where the instrument was released, beyond the guide's tip.
         self_aligned: whether the robot brought the guide onto the line, before hands changed it or
@@ -167,7 +162,7 @@ class ProcedureRecord:
     Attributes:
         sha256: of the procedure's content, from `Procedure.sha256`.
         duration_s: from the start of the trial to the last release, without pauses.
-        attempts: at registering, in order; the last one was accepted.
+        attempts: at registering; the last one was accepted.
         instruments: one per planned trajectory, in the order of the plan.
         phase_times_s: by phase, over all attempts and trajectories, without pauses.
     """
@@ -191,8 +186,3 @@ class ProcedureRecord:
         registration = self.attempts[-1].registration
         assert registration is not None, "it was checked"
         return registration
-
-    @property
-    def alignments(self) -> int:
-        """How often the guide was locked, over all trajectories."""
-        return sum(instrument.alignments for instrument in self.instruments)

@@ -35,11 +35,9 @@ from rastrainer.work_progress import Progress
 
 @dataclass(frozen=True)
 class DeliveredTrial:
-    """A trial that is stored in the study.
+    """A trial that is stored in the study; not analyzed if it is not to be scored now.
 
-    Attributes:
-        analysis: its registration, or None if not to be scored now.
-        problem: why it cannot be registered; empty otherwise.
+    The problem is why it cannot be registered.
     """
 
     record: TrialRecord
@@ -55,12 +53,11 @@ def store_delivered(
 ) -> DeliveredTrial:
     """Store a trial with its registration, once; known trials are not scored again.
 
+    `DeletedTrialError` if it was deleted.
+
     Args:
         analyze: registers a record; may raise `InputError`.
         is_being_scored: whether its registration or score is being sent to the simulator.
-
-    Raises:
-        DeletedTrialError: it was deleted with its trainee.
     """
     record = record_from_json(TrialRecord, value)
     is_new = study.check_trial(record)
@@ -96,10 +93,8 @@ def scored_with_journal(
 ) -> TrialAnalysis:
     """Score a registered trial, with the feedback of its journal.
 
-    Args:
-        references: those of the trial's study, as `score_references` returns them.
-        records: folder of journals; None, or one that is not there, explains less of the touches.
-        pause: called again and again while the journal is read; a thread may wait in it.
+    Without the folder of journals, less of the touches is explained. `pause` is called again and
+    again while the journal is read; a thread may wait in it.
     """
     trajectory = trajectory_of(analysis.record, records, pause)
     return analysis.scored(scenario, truth, references, trajectory)

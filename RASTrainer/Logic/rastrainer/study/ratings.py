@@ -125,11 +125,8 @@ class RatingStore:
         """Assign replays to a rater; return their trials in the rater's order.
 
         All raters get the same trials: those that somebody has, and more of `trial_ids`, drawn at
-        random, where these are too few. Each rater gets them in their own order. What a rater
-        has already keeps its place.
-
-        Args:
-            count: How many there shall be at least; fewer if there are no more.
+        random, where these are fewer than `count`. Each rater gets them in their own order. What a
+        rater has already keeps its place.
         """
         rater = accepted(pseudonym, rater, "The name of a rater")
         with self._database.writing():
@@ -161,20 +158,14 @@ class RatingStore:
     ) -> bool:
         """Store a mark, or with None that the latest is taken back; return whether it was new.
 
-        Args:
-            mark_id: UUID of this mark: the same one again changes nothing.
+        The same UUID (`mark_id`) again changes nothing.
         """
         if domain not in {each.name for each in form.domains}:
             raise InputError(f"{form.title} has no domain {domain[:40]!r}.")
         if mark is not None and (isinstance(mark, bool) or mark not in MARKS):
             raise InputError(f"A mark is a whole number from {MARKS[0]} to {MARKS[-1]}.")
-        given: dict[str, Any] = {
-            "rater": rater,
-            "trial_id": trial_id,
-            "form": form.name,
-            "domain": domain,
-            "mark": mark,
-        }
+        given: dict[str, Any] = {"rater": rater, "trial_id": trial_id, "form": form.name}
+        given |= {"domain": domain, "mark": mark}
         with self._database.writing():
             query = f"SELECT {', '.join(given)} FROM rating_marks WHERE mark_id = ?"
             row = self._database.row(query, mark_id)
@@ -209,7 +200,7 @@ class RatingStore:
         found = []
         for (form, rater, trial_id), marks in sorted(given.items()):
             latest = _latest(marks)
-            if form in FORMS and set(latest) == {each.name for each in find_form(form).domains}:
+            if form in FORMS and set(latest) == {each.name for each in FORMS[form].domains}:
                 found.append(Rating(rater, trial_id, form, latest))
         return tuple(found)
 

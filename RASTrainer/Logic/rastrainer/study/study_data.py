@@ -30,9 +30,7 @@ from rastrainer.trial.scoring import TrialScore
 
 @dataclass(frozen=True)
 class TrialRow:
-    """One trial of a report.
-
-    Texts are empty if unknown.
+    """One trial of a report; texts are empty if unknown.
 
     Attributes:
         number: Of the trainee's trials in this mode, from 1; 0 for a trial run.
@@ -58,18 +56,16 @@ class TrialRow:
 
 @dataclass(frozen=True)
 class StudyData:
-    """The data of a report.
+    """The data of a report; `gap` is that of its virtual cohort.
 
     Attributes:
         trials: Without trial runs; for trainees in a protocol, those of its steps.
         mean_ct_s: Mean completion times for CTPS instead of the trials' own, by mode.
-        protocol: None if trainees practiced freely.
         skipped: Trainee, step and reason of each skipped step.
         outside_protocol: Number of trials outside the protocol, which are left out.
         objections: Trainee, trial and reasons of those of them that broke a rule of the protocol.
         versions: Of the programs that made the records, name → different versions.
-        gap: What is missing of an incomplete virtual cohort, as a sentence; else "".
-        aborted: Aborted trials, including trial runs, by trainee in order.
+        aborted: Including trial runs, by trainee in order.
         undelivered: First and last numbers of trials that never arrived, by their simulator's
             series.
         standings: Of active trainees in their curricula, by pseudonym.
@@ -123,9 +119,6 @@ def read_study_data(place: StudyPlace, allow_incomplete: bool = False) -> StudyD
     """Read a study's database, or a CSV file with the header `mode,subject,task,ct,rmse`.
 
     Notes beside a CSV file `NAME.csv` are read from `NAME.json`.
-
-    Raises:
-        IncompleteStudyError: the cohort is incomplete.
     """
     if isinstance(place, Path) and not place.is_file():
         raise InputError(f"There is no file {place}.")
@@ -168,7 +161,6 @@ def _from_database(place: StudyPlace) -> StudyData:
     with Study.open_for_reading(place) as study:
         progress = StudyProgress(study)
         protocol = progress.protocol()
-        cohort = CohortStore(study).state()
         everyone = (*study.trainees(), *study.trainees(archived=True))
         consenting = {trainee.pseudonym for trainee in everyone if trainee.consent}
         enrolled = [name for name in progress.enrolled() if name in consenting]
@@ -203,7 +195,7 @@ def _from_database(place: StudyPlace) -> StudyData:
             without_consent=len(everyone) - len(consenting),
             versions={name: tuple(sorted(found)) for name, found in sorted(versions.items())},
             has_order=True,
-            gap="" if cohort is None else cohort.gap,
+            gap=CohortStore(study).gap(),
             aborted=tuple(stored for name in sorted(consenting) for stored in study.aborted(name)),
             undelivered=study.undelivered(),
             standings={
@@ -329,5 +321,5 @@ def _score_parts(score: TrialScore) -> dict[str, float]:
 
 
 def _by_number(task: str) -> tuple[str, int]:
-    digits = task[len(task.rstrip("0123456789")) :]
-    return task[: len(task) - len(digits)], int(digits[:9] or 0)
+    name = task.rstrip("0123456789")
+    return name, int(task[len(name) :][:9] or 0)

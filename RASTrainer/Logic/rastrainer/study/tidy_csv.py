@@ -69,8 +69,7 @@ def write_history(study: Study, pseudonyms: Iterable[str], path: Path | str) -> 
 def write_histories(study: Study, path: Path | str) -> tuple[int, int]:
     """Write all trials of consenting trainees, including trial runs, as CSV.
 
-    Returns:
-        The number of trials, and the number of trainees without consent, who are left out.
+    Return the number of trials, and of trainees without consent, who are left out.
     """
     everyone = (*study.trainees(), *study.trainees(archived=True))
     consenting = sorted(trainee.pseudonym for trainee in everyone if trainee.consent)
@@ -98,27 +97,13 @@ def aborted_csv(trials: Iterable[StoredAbortedTrial]) -> str:
     rows = []
     for stored in trials:
         record = stored.record
-        rows.append(
-            [
-                *_who(record),
-                record.trial_id,
-                record.started_utc,
-                record.aborted_utc,
-                record.scenario,
-                int(record.task == TRIAL_RUN),
-                record.phase,
-                record.reason,
-                record.elapsed_s,
-                len(record.points),
-                record.rejected_touches,
-                record.undone_touches,
-                int(record.counts_as_failed),
-                stored.step,
-                stored.repeat_reason,
-                record.method.value,
-                record.traced,
-            ]
-        )
+        when = record.started_utc, record.aborted_utc
+        end = int(record.task == TRIAL_RUN), record.phase, record.reason, record.elapsed_s
+        touches = len(record.points), record.rejected_touches, record.undone_touches
+        repeat = int(record.counts_as_failed), stored.step, stored.repeat_reason
+        method = record.method.value, record.traced
+        first = *_who(record), record.trial_id, *when, record.scenario
+        rows.append([*first, *end, *touches, *repeat, *method])
     return csv_text(ABORTED_COLUMNS, rows)
 
 

@@ -56,11 +56,11 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
         ],
         "curricula": [
             {
-                "curriculum": None if chosen.curriculum is None else chosen.curriculum.to_json(),
-                "stored_utc": chosen.stored_utc,
+                "curriculum": None if curriculum is None else curriculum.to_json(),
+                "stored_utc": stored_utc,
             }
-            for chosen in CurriculumStore(study).choices()
-            if chosen.trainee == pseudonym
+            for name, curriculum, stored_utc in CurriculumStore(study).choices()
+            if name == pseudonym
         ],
         "ratings": [
             {"trial_id": rating.trial_id, "form": rating.form, "marks": dict(rating.marks)}
@@ -74,12 +74,10 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
 
 @dataclass(frozen=True)
 class Erasure:
-    """What was deleted, and what may remain.
+    """Numbers of deleted trials and journals, those of unfinished trials included; what may remain.
 
-    Attributes:
-        journals: Number of deleted journals, including those of unfinished trials.
-        missing: UUIDs of deleted trials whose journals were not found.
-        unreadable: Journals that name no trainee.
+    Missing are UUIDs of deleted trials whose journals were not found; unreadable journals name no
+    trainee.
     """
 
     trials: int
@@ -106,11 +104,9 @@ class Erasure:
 def erase_trainee(study: Study, pseudonym: str, records: Path | None) -> Erasure:
     """Delete a trainee permanently.
 
-    Journals and files of tutorials are deleted first: if one cannot be deleted, the trainee remains
-    and the deletion can be repeated. Earlier exports must be deleted by the lab.
-
-    Args:
-        records: The simulator's folder of journals; None if they are elsewhere.
+    Journals and files of tutorials, in the folder `records` if they are here, are deleted first: if
+    one cannot be deleted, the trainee remains and the deletion can be repeated. Earlier exports
+    must be deleted by the lab.
     """
     ids = [trial.record.trial_id for trial in study.history(pseudonym)]
     ids += [aborted.record.trial_id for aborted in study.aborted(pseudonym)]

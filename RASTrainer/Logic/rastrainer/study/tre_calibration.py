@@ -67,11 +67,6 @@ class CalibrationPoint:
         """Whether the true error lies in the interval."""
         return self.interval_mm[0] <= self.true_mm <= self.interval_mm[1]
 
-    @property
-    def is_above(self) -> bool:
-        """Whether the true error is above the interval, the harmful side."""
-        return self.true_mm > self.interval_mm[1]
-
 
 @dataclass(frozen=True)
 class TreCalibration:
@@ -80,7 +75,6 @@ class TreCalibration:
     Attributes:
         points: Trials with both errors, by expected TRE.
         without_truth: Number of trials that lack only the true error.
-        without_expectation: Number of trials that lack the expected error.
     """
 
     points: tuple[CalibrationPoint, ...]
@@ -106,24 +100,21 @@ class TreCalibration:
 
     @property
     def above(self) -> int:
-        """Number of true errors above their interval."""
-        return sum(point.is_above for point in self.points)
+        """Number of true errors above their interval, the harmful side."""
+        return sum(point.true_mm > point.interval_mm[1] for point in self.points)
 
     @property
     def expected_rms_mm(self) -> float:
-        """Root mean square of the expected errors."""
         return float(np.sqrt(np.mean([point.expected_mm**2 for point in self.points])))
 
     @property
     def true_rms_mm(self) -> float:
-        """Root mean square of the true errors."""
         return float(np.sqrt(np.mean([point.true_mm**2 for point in self.points])))
 
     def of_mode(self, mode: str) -> TreCalibration:
         return TreCalibration(tuple(point for point in self.points if point.mode == mode))
 
     def sentences(self) -> list[str]:
-        """Return the findings as sentences."""
         count, inside = len(self.points), self.inside
         found = []
         if inside is None:

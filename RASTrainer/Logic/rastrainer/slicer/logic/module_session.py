@@ -39,7 +39,7 @@ from rastrainer.slicer.scene.scene_watch import SceneWatch
 from rastrainer.slicer.scene.trial_scene import followPlacement
 from rastrainer.slicer.settings import Settings
 from rastrainer.slicer.signal import Signal
-from rastrainer.study.database.database import LockWait, StudyPlace
+from rastrainer.study.database.database import INTERACTIVE_WAIT_S, LockWait, StudyPlace
 from rastrainer.study.database.postgres_connecting import find_driver_in
 from rastrainer.study.database.study import Study
 from rastrainer.trial.analysis import TrialAnalysis
@@ -90,7 +90,7 @@ class ModuleSession:
         self.studyPlace: StudyPlace = places.studyAddress or places.study
         self._scene = scene
         self._callSoon = callSoon
-        self._lockWait = LockWait.interactive()
+        self._lockWait = LockWait(*INTERACTIVE_WAIT_S)
         find_driver_in(places.simulator)
         self.scenarios = cache = ScenarioCache(
             places.assets / "scenarios", places.library, areLibraries=True

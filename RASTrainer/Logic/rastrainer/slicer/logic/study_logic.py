@@ -24,7 +24,7 @@ from rastrainer.study.database.values import moment
 from rastrainer.study.protocol.step_progress import StepProgress
 from rastrainer.study.protocol.steps import StepAnswers, instruction, objections_to
 from rastrainer.study.protocol.study_progress import StudyProgress
-from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study_messages import StudyStep
 
 TRIALS = (StepKind.TRIAL, StepKind.TRIAL_RUN)
@@ -92,7 +92,7 @@ class StudyLogic(Listening):
             self.leadOn(name)
 
     def begin(self, path: Path) -> None:
-        self.study.set_protocol(read_study_protocol(path))
+        self.study.set_protocol(StudyProtocol.read(path))
         self.changed.emit()
 
     def enroll(self) -> int:

@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, ClassVar
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import identifier, list_of, text
-from rastrainer.json_records import record_to_json
 from rastrainer.protocol import MAX_ASSIGNMENTS
-from rastrainer.study.protocol.plan_file import plan_from_json, read_plan
+from rastrainer.study.protocol.plan_file import PlanFile
 from rastrainer.study_messages import Assignment
-
-_VERSIONS = {"formatVersion": 1}
 
 
 @dataclass(frozen=True)
-class Curriculum:
+class Curriculum(PlanFile):
     """What a trainee should reach."""
 
+    WHAT = "The curriculum"
+    VERSIONS: ClassVar = {"formatVersion": 1}
     name: Annotated[str, identifier]
     title: Annotated[str, text(80)]
     assignments: Annotated[tuple[Assignment, ...], list_of(1, MAX_ASSIGNMENTS, "objects")]
@@ -35,15 +33,3 @@ class Curriculum:
                     f"{what}: after must be a list of assignments that stand before this one."
                 )
             earlier.add(each.name)
-
-    def to_json(self) -> dict[str, Any]:
-        """Return the object that the file holds."""
-        return {**_VERSIONS, **record_to_json(self)}
-
-
-def read_curriculum(path: Path | str) -> Curriculum:
-    return read_plan(Curriculum, path, _VERSIONS)
-
-
-def curriculum_from_json(value: Any) -> Curriculum:
-    return plan_from_json(Curriculum, value, _VERSIONS, "The curriculum")

@@ -1,15 +1,15 @@
 """Which curriculum each trainee of a study follows, and which trials count for their standing.
 
-Each choice is stored, the last one counts. Scored trials count, and as failures those
-that were aborted or can have no score.
+Each choice is stored, the last one counts. Scored trials count, and as failures those that were
+aborted or can have no score.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from rastrainer.errors import InputError
-from rastrainer.study.curriculum.curriculum import Curriculum, curriculum_from_json
+from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.standing import CurriculumStanding, PassMarkOf, standing_in
 from rastrainer.study.database.schema import TRAINEE_ID
 from rastrainer.study.database.study import Study
@@ -34,15 +34,6 @@ _STAMPS = """
         (SELECT count(*) FROM study_protocol)
     FROM trainees WHERE archived = 0
 """
-
-
-@dataclass(frozen=True)
-class CurriculumChoice:
-    """One choice of a curriculum, or of none; the trainee is "" for everybody."""
-
-    trainee: str
-    curriculum: Curriculum | None
-    stored_utc: str
 
 
 class CurriculumStore:
@@ -71,14 +62,14 @@ class CurriculumStore:
                 "curriculum_choices", trainee=pseudonym, curriculum_json=text
             )
 
-    def choices(self) -> tuple[CurriculumChoice, ...]:
-        """Return all choices, oldest first."""
+    def choices(self) -> tuple[tuple[str, Curriculum | None, str], ...]:
+        """Return all choices, oldest first: trainee ("" is all), curriculum, time of storing."""
         rows = self._study.database.rows(
             "SELECT coalesce(pseudonym, ''), curriculum_json, curriculum_choices.stored_utc "
             "FROM curriculum_choices LEFT JOIN trainees ON trainees.id = trainee_id "
             "ORDER BY curriculum_choices.id"
         )
-        return tuple(CurriculumChoice(name, _read(text), utc) for name, text, utc in rows)
+        return tuple((name, _read(text), utc) for name, text, utc in rows)
 
     def standing(self, pseudonym: str) -> CurriculumStanding | None:
         """Return the standing of a trainee; None without a curriculum."""
@@ -113,7 +104,7 @@ def _marks(study: Study) -> PassMarkOf:
 
 
 def _read(text: str | None) -> Curriculum | None:
-    return None if text is None else decoded(text, curriculum_from_json)
+    return None if text is None else decoded(text, Curriculum.from_json)
 
 
 def _as_counted(trial: PastTrial) -> PastTrial:

@@ -28,11 +28,7 @@ RECENT = 3
 
 @dataclass(frozen=True)
 class CurriculumStanding:
-    """A trainee's standing in a curriculum.
-
-    Attributes:
-        played: Trials, each once however many assignments it counts for.
-    """
+    """A trainee's standing; each played trial is one, however many assignments it counts for."""
 
     curriculum: Curriculum
     standings: tuple[AssignmentStanding, ...]
@@ -85,12 +81,10 @@ def by_curriculum(
 def standing_in(
     curriculum: Curriculum, trials: Sequence[PastTrial], pass_mark_of: PassMarkOf
 ) -> CurriculumStanding:
-    """Return where a trainee stands.
+    """Return where a trainee stands by their trials, in order of starting.
 
-    Args:
-        trials: Of the trainee, in order of starting; the score of one with a procedure is that of
-            the procedure.
-        pass_mark_of: The study's pass mark, for goals without their own mark.
+    The score of a trial with a procedure is that of the procedure; the study's pass mark is for
+    goals without their own.
     """
     reached: dict[str, str] = {}
     standings = []

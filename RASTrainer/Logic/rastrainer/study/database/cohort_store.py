@@ -7,7 +7,6 @@ is recognized whatever interrupted it.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from rastrainer.errors import InputError
@@ -19,32 +18,6 @@ from rastrainer.trial.analysis import TrialAnalysis
 
 class IncompleteStudyError(InputError):
     """The study is an incomplete virtual cohort."""
-
-
-@dataclass(frozen=True)
-class CohortState:
-    """The progress of a virtual cohort, in trials.
-
-    Attributes:
-        stuck: Those in which the virtual trainee did not reach a fiducial.
-        is_finished: Whether all trials were played, also if trainees were deleted since.
-    """
-
-    planned: int
-    stored: int
-    stuck: int
-    is_finished: bool
-
-    @property
-    def gap(self) -> str:
-        """What is missing, as a sentence; "" if complete."""
-        if self.is_finished:
-            return ""
-        stuck = f", and {self.stuck} got stuck" if self.stuck else ""
-        return (
-            f"This virtual cohort is incomplete: {self.stored} of {self.planned} trials are "
-            f"stored{stuck}."
-        )
 
 
 class CohortStore:
@@ -76,17 +49,23 @@ class CohortStore:
                     )
             self._database.insert("cohort", id=1, plan_json=text, planned_trials=planned_trials)
 
-    def state(self) -> CohortState | None:
-        """Return the progress of the cohort, or None if the study is no virtual cohort."""
+    def gap(self) -> str:
+        """Return what is missing, as a sentence; "" if the cohort is complete, or there is none.
+
+        It stays complete if trainees were deleted since.
+        """
         with self._database.reading():
-            row = self._database.row("SELECT planned_trials, finished_utc FROM cohort")
+            row = self._database.row("SELECT planned_trials FROM cohort WHERE finished_utc IS NULL")
             if row is None:
-                return None
+                return ""
             stored, stuck = (
                 self._database.row(f"SELECT count(*) FROM {table}")[0]
                 for table in ("trials", "stuck_trials")
             )
-        return CohortState(row[0], stored, stuck, row[1] is not None)
+        and_stuck = f", and {stuck} got stuck" if stuck else ""
+        return (
+            f"This virtual cohort is incomplete: {stored} of {row[0]} trials are stored{and_stuck}."
+        )
 
     def has_played(self, trial_id: str) -> bool:
         with self._database.reading():
@@ -117,7 +96,6 @@ class CohortStore:
         self._database.insert("stuck_trials", is_once=True, trial_id=trial_id)
 
     def finish(self) -> None:
-        """Note that all trials were played."""
         self._database.change(
             "UPDATE cohort SET finished_utc = ? WHERE finished_utc IS NULL", utc_now()
         )

@@ -35,10 +35,8 @@ _MAX_LENGTH = 1000
 class PostgresAddress:
     """A database of a PostgreSQL server.
 
-    Attributes:
-        host: name or number of its computer, or the folder of its socket on this one.
-        user: the role; "" for the name of the system's user.
-        port: None for 5432.
+    The host is a computer's name or number, or the folder of the socket on this one. Without user,
+    it is the system's; without port, 5432.
     """
 
     host: str
@@ -134,9 +132,8 @@ def _address(text: str) -> PostgresAddress:
 
 
 BUSY_TIMEOUT_S = 30.0
-INTERACTIVE_TIMEOUT_S = 0.05
-"""Not noticeable in a window."""
-REST_S = 1.0
+INTERACTIVE_WAIT_S = (0.05, 1.0)
+"""For a window's `LockWait`: not noticeable, and its rest."""
 
 
 class Connection(Protocol):
@@ -156,8 +153,8 @@ class Connection(Protocol):
 class LockWait:
     """How long to wait for a lock; for some time after a timeout, not at all.
 
-    A panel queries a study ten times in a row: if another program holds a lock, it waits once, not
-    ten times. Several connections may share one.
+    A panel queries a study ten times in a row: if another program holds a lock, it waits `most_s`
+    once, and not again within `rest_s`. Several connections may share one.
     """
 
     def __init__(
@@ -166,15 +163,9 @@ class LockWait:
         rest_s: float = 0.0,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Wait `most_s` for a lock, but not within `rest_s` after a timeout."""
         self._most_s, self._rest_s, self._clock = most_s, rest_s, clock
         self._retry_at = float("-inf")
         self._has_timed_out = False
-
-    @classmethod
-    def interactive(cls) -> LockWait:
-        """Return the waiting times of a GUI thread."""
-        return cls(INTERACTIVE_TIMEOUT_S, REST_S)
 
     @property
     def timeout_s(self) -> float:

@@ -158,26 +158,22 @@ def connected_within(patience_s: float, address: PostgresAddress) -> Any:
     """Return a connection, or raise `TimeoutError` soon: the next call gets it if it has come."""
     key = str(address)
     if key not in _attempts:
-        _attempts[key] = _begun(address)
+        answer: Future[Any] = Future()
+
+        def connect() -> None:
+            try:
+                answer.set_result(connected(address, INTERACTIVE_SILENCE_S, INTERACTIVE_SILENCE_S))
+            except BaseException as error:
+                answer.set_exception(error)
+
+        threading.Thread(target=connect, name="study", daemon=True).start()
+        _attempts[key] = answer
     attempt = _attempts[key]
     wait([attempt], patience_s)
     if not attempt.done():
         raise TimeoutError
     del _attempts[key]
     return attempt.result()
-
-
-def _begun(address: PostgresAddress) -> Future[Any]:
-    answer: Future[Any] = Future()
-
-    def attempt() -> None:
-        try:
-            answer.set_result(connected(address, INTERACTIVE_SILENCE_S, INTERACTIVE_SILENCE_S))
-        except BaseException as error:
-            answer.set_exception(error)
-
-    threading.Thread(target=attempt, name="study", daemon=True).start()
-    return answer
 
 
 def _impatient(driver: ModuleType, answer_s: float) -> Any:

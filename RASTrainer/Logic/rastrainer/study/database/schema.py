@@ -173,11 +173,9 @@ CREATE TABLE deliveries (
 
 @dataclass(frozen=True)
 class Table:
-    """A table of the schema.
+    """A table of the schema; the columns end with `rowid` where SQLite numbers the rows.
 
-    Attributes:
-        columns: all that are stored, with `rowid` last where SQLite numbers the rows.
-        order: the column by which the rows are in order of storing, or always in the same order.
+    By the column `order`, the rows are in order of storing, or always in the same order.
     """
 
     name: str

@@ -26,6 +26,14 @@ from rastrainer.study.database.schema import (
 )
 
 _COMMANDS = "SELECT count(*) FROM sqlite_master WHERE type NOT IN ('table', 'index')"
+_BY_WORDS = {
+    "not a database": "{0} is not a study database.",
+    "readonly": "The study {0} is read-only; allow writing to it and its folder.",
+    "unable to open": "The study {0} cannot be opened; check its permissions.",
+    "full": "The study {0} cannot be written: the disk is full.",
+    "disk i/o": "The study {0} cannot be read or written: the disk has errors.",
+}
+_DAMAGED = "The study {0} is damaged; restore it from a backup."
 
 
 class SqliteDatabase(StudyDatabase):
@@ -134,20 +142,8 @@ class SqliteDatabase(StudyDatabase):
                     f"Another program has locked the study {self.path}; try again when it has "
                     "finished."
                 ) from error
-            raise InputError(self._sentence(text)) from error
-
-    def _sentence(self, text: str) -> str:
-        reasons = {
-            "not a database": f"{self.path} is not a study database.",
-            "readonly": f"The study {self.path} is read-only; allow writing to it and its folder.",
-            "unable to open": f"The study {self.path} cannot be opened; check its permissions.",
-            "full": f"The study {self.path} cannot be written: the disk is full.",
-            "disk i/o": f"The study {self.path} cannot be read or written: the disk has errors.",
-        }
-        for words, sentence in reasons.items():
-            if words in text:
-                return sentence
-        return f"The study {self.path} is damaged; restore it from a backup."
+            sentence = next((said for words, said in _BY_WORDS.items() if words in text), _DAMAGED)
+            raise InputError(sentence.format(self.path)) from error
 
 
 class ReadOnlySqliteDatabase(SqliteDatabase):

@@ -220,15 +220,12 @@ class Study:
     ) -> bool:
         """Store a finished trial with its results, if known; return whether it was new.
 
-        A trial that is already stored is not changed. An unknown trainee is added without consent,
-        so that no trial is lost.
+        A trial that is already stored is not changed, and `DeletedTrialError` is raised if it was
+        deleted. An unknown trainee is added without consent, so that no trial is lost.
 
         Args:
             record: The trial, or its untrusted JSON object.
             delivered: The original object, whose unknown keys are stored too.
-
-        Raises:
-            DeletedTrialError: the trial was deleted with its trainee.
         """
         if not isinstance(record, TrialRecord):
             delivered = record
@@ -265,8 +262,7 @@ class Study:
     def check_trial(self, record: TrialRecord) -> bool:
         """Return whether a trial would be new, before anything is computed from it.
 
-        Raises:
-            DeletedTrialError: the trial was deleted with its trainee.
+        `DeletedTrialError` if it was deleted.
         """
         with self.database.reading():
             self._check_not_deleted(record.trial_id)
@@ -369,8 +365,7 @@ class Study:
     def set_truth(self, trial_id: str, true_tre_mm: float, head_to_world: Sequence[float]) -> None:
         """Store the truth that the simulator revealed; only the first one counts.
 
-        Args:
-            head_to_world: 16 numbers row by row, RAS to `World`, mm.
+        `head_to_world` is 16 numbers row by row, RAS to `World`, mm.
         """
         what = "What the simulator reveals"
         error = json_checks.accepted(json_checks.number(0, TRUTH_LIMIT), true_tre_mm, what)

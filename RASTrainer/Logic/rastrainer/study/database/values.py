@@ -156,11 +156,7 @@ class StoredTrial:
 
 @dataclass(frozen=True)
 class StoredAbortedTrial:
-    """An aborted trial, and why it was repeated.
-
-    Attributes:
-        step: The study's step that was repeated because of it; "" if none.
-    """
+    """An aborted trial, and the study's step that was repeated because of it, and why."""
 
     record: AbortedTrial
     step: str = ""

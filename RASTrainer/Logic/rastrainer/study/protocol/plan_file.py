@@ -4,25 +4,37 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import MAX_RECORD_BYTES, read_json
-from rastrainer.json_records import record_from_json
+from rastrainer.json_records import record_from_json, record_to_json
 
-T = TypeVar("T")
-
-
-def read_plan(kind: type[T], path: Path | str, versions: Mapping[str, Any]) -> T:
-    return plan_from_json(kind, read_json(Path(path), MAX_RECORD_BYTES), versions, str(path))
+T = TypeVar("T", bound="PlanFile")
 
 
-def plan_from_json(kind: type[T], value: object, versions: Mapping[str, Any], what: str) -> T:
-    """Return the record of a decoded JSON object that states these versions, by their keys."""
-    if not isinstance(value, dict):
-        raise InputError(f"{what} must hold one JSON object.")
-    for key, version in versions.items():
-        if value.get(key) != version:
-            raise InputError(f"{what}: {key} must be {version}, which this version reads.")
-    others = {key: item for key, item in value.items() if key not in versions}
-    return record_from_json(kind, others, what, only_known=True)
+class PlanFile:
+    """A record whose file also states the versions that this program reads, by their keys."""
+
+    WHAT: ClassVar[str]
+    VERSIONS: ClassVar[Mapping[str, Any]]
+
+    @classmethod
+    def read(cls: type[T], path: Path | str) -> T:
+        return cls.from_json(read_json(Path(path), MAX_RECORD_BYTES), str(path))
+
+    @classmethod
+    def from_json(cls: type[T], value: object, what: str = "") -> T:
+        """Return the record of a decoded JSON object; `what` it is begins the errors."""
+        what = what or cls.WHAT
+        if not isinstance(value, dict):
+            raise InputError(f"{what} must hold one JSON object.")
+        for key, version in cls.VERSIONS.items():
+            if value.get(key) != version:
+                raise InputError(f"{what}: {key} must be {version}, which this version reads.")
+        others = {key: item for key, item in value.items() if key not in cls.VERSIONS}
+        return record_from_json(cls, others, what, only_known=True)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the object that the file holds."""
+        return {**self.VERSIONS, **record_to_json(self)}

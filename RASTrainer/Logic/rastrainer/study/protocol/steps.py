@@ -50,8 +50,7 @@ def instruction(step: StudyStep) -> str:
 def trial_title(task: str, mode: str, method: str, procedure: str) -> str:
     """Return the title of such a trial, such as "Task 3 by a trace over the skin"; "" is any.
 
-    Args:
-        method: Of registration; fiducials, the default, are not mentioned.
+    Fiducials, the default method, are not mentioned.
     """
     name = task.replace("-", " ").capitalize()
     then = f" with the procedure {procedure}" if procedure else ""

@@ -29,7 +29,6 @@ from rastrainer.study.protocol.steps import objections_to
 from rastrainer.study.protocol.study_protocol import (
     StudyProtocol,
     steps_for,
-    study_protocol_from_json,
 )
 from rastrainer.study_messages import StudyStep
 from rastrainer.trial.aborted_trial import AbortedTrial
@@ -72,7 +71,7 @@ class StudyProgress:
     def protocol(self) -> StudyProtocol | None:
         """Return the study's protocol, or None if trainees practice freely."""
         row = self._database.row("SELECT protocol_json FROM study_protocol")
-        return None if row is None else decoded(row[0], study_protocol_from_json)
+        return None if row is None else decoded(row[0], StudyProtocol.from_json)
 
     def _require_protocol(self) -> StudyProtocol:
         protocol = self.protocol()
@@ -107,7 +106,6 @@ class StudyProgress:
         )
 
     def progress(self, pseudonym: str) -> StepProgress:
-        """Return the progress of a trainee."""
         with self._database.reading():
             protocol = self._require_protocol()
             enrolled = self._database.row(
@@ -143,12 +141,7 @@ class StudyProgress:
     def finish(
         self, pseudonym: str, step: str, details: Mapping[str, Any] | None = None
     ) -> StepProgress:
-        """Store that the next step was done and return the new progress.
-
-        Args:
-            details: `trialId` of a stored trial, `answers` of a questionnaire, or `minutes` of a
-                trial run or break.
-        """
+        """Store that the next step was done, with details of `StepEntry`; return the progress."""
         with self._database.writing():
             progress = self.progress(pseudonym)
             expected = progress.expected(step)
@@ -166,12 +159,11 @@ class StudyProgress:
     def _store(
         self, pseudonym: str, step: str, outcome: str, details: Mapping[str, Any]
     ) -> StepProgress:
-        with self._database.writing():
-            text = json_text(dict(details))
-            self._database.insert(
-                "steps", trainee=pseudonym, step=step, outcome=outcome, details_json=text
-            )
-            return self.progress(pseudonym)
+        text = json_text(dict(details))
+        self._database.insert(
+            "steps", trainee=pseudonym, step=step, outcome=outcome, details_json=text
+        )
+        return self.progress(pseudonym)
 
     def explain_repeat(self, pseudonym: str, reason: str) -> StepProgress:
         """Store why the next step is repeated after an abort; return the new progress."""
@@ -179,10 +171,8 @@ class StudyProgress:
             progress = self.progress(pseudonym)
             if not progress.unexplained:
                 raise InputError("The next step was not aborted; it needs no reason to be played.")
-            step, checked = (
-                progress.due(),
-                checked_reason(reason, "An aborted trial can be repeated"),
-            )
+            step = progress.due()
+            checked = checked_reason(reason, "An aborted trial can be repeated")
             for record in progress.unexplained:
                 self._database.insert(
                     "repeats", trial_id=record.trial_id, step=step.name, reason=checked

@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import (
@@ -17,7 +16,6 @@ from rastrainer.json_checks import (
     texts,
     whole_number,
 )
-from rastrainer.json_records import record_to_json
 from rastrainer.protocol import (
     SKIN_KEYS,
     TRIAL_RUN,
@@ -25,7 +23,7 @@ from rastrainer.protocol import (
     RegistrationMethod,
     StepKind,
 )
-from rastrainer.study.protocol.plan_file import plan_from_json, read_plan
+from rastrainer.study.protocol.plan_file import PlanFile
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study_messages import (
     FIDUCIALS,
@@ -49,8 +47,6 @@ BEFORE_ALL, BEFORE_MODE, AFTER_TASK, AFTER_MODE, AFTER_ALL = OCCASIONS = (
     "after-all",
 )
 MAX_STEPS = 1000
-_VERSIONS = {"formatVersion": 1, "scoreVersion": SCORE_VERSION}
-"""A study started with an earlier one continues with the present; each score holds its own."""
 _MODES = tuple(mode.value for mode in Mode)
 _ALLOWANCES = tuple(each.value for each in Allowance)
 
@@ -83,7 +79,7 @@ class ScheduledQuestionnaire:
 
 
 @dataclass(frozen=True)
-class StudyProtocol:
+class StudyProtocol(PlanFile):
     """What every trainee of a study does.
 
     Attributes:
@@ -104,6 +100,9 @@ class StudyProtocol:
         check_journals: Whether a trial is scored only if it follows from its journal.
     """
 
+    WHAT = "The protocol"
+    VERSIONS: ClassVar = {"formatVersion": 1, "scoreVersion": SCORE_VERSION}
+    """A study started with an earlier one continues with the present; each score holds its own."""
     name: Annotated[str, identifier]
     title: Annotated[str, text(120)]
     modes: Annotated[tuple[str, ...], texts(1, len(_MODES), _MODES)]
@@ -152,10 +151,6 @@ class StudyProtocol:
                 "trials."
             )
 
-    def to_json(self) -> dict[str, Any]:
-        """Return the object that the file holds."""
-        return {**_VERSIONS, **record_to_json(self)}
-
 
 def pass_mark_of(
     protocol: StudyProtocol | None, method: str, is_procedure: bool = False
@@ -169,14 +164,6 @@ def pass_mark_of(
         return PASS_MARK
     is_meant = method == RegistrationMethod.FIDUCIALS and not is_procedure
     return protocol.pass_mark if is_meant else None
-
-
-def read_study_protocol(path: Path | str) -> StudyProtocol:
-    return read_plan(StudyProtocol, path, _VERSIONS)
-
-
-def study_protocol_from_json(value: Any) -> StudyProtocol:
-    return plan_from_json(StudyProtocol, value, _VERSIONS, "The protocol")
 
 
 def protocol_text(protocol: StudyProtocol) -> str:
@@ -214,7 +201,8 @@ def _steps(protocol: StudyProtocol, place: int) -> Iterator[StudyStep]:
     yield from _questions(protocol, BEFORE_ALL, "", "before-all")
     for index, mode in enumerate(mode_order(protocol, place)):
         if index and protocol.break_between_modes_min:
-            yield _step(StepKind.BREAK, f"{mode}/break", minutes=protocol.break_between_modes_min)
+            minutes = protocol.break_between_modes_min
+            yield StudyStep("", StepKind.BREAK, name=f"{mode}/break", minutes=minutes)
         yield from _in_mode(protocol, place, index, mode)
     yield from _questions(protocol, AFTER_ALL, "", "after-all")
 
@@ -222,10 +210,11 @@ def _steps(protocol: StudyProtocol, place: int) -> Iterator[StudyStep]:
 def _in_mode(protocol: StudyProtocol, place: int, index: int, mode: str) -> Iterator[StudyStep]:
     yield from _questions(protocol, BEFORE_MODE, mode, f"{mode}/before")
     if protocol.trial_run_min:
-        yield _step(
+        yield StudyStep(
+            "",
             StepKind.TRIAL_RUN,
-            f"{mode}/{TRIAL_RUN}",
-            mode,
+            name=f"{mode}/{TRIAL_RUN}",
+            mode=mode,
             task=TRIAL_RUN,
             minutes=protocol.trial_run_min,
             guidance=protocol.guidance,
@@ -237,12 +226,14 @@ def _in_mode(protocol: StudyProtocol, place: int, index: int, mode: str) -> Iter
             name = f"{mode}/{round_ + 1}/{task}"
             if not is_first and protocol.break_between_tasks_min:
                 minutes = protocol.break_between_tasks_min
-                yield _step(StepKind.BREAK, f"{name}/break", mode, minutes=minutes)
+                pause = f"{name}/break"
+                yield StudyStep("", StepKind.BREAK, name=pause, mode=mode, minutes=minutes)
             is_first = False
-            yield _step(
+            yield StudyStep(
+                "",
                 StepKind.TRIAL,
-                name,
-                mode,
+                name=name,
+                mode=mode,
                 task=task,
                 guidance=protocol.guidance,
                 ghost=protocol.ghost,
@@ -261,11 +252,8 @@ def _questions(
     for asked in protocol.questionnaires:
         if asked.when == occasion and (not asked.modes or mode in asked.modes):
             name = f"{prefix}/{asked.name}"
-            yield _step(StepKind.QUESTIONNAIRE, name, mode, questionnaire=asked.name)
-
-
-def _step(kind: StepKind, name: str, mode: str = "", **others: Any) -> StudyStep:
-    return StudyStep("", kind, name=name, mode=mode, **others)
+            kind = StepKind.QUESTIONNAIRE
+            yield StudyStep("", kind, name=name, mode=mode, questionnaire=asked.name)
 
 
 def williams_design(count: int) -> tuple[tuple[int, ...], ...]:
