@@ -32,11 +32,7 @@ from rastrainer_simulator.presentation.feedback_event import (
     feedback_of,
 )
 from rastrainer_simulator.presentation.messages import Frames, Hello, InstructorOrder, Seat
-from rastrainer_simulator.presentation.presenter import (
-    Control,
-    Presenter,
-    TraceGuidance,
-)
+from rastrainer_simulator.presentation.presenter import Control, Presenter, TraceGuidance
 from rastrainer_simulator.presentation.screen import PRESS, Tone
 from rastrainer_simulator.record.trial_context import DisplayReport, ViewReport
 from rastrainer_simulator.replay.playback import PlaybackSwitch
@@ -132,7 +128,7 @@ class FlowPresenter(Presenter):
             screen = self._flow.screen()
             if screen != self.screen:
                 self.screen = screen
-                self.publish(screen)
+                self.updates.publish(screen)
 
     def pictures(self, now: SimulationState) -> Pictures:
         return self._session.view.pictures(now, self.shown.setup.scenario.cameras)
@@ -357,7 +353,7 @@ class FlowPresenter(Presenter):
         feedback = feedback_of(what, self._number, volume)
         if feedback.rumble > 0.0:
             self.rumble(feedback.rumble, FEEDBACK_EFFECTS[what].seconds)
-        self.publish(feedback)
+        self.updates.publish(feedback)
 
     def _lose_sight(self, view: int, why: str) -> None:
         """Pause and release control if no one can see the trial; `why` is the key of a sentence."""
@@ -448,5 +444,5 @@ class FlowPresenter(Presenter):
         control = Control() if holder is None else Control(holder.kind.value, holder.view)
         if control != self.control:
             self.control = control
-            self.publish(control)
+            self.updates.publish(control)
             self._is_changed = True

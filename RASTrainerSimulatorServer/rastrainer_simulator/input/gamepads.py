@@ -59,12 +59,8 @@ _W3C_BUTTONS = (
 )
 
 
-def gamepad_inputs(axes: Sequence[float], buttons: Sequence[float]) -> dict[str, float]:
-    return {**dict(zip(BUTTONS, buttons, strict=False)), **_halves(AXES, axes)}
-
-
 def w3c_gamepad_inputs(axes: Sequence[float], buttons: Sequence[float]) -> dict[str, float]:
-    """Return the same of a gamepad in the W3C's standard layout, as a browser reads it."""
+    """Return all inputs of a gamepad in the W3C's standard layout, as a browser reads it."""
     return {**dict(zip(_W3C_BUTTONS, buttons, strict=False)), **_halves(AXES[:4], axes)}
 
 
@@ -130,7 +126,8 @@ class Gamepads:
             buttons = tuple(float(pad.get_button(button)) for button in range(len(BUTTONS)))
             if self._reported.get(number) != (axes, buttons):
                 self._reported[number] = axes, buttons
-                self._listener.gamepad_moved(number, gamepad_inputs(axes, buttons))
+                inputs = {**dict(zip(BUTTONS, buttons, strict=True)), **_halves(AXES, axes)}
+                self._listener.gamepad_moved(number, inputs)
 
     def rumble(self, strength: float, seconds: float) -> None:
         """Let all gamepads that can do so vibrate."""

@@ -541,11 +541,6 @@ class ViewRole(str, Enum):
     BOARD = "board"
     """A teacher's board: a spectator whose key outlives the simulator's process."""
 
-    @property
-    def is_watch_only(self) -> bool:
-        """Whether its views may drive nothing."""
-        return self is not ViewRole.VIEW
-
 
 @dataclass(frozen=True)
 class PairingRequest:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from concurrent.futures import Future
 from dataclasses import replace
+from functools import partial
 from importlib import import_module
 from pkgutil import iter_modules
 from types import MappingProxyType
@@ -26,7 +27,7 @@ from rastrainer_simulator.flow.pages import (
     trainee_id,
     trial_review,
 )
-from rastrainer_simulator.flow.pages.session_page import PageKind, SessionPage
+from rastrainer_simulator.flow.pages.session_page import SessionPage, ShownPage
 from rastrainer_simulator.flow.pages.trainee_id import QuestionnairePage
 from rastrainer_simulator.flow.pages.trial_review import MOST_TRIALS
 from rastrainer_simulator.flow.session.open_pages import OpenPages
@@ -223,9 +224,9 @@ def names_of_pages() -> set[str]:
     names = (each.name for each in iter_modules(pages.__path__, f"{pages.__name__}."))
     modules = (trial_screen, procedure_screen, *map(import_module, names))
     found = [value for module in modules for value in vars(module).values()]
-    kinds = [value for value in found if isinstance(value, PageKind)]
+    kinds = {v.args[0] for v in found if isinstance(v, partial) and v.func is ShownPage}
     classes = [v for v in found if isinstance(v, type) and issubclass(v, SessionPage) and v.name]
-    return {each.name for each in (*kinds, *classes)}
+    return kinds | {each.name for each in classes}
 
 
 def with_curriculum(session) -> None:

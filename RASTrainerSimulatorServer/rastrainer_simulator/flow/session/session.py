@@ -29,9 +29,7 @@ from rastrainer_simulator.flow.session.preferences import (
 )
 from rastrainer_simulator.flow.session.services import FlowServices, SimulationReload
 from rastrainer_simulator.flow.session.trace_places import TracePlaces
-from rastrainer_simulator.flow.session.trainee_history import (
-    TraineeHistory,
-)
+from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
 from rastrainer_simulator.flow.session.trial_view import TrialView
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, Bindings, write_bindings
@@ -42,13 +40,7 @@ from rastrainer_simulator.presentation.screen import Notices, Tone
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.replay.ghost import TrialGhost
 from rastrainer_simulator.replay.recorded_trial import TrialLoading, load_trial
-from rastrainer_simulator.state import (
-    Answer,
-    Event,
-    SimulationState,
-    TouchStage,
-    TrainingState,
-)
+from rastrainer_simulator.state import Answer, Event, SimulationState, TouchStage, TrainingState
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from rastrainer_simulator.vectors import Vector, in_meters
 from rastrainer_simulator.viewpoint.view_control import Orbit

@@ -180,11 +180,7 @@ def turned(sticks: OperatorInput, turn_deg: float) -> OperatorInput:
     far = max(1.0, math.hypot(sideways, ahead))
     return replace(
         sticks,
-        translation=(
-            (c * right - s * forward) / long,
-            (s * right + c * forward) / long,
-            up / long,
-        ),
+        translation=((c * right - s * forward) / long, (s * right + c * forward) / long, up / long),
         rotation=((c * sideways - s * ahead) / far, (s * sideways + c * ahead) / far),
     )
 
