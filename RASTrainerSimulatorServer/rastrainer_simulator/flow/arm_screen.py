@@ -150,11 +150,6 @@ class ArmScreen:
 
         The sticks are shown to who clicks, and hidden again. Where the tool can be tilted, the
         right stick does it, or lifts and lowers the tool.
-
-        Args:
-            moving: about movement.
-            names: key of the text of each control.
-            can_tilt: whether the tool can be tilted.
         """
         session, operator = self._session, self._session.operator
         say, sticks = session.texts.say, session.screen_sticks

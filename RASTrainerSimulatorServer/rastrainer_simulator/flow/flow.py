@@ -99,21 +99,6 @@ class Flow:
         if training.result is not self._seen_result:
             self._seen_result = training.result
             session.history.changed(training.trainee, training.trial_id)
-        self._note_ghost_and_slicer()
-        self._wait_for_picture(dt)
-        if session.pages.top is not None:
-            session.pages.advance(dt)
-        elif session.tutorial is not None:
-            self._advance_tutorial(dt, session.tutorial)
-        elif self._trial_screen.has_practice_just_ended():
-            self._trial_screen.open_menu()
-
-    def _note_ghost_and_slicer(self) -> None:
-        """Have the journal say that a ghost is shown from now on, or the trainee that none is.
-
-        A connection to Slicer that was lost is lasting news.
-        """
-        session = self._session
         if session.ghost.has_just_loaded():
             if session.ghost.rule is GhostRule.OFF:
                 session.notices.add(session.texts.say("ghost.none"))
@@ -123,6 +108,13 @@ class Flow:
         self._had_slicer = self._had_slicer or is_connected
         is_lost = self._had_slicer and not is_connected
         session.notices.warn("slicer", "warning.slicer" if is_lost else "")
+        self._wait_for_picture(dt)
+        if session.pages.top is not None:
+            session.pages.advance(dt)
+        elif session.tutorial is not None:
+            self._advance_tutorial(dt, session.tutorial)
+        elif self._trial_screen.has_practice_just_ended():
+            self._trial_screen.open_menu()
 
     def pressed(self, control: ControlName) -> None:
         if self._session.pages.top is None:
@@ -298,9 +290,8 @@ class Flow:
             if training.task == TRIAL_RUN and learned is not None:
                 self._control_loop.note_display(learned)
             session.view.begin(session.control_loop.setup, truth, session.state)
-            is_guided = training.trace is not None and guidance is not Guidance.NONE
             session.places.forget()
-            if is_guided:
+            if training.trace is not None and guidance is not Guidance.NONE:
                 session.places.begin(training.trial_id, session.control_loop.setup, truth)
             begin_ghost(session, truth.head_to_world)
             session.trainee = training.trainee

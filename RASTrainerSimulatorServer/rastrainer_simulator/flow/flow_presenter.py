@@ -64,7 +64,6 @@ class FlowPresenter(Presenter):
     some hundred times a second; nothing here waits.
 
     Attributes:
-        controls: what the operator holds.
         shown: the states that the views show.
         rumble: has the simulator's gamepads vibrate with a strength of 0 to 1 for a time (s).
     """

@@ -40,9 +40,6 @@ class RunningPresenter:
 
     When the gamepad in use is unplugged, the robot stops at once, the trial is paused and a warning
     says so; the trial can be resumed with the keyboard.
-
-    Attributes:
-        presenter: what the views show.
     """
 
     def __init__(

@@ -168,7 +168,6 @@ def read_bindings(path: Path) -> Bindings:
 
 
 def write_bindings(path: Path, bindings: Bindings) -> None:
-    """Save the bindings."""
     write_private_json(path, record_to_json(bindings))
 
 

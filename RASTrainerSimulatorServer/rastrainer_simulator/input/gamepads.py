@@ -103,11 +103,7 @@ class Gamepads:
     """Polls SDL; one poll takes some ten microseconds, and SDL's part of it leaves Python alone."""
 
     def __init__(self, listener: GamepadListener) -> None:
-        """Start SDL and find what is plugged in at the first poll.
-
-        Raises:
-            NoGamepadsError: this computer cannot read gamepads.
-        """
+        """Start SDL and find what is plugged in at the first poll."""
         self._pygame, self._controller = start_sdl()
         self._listener = listener
         self._open: dict[int, Any] = {}
@@ -166,11 +162,7 @@ class NoGamepadsError(RASTrainerError):
 
 
 def start_sdl() -> tuple[ModuleType, ModuleType]:
-    """Return pygame and its module of game controllers, both ready.
-
-    Raises:
-        NoGamepadsError: pygame is not installed, or SDL does not start.
-    """
+    """Return pygame and its module of game controllers, both ready."""
     with _environment(_HINTS):
         try:
             import pygame

@@ -123,7 +123,6 @@ class SteeringSettings:
     """How the tool's direction is steered; lengths in m, angles in rad.
 
     Attributes:
-        choice: how the direction is chosen.
         coarse_turn: fastest turn by the stick, rad/s.
         fine_turn: the same while the trigger for fine speed is held, rad/s.
         leaning_turn: fastest turn toward the surface normal, rad/s.

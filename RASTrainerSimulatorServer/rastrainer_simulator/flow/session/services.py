@@ -23,12 +23,10 @@ class FlowServices:
     """Services of the process for the flow.
 
     Attributes:
-        config: folder of the settings files.
         records: folder of the trials' journals.
         use_settings: has the simulation continue with other settings, between two trials.
         list_scenarios: lists the scenarios that `use_scenario` takes by their names.
         use_scenario: has the simulation continue with another scenario, between two trials.
-        is_slicer_connected: whether a client that registers and scores is connected.
         scores_alone: whether a trial outside of a study is scored here where no Slicer is
             connected.
         pin: the instructor's; None if there can be none.

@@ -58,13 +58,10 @@ class TrainingSession:
         trainee: ID as typed.
         mode: "desktop" or "hmd".
         procedure: name of the procedure after the touches; "" for none.
-        has_read_introduction: whether the pages before the experiment menu can be skipped.
         local_scorer: scores a trial if no Slicer does; None if only Slicer may.
-        happened: gives feedback by sound and vibration.
         picture_share: how much of its picture the trainee's view has, 0 to 1, while it is awaited;
             else None.
         goes_on_blind: the trial that the trainee wants to go on without its picture; "" for none.
-        reload: has the simulation continue with other settings, or on another head.
         practiced: task and point of the latest practice; no point for the tutorial.
     """
 

@@ -63,10 +63,7 @@ class OwnTrial:
 
     Attributes:
         past: what progress is computed from.
-        scenario: name of the head.
-        started_utc: ISO 8601.
         is_passed: None without a pass mark.
-        journal: file in which it is recorded.
     """
 
     past: PastTrial

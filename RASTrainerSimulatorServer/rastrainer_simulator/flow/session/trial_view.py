@@ -44,7 +44,6 @@ class TrialView:
     """The viewpoint of the pictures of the present trial, and what the sticks mean from there.
 
     Attributes:
-        control: the view.
         stick_turn_deg: by how much right and forward of the sticks are turned against those of the
             scenario's camera, counterclockwise from above.
         yaw_deg: where the eyes look, degrees from World's x; None without a headset's controllers.

@@ -59,12 +59,9 @@ class TouchPractice:
         """Begin; the head stays where it is.
 
         Args:
-            setup: the simulation's.
-            state: in which it is.
             arguments: checked ones of StartTask, with `trialId`.
             points: which are touched.
             rest: where the tip may still be on the skin from a touch before, World, m.
-            task: of the points.
         """
         self._rest = rest
         self._settings = replace(setup.settings.training, acceptance_radius=CENTERED_M)
@@ -146,10 +143,6 @@ class Tutorial:
     """Leads through the steps, each of which is done when what it asks for has really happened.
 
     Attributes:
-        trainee: pseudonym.
-        mode: display mode.
-        setup: the simulation's, at the beginning.
-        steps: in order, for the device in use.
         points: that are touched: label → World, m.
         praised: the step that was just done, while it is praised; else None.
         practiced: the point that is practiced instead of all that; "" in the tutorial itself.
