@@ -146,11 +146,7 @@ class ArmScreen:
     def _hints(
         self, moving: Iterable[Hint], names: Mapping[ControlName, str], can_tilt: bool = False
     ) -> tuple[Hint, ...]:
-        """Return hints on movement, hints that press a control, and those on the screen's sticks.
-
-        The sticks are shown to who clicks, and hidden again. Where the tool can be tilted, the
-        right stick does it, or lifts and lowers the tool.
-        """
+        """Return the hints `moving`, hints that press a control, and those on the screen's sticks."""
         session, operator = self._session, self._session.operator
         say, sticks = session.texts.say, session.screen_sticks
         hints = list(moving)

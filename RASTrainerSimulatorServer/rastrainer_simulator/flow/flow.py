@@ -146,12 +146,10 @@ class Flow:
     def screen(self) -> Screen:
         session = self._session
         page, menu = session.pages.top, session.pages.menu()
-        notices = session.notices
-        lasting = notices.lasting(session.texts)
+        warnings = session.notices.shown(session.texts)
         preparing = ScreenMessage(session.preparing())
         if preparing.text and menu is not None and menu.name != PreparingPage.name:
-            lasting = (preparing, *lasting)
-        warnings = (*lasting, *notices.brief())
+            warnings = (preparing, *warnings)
         shown = None if page is None else page.screen()
         if shown is not None:
             return replace(shown, warnings=(*shown.warnings, *warnings))
@@ -169,10 +167,7 @@ class Flow:
         )
 
     def _over(self, shown: Screen, page: Page, menu: Menu) -> Screen:
-        """Return the screen of a menu over another, and why the trial is paused.
-
-        That is said unless the trainee did it.
-        """
+        """Return the screen of a menu over another, and why the trial is paused."""
         session, say = self._session, self._session.texts.say
         said = session.training.instruction
         why: tuple[ScreenMessage, ...] = ()

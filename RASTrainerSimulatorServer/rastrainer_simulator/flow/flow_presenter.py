@@ -64,7 +64,6 @@ class FlowPresenter(Presenter):
     some hundred times a second; nothing here waits.
 
     Attributes:
-        shown: the states that the views show.
         rumble: has the simulator's gamepads vibrate with a strength of 0 to 1 for a time (s).
     """
 
@@ -292,7 +291,6 @@ class FlowPresenter(Presenter):
         self._control_loop.note_display(report)
 
     def on_picture(self, view: int, task: str, share: float) -> None:
-        """Note how much of its picture a view has: a task waits for the trainee's view."""
         if view in self._views.joined:
             drawn = self._views.joined[view]
             drawn.task, drawn.share, drawn.waited_s = task, share, 0.0

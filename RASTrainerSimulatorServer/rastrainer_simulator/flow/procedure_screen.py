@@ -134,10 +134,7 @@ class ProcedureScreen(ArmScreen):
         )
 
     def _marks(self) -> tuple[ErrorArrow, ...]:
-        """Return the plan by the registration, and checkpoints as named marks on the skin.
-
-        Those touched by this registration are green.
-        """
+        """Return the plan by the registration, and checkpoints as named marks on the skin."""
         session, procedure = self._session, self._procedure
         if procedure.stage is Phase.VERIFYING:
             touched = {each.name for each in procedure.checkpoints}

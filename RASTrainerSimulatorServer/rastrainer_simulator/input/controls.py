@@ -62,7 +62,6 @@ class Controls:
     Attributes:
         bindings: which input does what; may be exchanged at any time.
         holder: what drives the arm; None until someone acts.
-        situation: whether the arm can be driven or a menu is open.
     """
 
     def __init__(
@@ -83,7 +82,6 @@ class Controls:
 
     @property
     def sticks(self) -> OperatorInput:
-        """What the arm should do; nothing while a menu is open."""
         if self.holder is None or self.situation is ControlContext.MENU:
             return NEUTRAL_STICKS
         return dataclasses.replace(self.held, operator=self.holder.kind.value)
@@ -147,13 +145,11 @@ class Controls:
         self._press_all(source, state, state.set_key(code, is_down))
 
     def set_sticks(self, source: Source, sticks: OperatorInput) -> None:
-        """Process the sticks of a headset's controllers."""
         state = self.add(source)
         state.set_sticks(sticks)
         self._noticed(source, state)
 
     def press(self, source: Source, control: ControlName) -> None:
-        """Process one press of a control that needs no bindings."""
         if self.allows(source, control):
             self._listener.pressed(control)
 
@@ -248,9 +244,6 @@ class InputState:
     Keys and buttons are pressed or not: a tap moves the tip by one small step, what is held speeds
     up smoothly, and stops at once, as a released stick does. What is held while the situation
     changes does nothing until it is released: the arm must not start because a menu closes.
-
-    Attributes:
-        device: whose bindings count.
     """
 
     def __init__(self, device: InputDevice) -> None:
@@ -332,7 +325,6 @@ class InputState:
         self._end_presses()
 
     def sticks(self, bindings: Bindings) -> OperatorInput:
-        """Return what the sticks and keys command the arm to do."""
         table = bindings.table(self.device)
         direct = _UNUSED if self._sticks_blocked else self._sticks
         is_fine = direct.fine or any(self.is_down(name) for name in table[ControlName.FINE])

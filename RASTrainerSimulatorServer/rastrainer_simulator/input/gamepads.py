@@ -15,21 +15,8 @@ from typing import Any, Protocol
 from rastrainer.errors import RASTrainerError
 
 BUTTONS = (
-    "a",
-    "b",
-    "x",
-    "y",
-    "back",
-    "guide",
-    "start",
-    "leftstick",
-    "rightstick",
-    "leftshoulder",
-    "rightshoulder",
-    "dpup",
-    "dpdown",
-    "dpleft",
-    "dpright",
+    *("a", "b", "x", "y", "back", "guide", "start", "leftstick", "rightstick"),
+    *("leftshoulder", "rightshoulder", "dpup", "dpdown", "dpleft", "dpright"),
 )
 """In SDL's order of GameController buttons."""
 
@@ -39,23 +26,8 @@ AXES = ("leftx", "lefty", "rightx", "righty", "lefttrigger", "righttrigger")
 GAMEPAD_INPUTS = frozenset((*BUTTONS, *(sign + axis for axis in AXES for sign in "-+")))
 
 _W3C_BUTTONS = (
-    "a",
-    "b",
-    "x",
-    "y",
-    "leftshoulder",
-    "rightshoulder",
-    "+lefttrigger",
-    "+righttrigger",
-    "back",
-    "start",
-    "leftstick",
-    "rightstick",
-    "dpup",
-    "dpdown",
-    "dpleft",
-    "dpright",
-    "guide",
+    *("a", "b", "x", "y", "leftshoulder", "rightshoulder", "+lefttrigger", "+righttrigger"),
+    *("back", "start", "leftstick", "rightstick", "dpup", "dpdown", "dpleft", "dpright", "guide"),
 )
 
 
@@ -112,7 +84,6 @@ class Gamepads:
         self._has_looked = False
 
     def poll(self) -> None:
-        """Report what has changed since the last poll."""
         # `get` pumps SDL's events; what came or went is looked for by asking.
         if self._pygame.event.get() or not self._has_looked:
             self._has_looked = True
@@ -126,7 +97,6 @@ class Gamepads:
                 self._listener.gamepad_moved(number, inputs)
 
     def rumble(self, strength: float, seconds: float) -> None:
-        """Let all gamepads that can do so vibrate."""
         milliseconds = int(1000.0 * min(seconds, LONGEST_RUMBLE_S))
         for pad in self._open.values():
             pad.rumble(strength, strength, milliseconds)

@@ -167,7 +167,6 @@ class CoveringBodies:
     """Bodies of the arm that cover tip or next point, which views draw translucent.
 
     Attributes:
-        view, inset: in the two pictures.
         headset: for the eyes of the newest headset.
     """
 
@@ -186,7 +185,6 @@ class StateNews(ViewMessage):
         view: camera of the main picture.
         inset: camera along the skin or across the line of a procedure; None without either.
         next: label; None without one.
-        elapsed_s: of the trial.
         planned_target: World, m.
         delayed: late and skipped ticks of the control loop.
         headset: for spectators only; None while nobody wears a headset.
@@ -229,9 +227,7 @@ class Feedback(ViewMessage):
     Attributes:
         number: counts from 1 without a gap.
         kind: what happened; a `FeedbackEvent`.
-        sound: name of the sound to play, "" for none.
         volume: 0 while sounds are muted.
-        rumble: strength of the vibration.
     """
 
     type = "event"
@@ -317,16 +313,9 @@ class Seat:
     """State of a seat on a teacher's board, except for its trial.
 
     Attributes:
-        trainee: whose trial it is, or whose ID is entered; "" for none.
-        task: title of the open trial's task, "" without one.
-        count: points of this task; 0 without a trial.
+        count: points of the open trial's task; 0 without one.
         screen: title of the open menu, "" while the trainee works.
-        instruction: what the trainee is asked to do.
-        warnings: in the words that the trainee reads.
         score: the trainee's latest; None before the first.
-        holder: what drives the arm, "" for nothing.
-        slicer: whether a Slicer is connected.
-        language: BCP 47 tag of the texts.
         assignments: where the trainee stands in a curriculum, a sentence; "" without one.
     """
 
@@ -379,12 +368,7 @@ News = (
 
 @dataclass(frozen=True)
 class Hello(ViewMessage):
-    """A view's description of itself when it joins.
-
-    Attributes:
-        device: model of the headset or name of the browser; "" if unknown.
-        refresh_hz: of its display; 0 if unknown.
-    """
+    """A view's description of itself when it joins."""
 
     type = "hello"
     kind: Literal["desktop", "page", "headset", "spectator", "board"]
@@ -424,7 +408,6 @@ class SticksInput(ViewMessage):
     """Sticks of XR controllers or on the screen, as in `OperatorInput`.
 
     Attributes:
-        fine: whether they move slowly.
         yaw_deg: where the eyes look, counterclockwise from World's x: forward is there.
     """
 

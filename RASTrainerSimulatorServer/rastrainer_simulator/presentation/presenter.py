@@ -60,8 +60,6 @@ class Presenter:
     of a view goes to the method of its type.
 
     Attributes:
-        screen: what the trainee reads now.
-        control: what drives the arm now.
         updates: each new screen, feedback and holder of the control.
     """
 

@@ -90,7 +90,6 @@ class Moving:
         return shortened(remaining, length(step)) if braking_speed < self._speed else step
 
     def outcome(self, dt: float, tip: Vector, direction: Vector) -> MotionOutcome | None:
-        """Return how the move has ended, None while it lasts."""
         remaining = distance(tip, self.goal)
         turn = angle(direction, self.direction) if self.direction else 0.0
         if remaining <= ARRIVED and turn <= ARRIVED:
@@ -130,7 +129,6 @@ class FollowingPath(Moving):
         super().__init__(*first)
 
     def outcome(self, dt: float, tip: Vector, direction: Vector) -> MotionOutcome | None:
-        """Return how the path has ended, None while it lasts."""
         if self._following and distance(tip, self.goal) <= VIA:
             super().__init__(*self._following.pop(0))
             return None

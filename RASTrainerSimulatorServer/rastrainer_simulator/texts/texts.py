@@ -52,12 +52,7 @@ LANGUAGES: Mapping[str, Mapping[str, str]] = MappingProxyType(
 
 
 class LocalizedText(str):
-    """A sentence that remembers how it was made, so that a view can show it in its own language.
-
-    Attributes:
-        key: of the sentence in its table.
-        values: what was filled in.
-    """
+    """A sentence that remembers how it was made, so that a view can show it in its own language."""
 
     key: str
     values: Mapping[str, object]
@@ -106,7 +101,6 @@ class Texts:
         return key in self._table
 
     def say(self, key: str, **values: object) -> LocalizedText:
-        """Return the sentence with its values filled in."""
         return LocalizedText(self._formatter.vformat(self._table[key], (), values), key, values)
 
     def listed(self, words: Iterable[str]) -> str:

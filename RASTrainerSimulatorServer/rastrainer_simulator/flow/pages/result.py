@@ -168,10 +168,7 @@ class ResultPage(SessionPage):
         return [*facts, *_facts_of_trial(self.session), *shown]
 
     def _rows(self) -> tuple[PageRow, ...]:
-        """Return where the trainee can go: after a failure first to what helps.
-
-        A study goes on all the same.
-        """
+        """Return where the trainee can go: after a failure first to what helps."""
         session, is_in_study = self.session, self.session.trial_step is not None
         rows = [
             *_onward(self),

@@ -94,11 +94,7 @@ _WORST = {InputDevice.KEYBOARD: "KeyT", InputDevice.GAMEPAD: "x"}
 
 
 class ReplayPage(SessionPage):
-    """Waits for the recorded trial, and replays it for the operator.
-
-    Attributes:
-        playback: None while the trial is being loaded.
-    """
+    """Waits for the recorded trial, and replays it for the operator."""
 
     name = "replay"
 

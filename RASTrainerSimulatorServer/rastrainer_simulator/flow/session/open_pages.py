@@ -30,7 +30,6 @@ class PageRow:
     Attributes:
         accept: is called when a button is pressed, a text is chosen, or a choice accepted.
         step: moves a choice to its next (1) or previous (−1) option.
-        write: is called with the new value of a text.
     """
 
     item: MenuItem

@@ -48,10 +48,7 @@ class OperatorDevice:
         return InputDevice.GAMEPAD if has_pad else InputDevice.KEYBOARD
 
     def learned(self, mode: str) -> SourceKind:
-        """Return the device that drives the arm, if it has its own controls to be learned.
-
-        `mode` is "desktop" or "hmd".
-        """
+        """Return the device that drives the arm, if it has its own controls to be learned."""
         holder = self.controls.holder
         if holder is not None and holder.kind in (SourceKind.XR, SourceKind.TOUCH_SCREEN):
             return holder.kind

@@ -55,10 +55,7 @@ class TrainingSession:
     """The trainee's choices and the services behind the pages.
 
     Attributes:
-        trainee: ID as typed.
         mode: "desktop" or "hmd".
-        procedure: name of the procedure after the touches; "" for none.
-        local_scorer: scores a trial if no Slicer does; None if only Slicer may.
         picture_share: how much of its picture the trainee's view has, 0 to 1, while it is awaited;
             else None.
         goes_on_blind: the trial that the trainee wants to go on without its picture; "" for none.
@@ -129,7 +126,6 @@ class TrainingSession:
 
     @property
     def has_open_trial(self) -> bool:
-        """Whether a trial can still be changed."""
         return self.training.phase in OPEN_PHASES
 
     @property
@@ -259,7 +255,6 @@ class TrainingSession:
 
     @contextmanager
     def complaining(self) -> Iterator[None]:
-        """Tell the trainee why something is impossible."""
         try:
             yield
         except InputError as error:

@@ -59,12 +59,7 @@ _START = re.compile(
 
 @dataclass(frozen=True)
 class OwnTrial:
-    """A scored or failed trial, as its trainee finds it again.
-
-    Attributes:
-        past: what progress is computed from.
-        is_passed: None without a pass mark.
-    """
+    """A scored or failed trial, as its trainee finds it again."""
 
     past: PastTrial
     scenario: str
@@ -83,7 +78,6 @@ class TraineeHistory:
     Attributes:
         skipped_runs: trainees and scenarios whose tasks do not wait for the trial run.
         skipped_tutorials: trainees whose trial run does not wait for the tutorial.
-        learned: outcome of each trainee's latest tutorial.
     """
 
     def __init__(self, records: Path) -> None:
@@ -134,7 +128,6 @@ class TraineeHistory:
         return device.value in self._devices.get(trainee, ())
 
     def keep_tutorial(self, outcome: TutorialOutcome) -> None:
-        """Count a finished tutorial, and write its file."""
         self.note_tutorial(outcome)
         utc = iso(datetime.now(timezone.utc))
         path = self._records / f"{file_stamp(utc)}_{uuid.uuid4()}{TUTORIAL_SUFFIX}"
@@ -166,10 +159,7 @@ class TraineeHistory:
         return tuple(trial.past for trial in self.own(trainee))
 
     def best(self, trainee: str, task: str) -> tuple[Path, ...]:
-        """Return the journals of a trainee's acceptable trials of a task, the best score first.
-
-        Only fiducials are compared.
-        """
+        """Return the journals of a trainee's acceptable trials of a task, the best score first."""
         found = [
             own
             for own in self.own(trainee)

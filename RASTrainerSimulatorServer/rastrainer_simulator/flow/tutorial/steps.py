@@ -77,7 +77,6 @@ class TutorialObservation:
     Attributes:
         axes: right, forward and up as the sticks mean them.
         yaw_deg: where the eyes look, from World's x; None without a headset's controllers.
-        has_best_view: whether the view has gone to the best view of the next point.
         has_paused: whether the menu was opened and closed again in this step.
     """
 

@@ -44,7 +44,6 @@ class TouchPractice:
 
     Attributes:
         training: the state machine, which knows where the head and the points are.
-        has_points: whether the views mark the next point.
     """
 
     def __init__(
@@ -81,7 +80,6 @@ class TouchPractice:
         self._shown = self._present()
 
     def end_refusal(self, sim_time: float) -> None:
-        """Forget a refusal that has been shown long enough."""
         self.training.end_refusal(sim_time)
         self._shown = self._present()
 
@@ -209,7 +207,6 @@ class Tutorial:
 
     @property
     def has_learned_view(self) -> bool:
-        """Whether the view may go to the next point by itself."""
         return self.step in (None, TutorialStep.GUIDED, *OF_PRACTICE)
 
     @property
