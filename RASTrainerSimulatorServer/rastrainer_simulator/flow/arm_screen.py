@@ -146,7 +146,7 @@ class ArmScreen:
     def _hints(
         self, moving: Iterable[Hint], names: Mapping[ControlName, str], can_tilt: bool = False
     ) -> tuple[Hint, ...]:
-        """Return the hints `moving`, those that press a control, and those on the screen's sticks."""
+        """Return the hints `moving`, those that press a control, and those on screen sticks."""
         session, operator = self._session, self._session.operator
         say, sticks = session.texts.say, session.screen_sticks
         hints = list(moving)
