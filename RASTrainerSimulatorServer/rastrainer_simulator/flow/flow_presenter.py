@@ -16,7 +16,7 @@ from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.flow.session.services import FlowServices
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.bindings import Bindings
-from rastrainer_simulator.input.controls import IDLE_S, Controls
+from rastrainer_simulator.input.controls import IDLE_S, Controls, ControlsListener
 from rastrainer_simulator.input.gamepads import w3c_gamepad_inputs
 from rastrainer_simulator.input.inputs import (
     ControlContext,
@@ -78,7 +78,8 @@ class FlowPresenter(Presenter):
         self._control_loop = control_loop
         self.shown = PlaybackSwitch(control_loop)
         # Another operator may take control from an idle one, unless a PIN locks it.
-        self.controls = Controls(bindings, self, lambda: not self._session.lock.is_locked)
+        listener = ControlsListener(self.pressed, self.input_pressed, self.taken_over, self.refused)
+        self.controls = Controls(bindings, listener, lambda: not self._session.lock.is_locked)
         self._session = TrainingSession(
             control_loop, self.controls, services, preferences, self.happened
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
@@ -18,7 +18,7 @@ from rastrainer_simulator.flow.session.preferences import (
 )
 from rastrainer_simulator.flow.session.services import FlowServices
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, DEFAULT_BINDINGS, read_bindings
-from rastrainer_simulator.input.gamepads import Gamepads
+from rastrainer_simulator.input.gamepads import GamepadNews, Gamepads
 from rastrainer_simulator.input.inputs import SIMULATOR_STATION, Source, SourceKind
 from rastrainer_simulator.loop.control_loop import ControlLoop
 
@@ -56,7 +56,7 @@ class RunningPresenter:
             self.presenter.warn(reason, "warning.settings", reason=reason)
         if has_gamepad:
             try:
-                self._gamepads = Gamepads(self)
+                self._gamepads = Gamepads()
                 self.presenter.rumble = self._gamepads.rumble
             except RASTrainerError as error:
                 _log.warning("Gamepads cannot be read: %s.", error)
@@ -72,8 +72,8 @@ class RunningPresenter:
             before = now
 
     def advance(self, dt: float) -> None:
-        if self._gamepads is not None:
-            self._gamepads.poll()
+        for news in () if self._gamepads is None else self._gamepads.poll():
+            self._take_gamepad(news)
         self.presenter.advance(dt)
 
     def close(self) -> None:
@@ -81,23 +81,22 @@ class RunningPresenter:
         if self._gamepads is not None:
             self._gamepads.close()
 
-    def gamepad_added(self, number: int, name: str) -> None:  # noqa: ARG002
-        """Accept a gamepad that was plugged in, for the simulator's own station."""
-        taken = {source.station for source in self._sources.values()}
-        station = SIMULATOR_STATION if SIMULATOR_STATION not in taken else f"gamepad {number}"
-        self._sources[number] = Source(SourceKind.GAMEPAD, station, number=number)
-        self.presenter.controls.add(self._sources[number])
-        self.presenter.warn("gamepad")
-
-    def gamepad_moved(self, number: int, inputs: Mapping[str, float]) -> None:
-        self.presenter.controls.set_inputs(self._sources[number], inputs)
-
-    def gamepad_removed(self, number: int, name: str) -> None:
-        self.presenter.unplugged(self._sources.pop(number))
-        self.presenter.warn("gamepad", "warning.unplugged", name=name)
-
-    def gamepad_unknown(self, name: str) -> None:
-        self.presenter.warn("gamepad", "warning.unmapped", name=name)
+    def _take_gamepad(self, news: GamepadNews) -> None:
+        """Accept what gamepads do; the first that is plugged in is at the simulator's station."""
+        presenter, number = self.presenter, news.number
+        if news.kind == "moved":
+            presenter.controls.set_inputs(self._sources[number], news.inputs)
+        elif news.kind == "removed":
+            presenter.unplugged(self._sources.pop(number))
+            presenter.warn("gamepad", "warning.unplugged", name=news.name)
+        elif news.kind == "unknown":
+            presenter.warn("gamepad", "warning.unmapped", name=news.name)
+        else:
+            taken = {source.station for source in self._sources.values()}
+            station = SIMULATOR_STATION if SIMULATOR_STATION not in taken else f"gamepad {number}"
+            self._sources[number] = Source(SourceKind.GAMEPAD, station, number=number)
+            presenter.controls.add(self._sources[number])
+            presenter.warn("gamepad")
 
 
 def _read(path: Path, read: Callable[[Path], T], default: T) -> tuple[T, str]:

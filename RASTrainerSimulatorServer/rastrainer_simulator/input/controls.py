@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from operator import add
-from typing import Protocol
 
 from rastrainer.commands import deflection
 from rastrainer_simulator.input.bindings import Bindings, Table
@@ -33,20 +32,20 @@ REPEAT_EVERY_S = 0.12
 _REPEATED = (ControlName.UP, ControlName.DOWN, ControlName.LEFT, ControlName.RIGHT)
 
 
-class ControlsListener(Protocol):
-    """Receives what the operator presses."""
+@dataclasses.dataclass(frozen=True)
+class ControlsListener:
+    """What is called when somebody operates.
 
-    def pressed(self, control: ControlName) -> None:
-        """Handle a control that the operator has pressed."""
+    Attributes:
+        input_pressed: returns whether an input was consumed, as while a control is rebound.
+        taken_over: is told who has taken control from another operator.
+        refused: is told who wants to operate without control.
+    """
 
-    def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """Handle a pressed input; return whether it was consumed, as while a control is rebound."""
-
-    def taken_over(self, source: Source) -> None:
-        """Handle that another operator has taken control."""
-
-    def refused(self, source: Source) -> None:
-        """Handle that someone without control wants to operate."""
+    pressed: Callable[[ControlName], None]
+    input_pressed: Callable[[InputDevice, str], bool]
+    taken_over: Callable[[Source], None]
+    refused: Callable[[Source], None]
 
 
 class Controls:

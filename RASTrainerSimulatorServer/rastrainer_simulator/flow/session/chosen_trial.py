@@ -202,7 +202,7 @@ def usual_id(session: TrainingSession) -> str:
     """
     if session.services.is_slicer_connected() or session.lock.has_pin:
         return ""
-    known = session.history.latest_trainees(2)
+    known = session.history.latest_trainees[:2]
     return FIRST_ID if not known else known[0] if len(known) == 1 else ""
 
 

@@ -78,6 +78,7 @@ class TraineeHistory:
     Attributes:
         skipped_runs: trainees and scenarios whose tasks do not wait for the trial run.
         skipped_tutorials: trainees whose trial run does not wait for the tutorial.
+        latest_trainees: who trained here before the simulator was started, the last first.
     """
 
     def __init__(self, records: Path) -> None:
@@ -100,7 +101,7 @@ class TraineeHistory:
                 outcome = read_json(path, _MAX_TUTORIAL_BYTES)
                 self.note_tutorial(record_from_json(TutorialOutcome, outcome))
         latest = {trainee: paths[-1].name for trainee, paths in self._journals.items()}
-        self._by_time = sorted(latest, key=lambda trainee: latest[trainee], reverse=True)
+        self.latest_trainees = sorted(latest, key=lambda trainee: latest[trainee], reverse=True)
 
     def note_done(self, trainee: str, scenario: str, task: str) -> None:
         self._done[trainee, scenario].add(task)
@@ -111,10 +112,6 @@ class TraineeHistory:
     def needs_no_trial_run(self, trainee: str, scenario: str) -> bool:
         head = trainee, scenario
         return head in self.skipped_runs or bool(self._done.get(head))
-
-    def latest_trainees(self, count: int) -> tuple[str, ...]:
-        """Return those who trained here last before the simulator was started."""
-        return tuple(self._by_time[:count])
 
     def missing_before(
         self, trainee: str, scenario: str, task: str, order: Sequence[str]
