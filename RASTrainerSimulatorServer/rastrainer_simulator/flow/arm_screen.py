@@ -50,7 +50,6 @@ class ArmEvents:
     """The latest news of the arm, by the events of the simulation.
 
     Attributes:
-        obstacle: that stops it; "" for none.
         refusal: instruction that says why the last touch was refused.
         refused_at: where the tip was then, World, m.
         layer: that drill or instrument are in, since the phase began.

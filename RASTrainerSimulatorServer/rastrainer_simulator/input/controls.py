@@ -181,7 +181,7 @@ class Controls:
         if self._repeating is None:
             return
         source, name, control = self._repeating
-        if not self._states[source].is_down(name):
+        if name not in self._states[source].down:
             self._repeating = None
             return
         self._repeat_in -= dt
@@ -250,7 +250,7 @@ class InputState:
         self._inputs: dict[str, float] = {}
         # For how long keys and buttons have been pressed, s; a tap stays here until its step ends.
         self._pressed_s: dict[str, float] = {}
-        self._down: set[str] = set()
+        self.down: set[str] = set()
         self._again: set[str] = set()
         self._blocked: dict[str, float] = {}
         self._sticks = _UNUSED
@@ -260,10 +260,7 @@ class InputState:
     def is_at_rest(self) -> bool:
         """Whether nothing is pressed or pushed."""
         is_pushed = any(map(_is_pushed, self._inputs.values()))
-        return not self._down and self._sticks == _UNUSED and not is_pushed
-
-    def is_down(self, name: str) -> bool:
-        return name in self._down
+        return not self.down and self._sticks == _UNUSED and not is_pushed
 
     def is_still_held(self, name: str) -> bool:
         """Return whether an input that is pressed is known to be held still.
@@ -285,19 +282,19 @@ class InputState:
             held = self._blocked.get(name, 1.0)
             if not _is_pushed(value) or (held < DRIFT_BELOW and value > held + FURTHER):
                 self._blocked.pop(name, None)
-            if value >= DOWN_FROM and name not in self._down:
-                self._down.add(name)
+            if value >= DOWN_FROM and name not in self.down:
+                self.down.add(name)
                 pressed.append(name)
                 if self._is_key_or_button(name):
                     self._pressed_s[name] = 0.0
             elif value < UP_BELOW:
-                self._down.discard(name)
+                self.down.discard(name)
         self._end_presses()
         return pressed
 
     def set_key(self, code: str, is_down: bool) -> list[str]:
         """Take a key; return it if it has just been pressed."""
-        if is_down and code in self._down:
+        if is_down and code in self.down:
             self._again.add(code)
             return []
         self._again.discard(code)
@@ -326,7 +323,7 @@ class InputState:
     def sticks(self, bindings: Bindings) -> OperatorInput:
         table = bindings.table(self.device)
         direct = _UNUSED if self._sticks_blocked else self._sticks
-        is_fine = direct.fine or any(self.is_down(name) for name in table[ControlName.FINE])
+        is_fine = direct.fine or any(name in self.down for name in table[ControlName.FINE])
         step = FINE_STEP_PUSH if is_fine else STEP_PUSH
         right, forward, up = map(add, self.pushed(table, TRANSLATION, step), direct.translation)
         around, over = map(add, self.pushed(table, ROTATION, step), direct.rotation)
@@ -372,7 +369,7 @@ class InputState:
     def _end_presses(self) -> None:
         """End the presses of what is released, but the steps of taps."""
         for name, seconds in tuple(self._pressed_s.items()):
-            if seconds >= STEP_S and name not in self._down:
+            if seconds >= STEP_S and name not in self.down:
                 del self._pressed_s[name]
 
     def _is_key_or_button(self, name: str) -> bool:

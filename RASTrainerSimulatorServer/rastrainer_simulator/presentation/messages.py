@@ -164,11 +164,7 @@ class ProcedureNews:
 
 @dataclass(frozen=True)
 class CoveringBodies:
-    """Bodies of the arm that cover tip or next point, which views draw translucent.
-
-    Attributes:
-        headset: for the eyes of the newest headset.
-    """
+    """Bodies of the arm that cover tip or next point, which views draw translucent."""
 
     view: tuple[Words, ...] = ()
     inset: tuple[Words, ...] = ()
@@ -182,9 +178,7 @@ class StateNews(ViewMessage):
     Attributes:
         poses: of `WelcomeNews.bodies`.
         ghost: poses by body of an earlier trial that is shown next to the arm; None without one.
-        view: camera of the main picture.
         inset: camera along the skin or across the line of a procedure; None without either.
-        next: label; None without one.
         planned_target: World, m.
         delayed: late and skipped ticks of the control loop.
         headset: for spectators only; None while nobody wears a headset.
@@ -273,7 +267,6 @@ class TraceNews(ViewMessage):
         known: how many of the points sent before remain.
         points: new points after these, in the head's frame, mm.
         covered_mm: distance around the points within which the skin is painted; 0 for no paint.
-        next: the place to draw next; None if it is not shown.
     """
 
     type = "trace"
@@ -315,7 +308,6 @@ class Seat:
     Attributes:
         count: points of the open trial's task; 0 without one.
         screen: title of the open menu, "" while the trainee works.
-        score: the trainee's latest; None before the first.
         assignments: where the trainee stands in a curriculum, a sentence; "" without one.
     """
 

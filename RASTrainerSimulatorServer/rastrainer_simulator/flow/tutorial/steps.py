@@ -75,7 +75,6 @@ class TutorialObservation:
     """An observation of what the trainee has done with the simulator.
 
     Attributes:
-        axes: right, forward and up as the sticks mean them.
         yaw_deg: where the eyes look, from World's x; None without a headset's controllers.
         has_paused: whether the menu was opened and closed again in this step.
     """

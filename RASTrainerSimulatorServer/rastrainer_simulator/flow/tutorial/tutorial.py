@@ -41,9 +41,6 @@ class TouchPractice:
 
     The rules are those of a trial, whose state machine is used, but the simulation, its clients and
     the journals know nothing of it: only what the views show is changed (`shown`).
-
-    Attributes:
-        training: the state machine, which knows where the head and the points are.
     """
 
     def __init__(
