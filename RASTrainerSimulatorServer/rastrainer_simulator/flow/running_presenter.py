@@ -18,7 +18,7 @@ from rastrainer_simulator.flow.session.preferences import (
 )
 from rastrainer_simulator.flow.session.services import FlowServices
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, DEFAULT_BINDINGS, read_bindings
-from rastrainer_simulator.input.gamepads import GamepadNews, Gamepads
+from rastrainer_simulator.input.gamepads import Gamepads
 from rastrainer_simulator.input.inputs import SIMULATOR_STATION, Source, SourceKind
 from rastrainer_simulator.loop.control_loop import ControlLoop
 
@@ -72,31 +72,30 @@ class RunningPresenter:
             before = now
 
     def advance(self, dt: float) -> None:
+        presenter = self.presenter
         for news in () if self._gamepads is None else self._gamepads.poll():
-            self._take_gamepad(news)
-        self.presenter.advance(dt)
+            number = news.number
+            if news.kind == "moved":
+                presenter.controls.set_inputs(self._sources[number], news.inputs)
+            elif news.kind == "removed":
+                presenter.unplugged(self._sources.pop(number))
+                presenter.warn("gamepad", "warning.unplugged", name=news.name)
+            elif news.kind == "unknown":
+                presenter.warn("gamepad", "warning.unmapped", name=news.name)
+            else:
+                # The first gamepad is that of the simulator's own station.
+                taken = {source.station for source in self._sources.values()}
+                is_first = SIMULATOR_STATION not in taken
+                station = SIMULATOR_STATION if is_first else f"gamepad {number}"
+                self._sources[number] = Source(SourceKind.GAMEPAD, station, number=number)
+                presenter.controls.add(self._sources[number])
+                presenter.warn("gamepad")
+        presenter.advance(dt)
 
     def close(self) -> None:
         self.presenter.close()
         if self._gamepads is not None:
             self._gamepads.close()
-
-    def _take_gamepad(self, news: GamepadNews) -> None:
-        """Accept what gamepads do; the first that is plugged in is at the simulator's station."""
-        presenter, number = self.presenter, news.number
-        if news.kind == "moved":
-            presenter.controls.set_inputs(self._sources[number], news.inputs)
-        elif news.kind == "removed":
-            presenter.unplugged(self._sources.pop(number))
-            presenter.warn("gamepad", "warning.unplugged", name=news.name)
-        elif news.kind == "unknown":
-            presenter.warn("gamepad", "warning.unmapped", name=news.name)
-        else:
-            taken = {source.station for source in self._sources.values()}
-            station = SIMULATOR_STATION if SIMULATOR_STATION not in taken else f"gamepad {number}"
-            self._sources[number] = Source(SourceKind.GAMEPAD, station, number=number)
-            presenter.controls.add(self._sources[number])
-            presenter.warn("gamepad")
 
 
 def _read(path: Path, read: Callable[[Path], T], default: T) -> tuple[T, str]:

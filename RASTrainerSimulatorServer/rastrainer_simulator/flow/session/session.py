@@ -232,7 +232,7 @@ class TrainingSession:
         return load_trial(found[0], self.control_loop.setup)
 
     def note_done(self) -> None:
-        self.history.note_done(self.training.trainee, self.scenario.name, self.training.task)
+        self.history.done[self.training.trainee, self.scenario.name].add(self.training.task)
 
     def outcome_of(self, task: str) -> str:
         """Return "passed", "failed" or "done" of the trainee's trials of a task; "" of none."""
@@ -246,7 +246,7 @@ class TrainingSession:
             return "passed"
         if trials and trials[-1].is_passed is False:
             return "failed"
-        return "done" if self.history.has_done(trainee, scenario, task) else ""
+        return "done" if task in self.history.done[trainee, scenario] else ""
 
     def rebind(self, bindings: Bindings) -> None:
         self.controls.bindings = bindings

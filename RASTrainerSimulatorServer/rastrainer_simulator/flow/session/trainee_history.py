@@ -76,6 +76,7 @@ class TraineeHistory:
     over, as the paper's procedure has it (figure 4).
 
     Attributes:
+        done: tasks by trainee and scenario.
         skipped_runs: trainees and scenarios whose tasks do not wait for the trial run.
         skipped_tutorials: trainees whose trial run does not wait for the tutorial.
         latest_trainees: who trained here before the simulator was started, the last first.
@@ -91,7 +92,7 @@ class TraineeHistory:
         self.learned: dict[str, TutorialOutcome] = {}
         self._records = records
         self._journals: dict[str, list[Path]] = defaultdict(list)
-        self._done: dict[tuple[str, str], set[str]] = defaultdict(set)
+        self.done: dict[tuple[str, str], set[str]] = defaultdict(set)
         self._devices: dict[str, set[str]] = defaultdict(set)
         self._own: dict[Path, OwnTrial | None] = {}
         for path in sorted(records.glob("*.journal")):
@@ -103,21 +104,15 @@ class TraineeHistory:
         latest = {trainee: paths[-1].name for trainee, paths in self._journals.items()}
         self.latest_trainees = sorted(latest, key=lambda trainee: latest[trainee], reverse=True)
 
-    def note_done(self, trainee: str, scenario: str, task: str) -> None:
-        self._done[trainee, scenario].add(task)
-
-    def has_done(self, trainee: str, scenario: str, task: str) -> bool:
-        return task in self._done.get((trainee, scenario), ())
-
     def needs_no_trial_run(self, trainee: str, scenario: str) -> bool:
         head = trainee, scenario
-        return head in self.skipped_runs or bool(self._done.get(head))
+        return head in self.skipped_runs or bool(self.done[head])
 
     def missing_before(
         self, trainee: str, scenario: str, task: str, order: Sequence[str]
     ) -> str | None:
         """Return the first task that has to be done before another; None if all are done."""
-        done = {*self._done.get((trainee, scenario), ())}
+        done = {*self.done[trainee, scenario]}
         done |= {TRIAL_RUN} if self.needs_no_trial_run(trainee, scenario) else set()
         return next((name for name in order[: order.index(task)] if name not in done), None)
 
@@ -192,7 +187,8 @@ class TraineeHistory:
         self._journals[what[0]].append(path)
         is_practiced = header["task"] == TRIAL_RUN and any(mark in tail for mark in _PRACTICED)
         if _REGISTERED in tail or is_practiced:
-            self.note_done(*what)
+            trainee, scenario, task = what
+            self.done[trainee, scenario].add(task)
 
 
 def _own_trial(journal: Path) -> OwnTrial | None:
