@@ -11,12 +11,13 @@ import os
 import subprocess
 import sys
 import threading
+from collections.abc import Iterator
 from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
 
 from rastrainer_simulator.cli.main import main as run
-from rastrainer_simulator.input.gamepads import Gamepads
+from rastrainer_simulator.input.gamepads import GamepadNews, Gamepads
 from rastrainer_simulator.loop.timing import raise_thread_priority
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.sdl_virtual_gamepad import VirtualGamepad
@@ -84,9 +85,9 @@ class Plug:
         self._orders: SimpleQueue[tuple[bool, threading.Event]] = SimpleQueue()
         look = Gamepads.poll
 
-        def plug_and_look(gamepads: Gamepads) -> None:
+        def plug_and_look(gamepads: Gamepads) -> Iterator[GamepadNews]:
             self._carry_out()
-            look(gamepads)
+            yield from look(gamepads)
 
         Gamepads.poll = plug_and_look
 

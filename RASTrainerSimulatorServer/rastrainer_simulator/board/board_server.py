@@ -313,7 +313,7 @@ async def _pass_on(simulator: aiohttp.ClientWebSocketResponse, page: web.WebSock
 
 
 def _check_teacher(request: web.Request) -> None:
-    if request[ROLE].is_watch_only:
+    if request[ROLE] is not ViewRole.VIEW:
         raise web.HTTPForbidden(text=ONLY_TEACHERS)
 
 

@@ -17,7 +17,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.state import Event, EventKind, OperatorInput
-from rastrainer_simulator.teleoperation.commanded_motion import MoveCommand, PathCommand
+from rastrainer_simulator.teleoperation.commanded_motion import FollowingPath
 from rastrainer_simulator.texts.texts import LocalizedText, say
 from rastrainer_simulator.training.feed import LONGEST_FEED_M, NO_FEED, Feed, FeedDrive, HeadAhead
 from rastrainer_simulator.training.head_pose import RegisteredPlan
@@ -151,7 +151,7 @@ class ProcedureMotion:
         guide: GuideAxis,
         procedure: ProcedureState | None,
         stand_off_mm: float,
-    ) -> PathCommand | LocalizedText:
+    ) -> FollowingPath | LocalizedText:
         """Return the robot's own path onto the planned line, or why there is none.
 
         Args:
@@ -195,7 +195,7 @@ HeadRadius = Callable[[Vector], float]
 
 def _guide_path(
     guide: GuideAxis, line: PlannedLine, stand_off: float, middle: Vector, radius: HeadRadius
-) -> PathCommand:
+) -> FollowingPath:
     """Return the path of the guide to `stand_off` m before a line's entry: out, around, and in.
 
     Args:
@@ -228,14 +228,9 @@ def _guide_path(
         direct = (1.0 - share) * start_radius + share * end_radius
         place = add(middle, scale(out, max(direct, radius(out) + MARGIN)))
         direction = turned_toward(guide.direction, inward, share * lean)
-        waypoints.append(MoveCommand(place, TRAVEL_SPEED, direction))
-    return PathCommand(
-        (
-            *waypoints,
-            MoveCommand(begin, TRAVEL_SPEED, inward),
-            MoveCommand(end, APPROACH_SPEED, inward),
-        )
-    )
+        waypoints.append((place, TRAVEL_SPEED, direction))
+    last_two = (begin, TRAVEL_SPEED, inward), (end, APPROACH_SPEED, inward)
+    return FollowingPath((*waypoints, *last_two))
 
 
 _BANDS = 12

@@ -50,7 +50,6 @@ class ArmEvents:
     """The latest news of the arm, by the events of the simulation.
 
     Attributes:
-        obstacle: that stops it; "" for none.
         refusal: instruction that says why the last touch was refused.
         refused_at: where the tip was then, World, m.
         layer: that drill or instrument are in, since the phase began.
@@ -146,16 +145,7 @@ class ArmScreen:
     def _hints(
         self, moving: Iterable[Hint], names: Mapping[ControlName, str], can_tilt: bool = False
     ) -> tuple[Hint, ...]:
-        """Return hints on movement, hints that press a control, and those on the screen's sticks.
-
-        The sticks are shown to who clicks, and hidden again. Where the tool can be tilted, the
-        right stick does it, or lifts and lowers the tool.
-
-        Args:
-            moving: about movement.
-            names: key of the text of each control.
-            can_tilt: whether the tool can be tilted.
-        """
+        """Return the hints `moving`, those that press a control, and those on screen sticks."""
         session, operator = self._session, self._session.operator
         say, sticks = session.texts.say, session.screen_sticks
         hints = list(moving)

@@ -99,21 +99,6 @@ class Flow:
         if training.result is not self._seen_result:
             self._seen_result = training.result
             session.history.changed(training.trainee, training.trial_id)
-        self._note_ghost_and_slicer()
-        self._wait_for_picture(dt)
-        if session.pages.top is not None:
-            session.pages.advance(dt)
-        elif session.tutorial is not None:
-            self._advance_tutorial(dt, session.tutorial)
-        elif self._trial_screen.has_practice_just_ended():
-            self._trial_screen.open_menu()
-
-    def _note_ghost_and_slicer(self) -> None:
-        """Have the journal say that a ghost is shown from now on, or the trainee that none is.
-
-        A connection to Slicer that was lost is lasting news.
-        """
-        session = self._session
         if session.ghost.has_just_loaded():
             if session.ghost.rule is GhostRule.OFF:
                 session.notices.add(session.texts.say("ghost.none"))
@@ -123,6 +108,13 @@ class Flow:
         self._had_slicer = self._had_slicer or is_connected
         is_lost = self._had_slicer and not is_connected
         session.notices.warn("slicer", "warning.slicer" if is_lost else "")
+        self._wait_for_picture(dt)
+        if session.pages.top is not None:
+            session.pages.advance(dt)
+        elif session.tutorial is not None:
+            self._advance_tutorial(dt, session.tutorial)
+        elif self._trial_screen.has_practice_just_ended():
+            self._trial_screen.open_menu()
 
     def pressed(self, control: ControlName) -> None:
         if self._session.pages.top is None:
@@ -154,12 +146,10 @@ class Flow:
     def screen(self) -> Screen:
         session = self._session
         page, menu = session.pages.top, session.pages.menu()
-        notices = session.notices
-        lasting = notices.lasting(session.texts)
+        warnings = session.notices.shown(session.texts)
         preparing = ScreenMessage(session.preparing())
         if preparing.text and menu is not None and menu.name != PreparingPage.name:
-            lasting = (preparing, *lasting)
-        warnings = (*lasting, *notices.brief())
+            warnings = (preparing, *warnings)
         shown = None if page is None else page.screen()
         if shown is not None:
             return replace(shown, warnings=(*shown.warnings, *warnings))
@@ -177,10 +167,7 @@ class Flow:
         )
 
     def _over(self, shown: Screen, page: Page, menu: Menu) -> Screen:
-        """Return the screen of a menu over another, and why the trial is paused.
-
-        That is said unless the trainee did it.
-        """
+        """Return the screen of a menu over another, and why the trial is paused."""
         session, say = self._session, self._session.texts.say
         said = session.training.instruction
         why: tuple[ScreenMessage, ...] = ()
@@ -298,9 +285,8 @@ class Flow:
             if training.task == TRIAL_RUN and learned is not None:
                 self._control_loop.note_display(learned)
             session.view.begin(session.control_loop.setup, truth, session.state)
-            is_guided = training.trace is not None and guidance is not Guidance.NONE
             session.places.forget()
-            if is_guided:
+            if training.trace is not None and guidance is not Guidance.NONE:
                 session.places.begin(training.trial_id, session.control_loop.setup, truth)
             begin_ghost(session, truth.head_to_world)
             session.trainee = training.trainee

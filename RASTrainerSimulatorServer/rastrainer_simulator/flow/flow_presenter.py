@@ -16,7 +16,7 @@ from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.flow.session.services import FlowServices
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.bindings import Bindings
-from rastrainer_simulator.input.controls import IDLE_S, Controls
+from rastrainer_simulator.input.controls import IDLE_S, Controls, ControlsListener
 from rastrainer_simulator.input.gamepads import w3c_gamepad_inputs
 from rastrainer_simulator.input.inputs import (
     ControlContext,
@@ -32,11 +32,7 @@ from rastrainer_simulator.presentation.feedback_event import (
     feedback_of,
 )
 from rastrainer_simulator.presentation.messages import Frames, Hello, InstructorOrder, Seat
-from rastrainer_simulator.presentation.presenter import (
-    Control,
-    Presenter,
-    TraceGuidance,
-)
+from rastrainer_simulator.presentation.presenter import Control, Presenter, TraceGuidance
 from rastrainer_simulator.presentation.screen import PRESS, Tone
 from rastrainer_simulator.record.trial_context import DisplayReport, ViewReport
 from rastrainer_simulator.replay.playback import PlaybackSwitch
@@ -68,8 +64,6 @@ class FlowPresenter(Presenter):
     some hundred times a second; nothing here waits.
 
     Attributes:
-        controls: what the operator holds.
-        shown: the states that the views show.
         rumble: has the simulator's gamepads vibrate with a strength of 0 to 1 for a time (s).
     """
 
@@ -84,7 +78,8 @@ class FlowPresenter(Presenter):
         self._control_loop = control_loop
         self.shown = PlaybackSwitch(control_loop)
         # Another operator may take control from an idle one, unless a PIN locks it.
-        self.controls = Controls(bindings, self, lambda: not self._session.lock.is_locked)
+        listener = ControlsListener(self.pressed, self.input_pressed, self.taken_over, self.refused)
+        self.controls = Controls(bindings, listener, lambda: not self._session.lock.is_locked)
         self._session = TrainingSession(
             control_loop, self.controls, services, preferences, self.happened
         )
@@ -132,7 +127,7 @@ class FlowPresenter(Presenter):
             screen = self._flow.screen()
             if screen != self.screen:
                 self.screen = screen
-                self.publish(screen)
+                self.updates.publish(screen)
 
     def pictures(self, now: SimulationState) -> Pictures:
         return self._session.view.pictures(now, self.shown.setup.scenario.cameras)
@@ -297,7 +292,6 @@ class FlowPresenter(Presenter):
         self._control_loop.note_display(report)
 
     def on_picture(self, view: int, task: str, share: float) -> None:
-        """Note how much of its picture a view has: a task waits for the trainee's view."""
         if view in self._views.joined:
             drawn = self._views.joined[view]
             drawn.task, drawn.share, drawn.waited_s = task, share, 0.0
@@ -357,7 +351,7 @@ class FlowPresenter(Presenter):
         feedback = feedback_of(what, self._number, volume)
         if feedback.rumble > 0.0:
             self.rumble(feedback.rumble, FEEDBACK_EFFECTS[what].seconds)
-        self.publish(feedback)
+        self.updates.publish(feedback)
 
     def _lose_sight(self, view: int, why: str) -> None:
         """Pause and release control if no one can see the trial; `why` is the key of a sentence."""
@@ -448,5 +442,5 @@ class FlowPresenter(Presenter):
         control = Control() if holder is None else Control(holder.kind.value, holder.view)
         if control != self.control:
             self.control = control
-            self.publish(control)
+            self.updates.publish(control)
             self._is_changed = True

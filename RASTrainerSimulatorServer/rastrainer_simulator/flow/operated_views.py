@@ -17,7 +17,6 @@ class OperatedView:
 
     Attributes:
         is_silent: whether it has stopped reporting that it draws.
-        is_touched: whether a finger has been seen on it.
         yaw_deg: where the eyes of a headset look, degrees from World's x; None before they do.
         task, share: whose scene it has loaded, and how much of it; None if it reports nothing.
         waited_s: how long its picture has been awaited since the last progress.
@@ -42,11 +41,7 @@ class OperatedView:
 
 
 class OperatedViews:
-    """Knows who operates which view.
-
-    Attributes:
-        joined: each view by its number, from when it joins until it leaves.
-    """
+    """Knows who operates which view."""
 
     def __init__(self) -> None:
         self.joined: dict[int, OperatedView] = {}

@@ -106,9 +106,9 @@ class ProcedureScreen(ArmScreen):
         facts.append(say("status.procedure time", time=took))
         return (*facts, *self._figures())
 
-    def _all_hints(self) -> tuple[Hint, ...]:
-        session = self._session
-        phase = session.training.phase
+    def screen(self) -> Screen:
+        """The trainee looks into the head as soon as the guide is being aligned."""
+        session, phase = self._session, self._session.training.phase
         names = {
             ControlName.TOUCH: "hint.checkpoint" if phase is Phase.VERIFYING else "hint.next step",
             ControlName.UNDO: "hint.judge",
@@ -118,26 +118,18 @@ class ProcedureScreen(ArmScreen):
         }
         if phase is not Phase.VERIFYING:
             del names[ControlName.UNDO]
-        return self._hints(self._moving_hints(phase), names, can_tilt=phase is Phase.ALIGNING)
-
-    def screen(self) -> Screen:
-        """The trainee looks into the head as soon as the guide is being aligned."""
-        session = self._session
         text = session.texts.again(session.training.instruction)
         return self._shown(
             ScreenMessage(text, Tone.WARNING if self._is_refused else Tone.GOOD),
             self._status(),
-            self._all_hints(),
+            self._hints(self._moving_hints(phase), names, can_tilt=phase is Phase.ALIGNING),
             errors=self._marks(),
             is_head_clear=self._procedure.present is not None,
             ruler=self._ruler(),
         )
 
     def _marks(self) -> tuple[ErrorArrow, ...]:
-        """Return the plan by the registration, and checkpoints as named marks on the skin.
-
-        Those touched by this registration are green.
-        """
+        """Return the plan by the registration, and checkpoints as named marks on the skin."""
         session, procedure = self._session, self._procedure
         if procedure.stage is Phase.VERIFYING:
             touched = {each.name for each in procedure.checkpoints}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
@@ -40,9 +40,6 @@ class RunningPresenter:
 
     When the gamepad in use is unplugged, the robot stops at once, the trial is paused and a warning
     says so; the trial can be resumed with the keyboard.
-
-    Attributes:
-        presenter: what the views show.
     """
 
     def __init__(
@@ -59,7 +56,7 @@ class RunningPresenter:
             self.presenter.warn(reason, "warning.settings", reason=reason)
         if has_gamepad:
             try:
-                self._gamepads = Gamepads(self)
+                self._gamepads = Gamepads()
                 self.presenter.rumble = self._gamepads.rumble
             except RASTrainerError as error:
                 _log.warning("Gamepads cannot be read: %s.", error)
@@ -75,32 +72,30 @@ class RunningPresenter:
             before = now
 
     def advance(self, dt: float) -> None:
-        if self._gamepads is not None:
-            self._gamepads.poll()
-        self.presenter.advance(dt)
+        presenter = self.presenter
+        for news in () if self._gamepads is None else self._gamepads.poll():
+            number = news.number
+            if news.kind == "moved":
+                presenter.controls.set_inputs(self._sources[number], news.inputs)
+            elif news.kind == "removed":
+                presenter.unplugged(self._sources.pop(number))
+                presenter.warn("gamepad", "warning.unplugged", name=news.name)
+            elif news.kind == "unknown":
+                presenter.warn("gamepad", "warning.unmapped", name=news.name)
+            else:
+                # The first gamepad is that of the simulator's own station.
+                taken = {source.station for source in self._sources.values()}
+                is_first = SIMULATOR_STATION not in taken
+                station = SIMULATOR_STATION if is_first else f"gamepad {number}"
+                self._sources[number] = Source(SourceKind.GAMEPAD, station, number=number)
+                presenter.controls.add(self._sources[number])
+                presenter.warn("gamepad")
+        presenter.advance(dt)
 
     def close(self) -> None:
         self.presenter.close()
         if self._gamepads is not None:
             self._gamepads.close()
-
-    def gamepad_added(self, number: int, name: str) -> None:  # noqa: ARG002
-        """Accept a gamepad that was plugged in, for the simulator's own station."""
-        taken = {source.station for source in self._sources.values()}
-        station = SIMULATOR_STATION if SIMULATOR_STATION not in taken else f"gamepad {number}"
-        self._sources[number] = Source(SourceKind.GAMEPAD, station, number=number)
-        self.presenter.controls.add(self._sources[number])
-        self.presenter.warn("gamepad")
-
-    def gamepad_moved(self, number: int, inputs: Mapping[str, float]) -> None:
-        self.presenter.controls.set_inputs(self._sources[number], inputs)
-
-    def gamepad_removed(self, number: int, name: str) -> None:
-        self.presenter.unplugged(self._sources.pop(number))
-        self.presenter.warn("gamepad", "warning.unplugged", name=name)
-
-    def gamepad_unknown(self, name: str) -> None:
-        self.presenter.warn("gamepad", "warning.unmapped", name=name)
 
 
 def _read(path: Path, read: Callable[[Path], T], default: T) -> tuple[T, str]:

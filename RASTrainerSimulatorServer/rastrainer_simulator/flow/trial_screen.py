@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
 from functools import partial
 
 from rastrainer.commands import CommandName
@@ -24,10 +23,11 @@ from rastrainer.protocol import (
     StepKind,
 )
 from rastrainer.registration.fits import RIGID
+from rastrainer.registration.surface_match import SurfaceMatch
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study_messages import StudyStep
 from rastrainer.transforms import MM_PER_M
-from rastrainer.trial.touch_registration import GivenPoints, register_trial
+from rastrainer.trial.touch_registration import GivenPoints, TouchRegistration, register_trial
 from rastrainer_simulator.flow.arm_screen import (
     BACK_WITHIN,
     FARTHEST,
@@ -60,12 +60,7 @@ ELSEWHERE_M = 0.003
 
 
 class TrialScreen(ArmScreen):
-    """The instructions, warnings and hints of an open trial, and its controls.
-
-    Attributes:
-        guidance: to the next point, in the present trial.
-        has_requested_menu: whether the trainee has, since that was last looked at.
-    """
+    """The instructions, warnings and hints of an open trial, and its controls."""
 
     def __init__(self, session: TrainingSession, arm: ArmEvents) -> None:
         super().__init__(session, arm)
@@ -255,69 +250,40 @@ class TrialScreen(ArmScreen):
         return self._is_beside
 
 
-@dataclass(frozen=True)
-class MatchReport:
-    """A match as numbers, lengths in mm, and the codes of what looks wrong with it.
-
-    Attributes:
-        residual_mm: root mean square of the distances of the points that count from the skin.
-        inlier_share: share of the points that count.
-        expected_mm: expected TRE at the target.
-        interval_mm: the 95 % interval of the TRE there.
-        slide_mm: how far the head may be off where the trace determines it least.
-        codes: as of `find_match_warnings`.
-    """
-
-    residual_mm: float
-    inlier_share: float
-    expected_mm: float
-    interval_mm: tuple[float, float]
-    slide_mm: float
-    codes: tuple[str, ...] = ()
-
-
-def match_report(training: TrainingState, scenario: Scenario) -> MatchReport:
+def registration_so_far(training: TrainingState, scenario: Scenario) -> TouchRegistration:
+    """Return how the open trial would be registered, by what has been touched and traced."""
     answer = {"task": training.task, "method": training.method.value, **given(training)}
-    registered = register_trial(GivenPoints.of_answer(answer), scenario)
-    match, error = registered.match, registered.target_errors[RIGID]
-    assert match is not None, "the method has a trace"
-    return MatchReport(
-        match.rms_mm,
-        match.inlier_share,
-        error.expected_mm,
-        error.interval_mm,
-        match.slide.distance_mm,
-        tuple(warning.code for warning in match.warnings),
-    )
+    return register_trial(GivenPoints.of_answer(answer), scenario)
 
 
 @page_kind("match")
-def match_page(page: SessionPage, looked: Future[MatchReport]) -> PageContent:
+def match_page(page: SessionPage, looked: Future[TouchRegistration]) -> PageContent:
     """Show the figures of a match; the trial is registered only when it is accepted."""
     session, say = page.session, page.say
-    report: MatchReport | None = None
+    match: SurfaceMatch | None = None
     said: tuple[str, ...] = (say("match.looking"),)
     facts: tuple[Fact, ...] = ()
     if looked.done():
         try:
-            report = looked.result()
+            match, at_target = looked.result().match, looked.result().target_errors[RIGID]
         except (RASTrainerError, OSError) as error:
             said = (say("match.impossible", reason=str(error)),)
-    if report is not None:
-        wrong = (say(f"match.{code}", slide=report.slide_mm) for code in report.codes)
+    if match is not None:
+        slide = match.slide.distance_mm
+        wrong = (say(f"match.{warning.code}", slide=slide) for warning in match.warnings)
         said = (*wrong, say("match.residual and error"))
-        low, high = report.interval_mm
-        tone = Tone.WARNING if report.codes else Tone.PLAIN
-        expected = say("result.mm", error=report.expected_mm)
+        low, high = at_target.interval_mm
+        tone = Tone.WARNING if match.warnings else Tone.PLAIN
+        expected = say("result.mm", error=at_target.expected_mm)
         facts = (
-            Fact(say("match.residual"), say("result.mm", error=report.residual_mm)),
-            Fact(say("match.counts"), f"{100.0 * report.inlier_share:.0f} %"),
+            Fact(say("match.residual"), say("result.mm", error=match.rms_mm)),
+            Fact(say("match.counts"), f"{100.0 * match.inlier_share:.0f} %"),
             Fact(say("result.expected tre"), expected, tone),
             Fact(say("match.interval"), say("match.interval value", low=low, high=high)),
         )
     register = partial(session.do, CommandName.REGISTER)
     rows = (
-        page.button("accept", register, is_enabled=report is not None),
+        page.button("accept", register, is_enabled=match is not None),
         page.button("draw", lambda: session.pages.show(None)),
     )
     # A double press must not accept a match that was not read.
@@ -347,7 +313,7 @@ def trial_page(page: SessionPage) -> PageContent:
             return
         # Set aside while it holds the interpreter, it would make the control loop wait.
         worker = ThreadPoolExecutor(1, "match", raise_thread_priority)
-        looked = worker.submit(match_report, session.training, session.scenario)
+        looked = worker.submit(registration_so_far, session.training, session.scenario)
         worker.shutdown(wait=False)
         session.pages.open(match_page(session, looked))
 

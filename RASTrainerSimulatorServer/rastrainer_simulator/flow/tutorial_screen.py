@@ -87,7 +87,20 @@ class TutorialScreen(ArmScreen):
             return
         tutorial.use(session.operator.learned(session.mode))
         tutorial.practice.end_refusal(session.state.sim_time)
-        done = tutorial.advance(dt, self._observation())
+        practice = tutorial.practice.training.state
+        seen = TutorialObservation(
+            tip=session.tip,
+            axes=self._axes(),
+            is_slow=session.controls.held.fine,
+            orbit=session.view.control.orbit,
+            yaw_deg=session.view.yaw_deg,
+            has_best_view=session.view.has_moved_to(practice.next_point),
+            touch=self._state.touch,
+            touched=len(practice.touches),
+            undone=practice.undone,
+            has_paused=self._has_paused,
+        )
+        done = tutorial.advance(dt, seen)
         if done is not None:
             self._has_paused = False
             is_heard_anyway = {ControlName.TOUCH, ControlName.UNDO} & {*STEPS[done].controls}
@@ -180,22 +193,6 @@ class TutorialScreen(ArmScreen):
         if step is not TutorialStep.PAUSE:
             names[ControlName.MENU] = "hint.menu"
         return self._hints(moving, names)
-
-    def _observation(self) -> TutorialObservation:
-        session, state = self._session, self._state
-        practice = self._tutorial.practice.training.state
-        return TutorialObservation(
-            tip=session.tip,
-            axes=self._axes(),
-            is_slow=session.controls.held.fine,
-            orbit=session.view.control.orbit,
-            yaw_deg=session.view.yaw_deg,
-            has_best_view=session.view.has_moved_to(practice.next_point),
-            touch=state.touch,
-            touched=len(practice.touches),
-            undone=practice.undone,
-            has_paused=self._has_paused,
-        )
 
     def _play_reply(self, reply: TrainingReply) -> None:
         """Play the sound of a touch's outcome, and show why it was refused."""

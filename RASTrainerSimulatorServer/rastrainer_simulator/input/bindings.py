@@ -16,12 +16,7 @@ from rastrainer.files.writing import write_private_json
 from rastrainer.json_checks import whole_number
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer_simulator.input.gamepads import GAMEPAD_INPUTS
-from rastrainer_simulator.input.inputs import (
-    SITUATIONS,
-    ControlContext,
-    ControlName,
-    InputDevice,
-)
+from rastrainer_simulator.input.inputs import SITUATIONS, ControlContext, ControlName, InputDevice
 
 Table = Mapping[ControlName, tuple[str, ...]]
 BINDINGS_FILE = "controls.json"
@@ -173,7 +168,6 @@ def read_bindings(path: Path) -> Bindings:
 
 
 def write_bindings(path: Path, bindings: Bindings) -> None:
-    """Save the bindings."""
     write_private_json(path, record_to_json(bindings))
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from operator import add
-from typing import Protocol
 
 from rastrainer.commands import deflection
 from rastrainer_simulator.input.bindings import Bindings, Table
@@ -33,20 +32,20 @@ REPEAT_EVERY_S = 0.12
 _REPEATED = (ControlName.UP, ControlName.DOWN, ControlName.LEFT, ControlName.RIGHT)
 
 
-class ControlsListener(Protocol):
-    """Receives what the operator presses."""
+@dataclasses.dataclass(frozen=True)
+class ControlsListener:
+    """What is called when somebody operates.
 
-    def pressed(self, control: ControlName) -> None:
-        """Handle a control that the operator has pressed."""
+    Attributes:
+        input_pressed: returns whether an input was consumed, as while a control is rebound.
+        taken_over: is told who has taken control from another operator.
+        refused: is told who wants to operate without control.
+    """
 
-    def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """Handle a pressed input; return whether it was consumed, as while a control is rebound."""
-
-    def taken_over(self, source: Source) -> None:
-        """Handle that another operator has taken control."""
-
-    def refused(self, source: Source) -> None:
-        """Handle that someone without control wants to operate."""
+    pressed: Callable[[ControlName], None]
+    input_pressed: Callable[[InputDevice, str], bool]
+    taken_over: Callable[[Source], None]
+    refused: Callable[[Source], None]
 
 
 class Controls:
@@ -62,7 +61,6 @@ class Controls:
     Attributes:
         bindings: which input does what; may be exchanged at any time.
         holder: what drives the arm; None until someone acts.
-        situation: whether the arm can be driven or a menu is open.
     """
 
     def __init__(
@@ -83,7 +81,6 @@ class Controls:
 
     @property
     def sticks(self) -> OperatorInput:
-        """What the arm should do; nothing while a menu is open."""
         if self.holder is None or self.situation is ControlContext.MENU:
             return NEUTRAL_STICKS
         return dataclasses.replace(self.held, operator=self.holder.kind.value)
@@ -147,13 +144,11 @@ class Controls:
         self._press_all(source, state, state.set_key(code, is_down))
 
     def set_sticks(self, source: Source, sticks: OperatorInput) -> None:
-        """Process the sticks of a headset's controllers."""
         state = self.add(source)
         state.set_sticks(sticks)
         self._noticed(source, state)
 
     def press(self, source: Source, control: ControlName) -> None:
-        """Process one press of a control that needs no bindings."""
         if self.allows(source, control):
             self._listener.pressed(control)
 
@@ -186,7 +181,7 @@ class Controls:
         if self._repeating is None:
             return
         source, name, control = self._repeating
-        if not self._states[source].is_down(name):
+        if name not in self._states[source].down:
             self._repeating = None
             return
         self._repeat_in -= dt
@@ -248,9 +243,6 @@ class InputState:
     Keys and buttons are pressed or not: a tap moves the tip by one small step, what is held speeds
     up smoothly, and stops at once, as a released stick does. What is held while the situation
     changes does nothing until it is released: the arm must not start because a menu closes.
-
-    Attributes:
-        device: whose bindings count.
     """
 
     def __init__(self, device: InputDevice) -> None:
@@ -258,7 +250,7 @@ class InputState:
         self._inputs: dict[str, float] = {}
         # For how long keys and buttons have been pressed, s; a tap stays here until its step ends.
         self._pressed_s: dict[str, float] = {}
-        self._down: set[str] = set()
+        self.down: set[str] = set()
         self._again: set[str] = set()
         self._blocked: dict[str, float] = {}
         self._sticks = _UNUSED
@@ -268,10 +260,7 @@ class InputState:
     def is_at_rest(self) -> bool:
         """Whether nothing is pressed or pushed."""
         is_pushed = any(map(_is_pushed, self._inputs.values()))
-        return not self._down and self._sticks == _UNUSED and not is_pushed
-
-    def is_down(self, name: str) -> bool:
-        return name in self._down
+        return not self.down and self._sticks == _UNUSED and not is_pushed
 
     def is_still_held(self, name: str) -> bool:
         """Return whether an input that is pressed is known to be held still.
@@ -293,19 +282,19 @@ class InputState:
             held = self._blocked.get(name, 1.0)
             if not _is_pushed(value) or (held < DRIFT_BELOW and value > held + FURTHER):
                 self._blocked.pop(name, None)
-            if value >= DOWN_FROM and name not in self._down:
-                self._down.add(name)
+            if value >= DOWN_FROM and name not in self.down:
+                self.down.add(name)
                 pressed.append(name)
                 if self._is_key_or_button(name):
                     self._pressed_s[name] = 0.0
             elif value < UP_BELOW:
-                self._down.discard(name)
+                self.down.discard(name)
         self._end_presses()
         return pressed
 
     def set_key(self, code: str, is_down: bool) -> list[str]:
         """Take a key; return it if it has just been pressed."""
-        if is_down and code in self._down:
+        if is_down and code in self.down:
             self._again.add(code)
             return []
         self._again.discard(code)
@@ -332,10 +321,9 @@ class InputState:
         self._end_presses()
 
     def sticks(self, bindings: Bindings) -> OperatorInput:
-        """Return what the sticks and keys command the arm to do."""
         table = bindings.table(self.device)
         direct = _UNUSED if self._sticks_blocked else self._sticks
-        is_fine = direct.fine or any(self.is_down(name) for name in table[ControlName.FINE])
+        is_fine = direct.fine or any(name in self.down for name in table[ControlName.FINE])
         step = FINE_STEP_PUSH if is_fine else STEP_PUSH
         right, forward, up = map(add, self.pushed(table, TRANSLATION, step), direct.translation)
         around, over = map(add, self.pushed(table, ROTATION, step), direct.rotation)
@@ -381,7 +369,7 @@ class InputState:
     def _end_presses(self) -> None:
         """End the presses of what is released, but the steps of taps."""
         for name, seconds in tuple(self._pressed_s.items()):
-            if seconds >= STEP_S and name not in self._down:
+            if seconds >= STEP_S and name not in self.down:
                 del self._pressed_s[name]
 
     def _is_key_or_button(self, name: str) -> bool:

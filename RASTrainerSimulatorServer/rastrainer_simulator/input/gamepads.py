@@ -9,27 +9,14 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from types import ModuleType
-from typing import Any, Protocol
+from types import MappingProxyType, ModuleType
+from typing import Any, Literal, NamedTuple
 
 from rastrainer.errors import RASTrainerError
 
 BUTTONS = (
-    "a",
-    "b",
-    "x",
-    "y",
-    "back",
-    "guide",
-    "start",
-    "leftstick",
-    "rightstick",
-    "leftshoulder",
-    "rightshoulder",
-    "dpup",
-    "dpdown",
-    "dpleft",
-    "dpright",
+    *("a", "b", "x", "y", "back", "guide", "start", "leftstick", "rightstick"),
+    *("leftshoulder", "rightshoulder", "dpup", "dpdown", "dpleft", "dpright"),
 )
 """In SDL's order of GameController buttons."""
 
@@ -39,32 +26,13 @@ AXES = ("leftx", "lefty", "rightx", "righty", "lefttrigger", "righttrigger")
 GAMEPAD_INPUTS = frozenset((*BUTTONS, *(sign + axis for axis in AXES for sign in "-+")))
 
 _W3C_BUTTONS = (
-    "a",
-    "b",
-    "x",
-    "y",
-    "leftshoulder",
-    "rightshoulder",
-    "+lefttrigger",
-    "+righttrigger",
-    "back",
-    "start",
-    "leftstick",
-    "rightstick",
-    "dpup",
-    "dpdown",
-    "dpleft",
-    "dpright",
-    "guide",
+    *("a", "b", "x", "y", "leftshoulder", "rightshoulder", "+lefttrigger", "+righttrigger"),
+    *("back", "start", "leftstick", "rightstick", "dpup", "dpdown", "dpleft", "dpright", "guide"),
 )
 
 
-def gamepad_inputs(axes: Sequence[float], buttons: Sequence[float]) -> dict[str, float]:
-    return {**dict(zip(BUTTONS, buttons, strict=False)), **_halves(AXES, axes)}
-
-
 def w3c_gamepad_inputs(axes: Sequence[float], buttons: Sequence[float]) -> dict[str, float]:
-    """Return the same of a gamepad in the W3C's standard layout, as a browser reads it."""
+    """Return all inputs of a gamepad in the W3C's standard layout, as a browser reads it."""
     return {**dict(zip(_W3C_BUTTONS, buttons, strict=False)), **_halves(AXES[:4], axes)}
 
 
@@ -87,53 +55,43 @@ _HINTS = {
 """Events come though no window of ours has the focus, and Ctrl-C stays the server's."""
 
 
-class GamepadListener(Protocol):
-    """Receives what happens to gamepads."""
+class GamepadNews(NamedTuple):
+    """What has happened to a gamepad: SDL knows no layout of an unknown one, which has no number.
 
-    def gamepad_added(self, number: int, name: str) -> None:
-        """A gamepad was plugged in."""
+    `inputs` are all inputs of one that has moved, 0…1.
+    """
 
-    def gamepad_moved(self, number: int, inputs: Mapping[str, float]) -> None:
-        """Something of a gamepad has changed; all its inputs, 0…1."""
-
-    def gamepad_removed(self, number: int, name: str) -> None:
-        """A gamepad was unplugged."""
-
-    def gamepad_unknown(self, name: str) -> None:
-        """A gamepad was plugged in whose layout SDL does not know."""
+    kind: Literal["added", "removed", "moved", "unknown"]
+    number: int
+    name: str
+    inputs: Mapping[str, float] = MappingProxyType({})
 
 
 class Gamepads:
     """Polls SDL; one poll takes some ten microseconds, and SDL's part of it leaves Python alone."""
 
-    def __init__(self, listener: GamepadListener) -> None:
-        """Start SDL and find what is plugged in at the first poll.
-
-        Raises:
-            NoGamepadsError: this computer cannot read gamepads.
-        """
+    def __init__(self) -> None:
+        """Start SDL and find what is plugged in at the first poll."""
         self._pygame, self._controller = start_sdl()
-        self._listener = listener
         self._open: dict[int, Any] = {}
         self._reported: dict[int, tuple[tuple[float, ...], tuple[float, ...]]] = {}
         self._unknown: set[str] = set()
         self._has_looked = False
 
-    def poll(self) -> None:
-        """Report what has changed since the last poll."""
+    def poll(self) -> Iterator[GamepadNews]:
         # `get` pumps SDL's events; what came or went is looked for by asking.
         if self._pygame.event.get() or not self._has_looked:
             self._has_looked = True
-            self._look()
+            yield from self._look()
         for number, pad in self._open.items():
             axes = tuple(pad.get_axis(axis) / FULL_DEFLECTION for axis in range(len(AXES)))
             buttons = tuple(float(pad.get_button(button)) for button in range(len(BUTTONS)))
             if self._reported.get(number) != (axes, buttons):
                 self._reported[number] = axes, buttons
-                self._listener.gamepad_moved(number, gamepad_inputs(axes, buttons))
+                inputs = {**dict(zip(BUTTONS, buttons, strict=True)), **_halves(AXES, axes)}
+                yield GamepadNews("moved", number, pad.name, inputs)
 
     def rumble(self, strength: float, seconds: float) -> None:
-        """Let all gamepads that can do so vibrate."""
         milliseconds = int(1000.0 * min(seconds, LONGEST_RUMBLE_S))
         for pad in self._open.values():
             pad.rumble(strength, strength, milliseconds)
@@ -143,25 +101,25 @@ class Gamepads:
         self._controller.quit()
         self._pygame.display.quit()
 
-    def _look(self) -> None:
+    def _look(self) -> Iterator[GamepadNews]:
         """Open newly plugged gamepads and forget unplugged ones."""
         for number, pad in tuple(self._open.items()):
             if not pad.attached():
                 del self._open[number]
                 self._reported.pop(number, None)
-                self._listener.gamepad_removed(number, pad.name)
+                yield GamepadNews("removed", number, pad.name)
         for index in range(self._pygame.joystick.get_count()):
             if not self._controller.is_controller(index):
                 name = self._pygame.joystick.Joystick(index).get_name()
                 if name not in self._unknown:
                     self._unknown.add(name)
-                    self._listener.gamepad_unknown(name)
+                    yield GamepadNews("unknown", -1, name)
                 continue
             pad = self._controller.Controller(index)
             number = pad.as_joystick().get_instance_id()
             if number not in self._open:
                 self._open[number] = pad
-                self._listener.gamepad_added(number, pad.name)
+                yield GamepadNews("added", number, pad.name)
 
 
 class NoGamepadsError(RASTrainerError):
@@ -169,11 +127,7 @@ class NoGamepadsError(RASTrainerError):
 
 
 def start_sdl() -> tuple[ModuleType, ModuleType]:
-    """Return pygame and its module of game controllers, both ready.
-
-    Raises:
-        NoGamepadsError: pygame is not installed, or SDL does not start.
-    """
+    """Return pygame and its module of game controllers, both ready."""
     with _environment(_HINTS):
         try:
             import pygame

@@ -32,7 +32,6 @@ class Source:
     """One thing that can hold the control.
 
     Attributes:
-        kind: what it is.
         station: where the person sits. What is at one station belongs to one operator.
         view: number of the view that reads it; None for a gamepad at the simulator.
         number: of the gamepad, to tell several of one station apart.

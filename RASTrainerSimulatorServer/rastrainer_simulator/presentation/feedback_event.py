@@ -36,13 +36,7 @@ class FeedbackEvent(str, Enum):
 
 @dataclass(frozen=True)
 class FeedbackEffect:
-    """The sound and the vibration of an event.
-
-    Attributes:
-        sound: name of the sound, "" for none.
-        rumble: strength of the vibration, 0 to 1.
-        seconds: how long it vibrates.
-    """
+    """The sound of an event, "" for none, and how strongly (0 to 1) and how long it vibrates."""
 
     sound: str
     rumble: float = 0.0

@@ -164,12 +164,7 @@ class ProcedureNews:
 
 @dataclass(frozen=True)
 class CoveringBodies:
-    """Bodies of the arm that cover tip or next point, which views draw translucent.
-
-    Attributes:
-        view, inset: in the two pictures.
-        headset: for the eyes of the newest headset.
-    """
+    """Bodies of the arm that cover tip or next point, which views draw translucent."""
 
     view: tuple[Words, ...] = ()
     inset: tuple[Words, ...] = ()
@@ -183,10 +178,7 @@ class StateNews(ViewMessage):
     Attributes:
         poses: of `WelcomeNews.bodies`.
         ghost: poses by body of an earlier trial that is shown next to the arm; None without one.
-        view: camera of the main picture.
         inset: camera along the skin or across the line of a procedure; None without either.
-        next: label; None without one.
-        elapsed_s: of the trial.
         planned_target: World, m.
         delayed: late and skipped ticks of the control loop.
         headset: for spectators only; None while nobody wears a headset.
@@ -229,9 +221,7 @@ class Feedback(ViewMessage):
     Attributes:
         number: counts from 1 without a gap.
         kind: what happened; a `FeedbackEvent`.
-        sound: name of the sound to play, "" for none.
         volume: 0 while sounds are muted.
-        rumble: strength of the vibration.
     """
 
     type = "event"
@@ -277,7 +267,6 @@ class TraceNews(ViewMessage):
         known: how many of the points sent before remain.
         points: new points after these, in the head's frame, mm.
         covered_mm: distance around the points within which the skin is painted; 0 for no paint.
-        next: the place to draw next; None if it is not shown.
     """
 
     type = "trace"
@@ -317,16 +306,8 @@ class Seat:
     """State of a seat on a teacher's board, except for its trial.
 
     Attributes:
-        trainee: whose trial it is, or whose ID is entered; "" for none.
-        task: title of the open trial's task, "" without one.
-        count: points of this task; 0 without a trial.
+        count: points of the open trial's task; 0 without one.
         screen: title of the open menu, "" while the trainee works.
-        instruction: what the trainee is asked to do.
-        warnings: in the words that the trainee reads.
-        score: the trainee's latest; None before the first.
-        holder: what drives the arm, "" for nothing.
-        slicer: whether a Slicer is connected.
-        language: BCP 47 tag of the texts.
         assignments: where the trainee stands in a curriculum, a sentence; "" without one.
     """
 
@@ -379,12 +360,7 @@ News = (
 
 @dataclass(frozen=True)
 class Hello(ViewMessage):
-    """A view's description of itself when it joins.
-
-    Attributes:
-        device: model of the headset or name of the browser; "" if unknown.
-        refresh_hz: of its display; 0 if unknown.
-    """
+    """A view's description of itself when it joins."""
 
     type = "hello"
     kind: Literal["desktop", "page", "headset", "spectator", "board"]
@@ -424,7 +400,6 @@ class SticksInput(ViewMessage):
     """Sticks of XR controllers or on the screen, as in `OperatorInput`.
 
     Attributes:
-        fine: whether they move slowly.
         yaw_deg: where the eyes look, counterclockwise from World's x: forward is there.
     """
 
@@ -540,11 +515,6 @@ class ViewRole(str, Enum):
     """May see everything and drive nothing."""
     BOARD = "board"
     """A teacher's board: a spectator whose key outlives the simulator's process."""
-
-    @property
-    def is_watch_only(self) -> bool:
-        """Whether its views may drive nothing."""
-        return self is not ViewRole.VIEW
 
 
 @dataclass(frozen=True)

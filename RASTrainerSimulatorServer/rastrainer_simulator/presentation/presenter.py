@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -60,25 +60,14 @@ class Presenter:
     of a view goes to the method of its type.
 
     Attributes:
-        screen: what the trainee reads now.
-        control: what drives the arm now.
+        updates: each new screen, feedback and holder of the control.
     """
 
     screen: Screen
     control = Control()
 
     def __init__(self) -> None:
-        self._subscribers: Subscribers[ViewUpdate] = Subscribers()
-
-    def subscribe(self, listener: Callable[[ViewUpdate], None]) -> Callable[[], None]:
-        """Have `listener` called with each new screen, feedback and holder of the control.
-
-        Returns what ends the subscription.
-        """
-        return self._subscribers.add(listener)
-
-    def publish(self, update: ViewUpdate) -> None:
-        self._subscribers.publish(update)
+        self.updates: Subscribers[ViewUpdate] = Subscribers()
 
     def pictures(self, now: SimulationState) -> Pictures:
         """Return the viewpoint of the pictures of a state."""

@@ -102,7 +102,6 @@ class Menu:
         focus: name of the item that has the focus; "" without one.
         picture: drawing of the controls next to the text, in which the inputs named by the facts
             are colored.
-        trend: plot in its place.
     """
 
     name: Words
@@ -178,17 +177,13 @@ class Screen:
         menu: None while the trainee works.
         warnings: each is shown as long as it lasts: contact, no gamepad, connection lost.
         status: short facts for the edge of the picture, such as "Task 2", "7 of 15", "03:21".
-        hints: the controls that matter just now.
         language: BCP 47 tag of all texts.
-        is_spoken: whether a view that can speak reads the screen aloud.
         has_sticks: whether the view that has control draws two sticks, to be dragged by a mouse.
         sticks_navigate: whether a headset's sticks step as in a menu, though none is open: while
             a trial is shown again.
         has_arrow: whether a view shows an arrow toward a next point that is out of sight.
-        errors: arrows that are drawn in the scene.
         is_head_clear: whether the skin is drawn so that what is within the head is seen.
         coverage: what the paint on the skin says while it is traced; "" where none is painted.
-        ruler: while a drill or an instrument is in the guide; else None.
         is_private: whether what the menu offers is only for the views of who operates.
     """
 
@@ -241,10 +236,8 @@ class Notices:
         if key:
             self._lasting[about] = key, values
 
-    def brief(self) -> tuple[ScreenMessage, ...]:
+    def shown(self, texts: Texts) -> tuple[ScreenMessage, ...]:
         self._brief = [each for each in self._brief if each[0] > self._time]
-        return tuple(message for _, message in self._brief)
-
-    def lasting(self, texts: Texts) -> tuple[ScreenMessage, ...]:
         said = (texts.say(key, **values) for key, values in self._lasting.values())
-        return tuple(ScreenMessage(text, Tone.WARNING) for text in said)
+        lasting = (ScreenMessage(text, Tone.WARNING) for text in said)
+        return (*lasting, *(message for _, message in self._brief))

@@ -197,7 +197,7 @@ class RatingPresenter(Presenter):
         blinded = self.texts.say("rating.replay", **place)
         self.shown.show(playback)
         self._replay = ReplayPresenter(playback, self._language, self.rate, blinded)
-        self._replay.subscribe(self._pass_on)
+        self._replay.updates.add(self._pass_on)
         self.pages.show(None)
         self._refresh()
 
@@ -208,7 +208,7 @@ class RatingPresenter(Presenter):
         if isinstance(update, Screen):
             self._refresh()
         else:
-            self.publish(update)
+            self.updates.publish(update)
 
     def _page_pressed(self, device: InputDevice, name: str) -> None:
         page = self.pages.top
@@ -235,7 +235,7 @@ class RatingPresenter(Presenter):
         screen = dataclasses.replace(screen, warnings=(*screen.warnings, *problem))
         if screen != self.screen:
             self.screen = screen
-            self.publish(screen)
+            self.updates.publish(screen)
 
     def _menu_screen(self) -> Screen:
         def label(code: str) -> str:
@@ -249,7 +249,7 @@ class RatingPresenter(Presenter):
 
     def _happened(self, what: FeedbackEvent) -> None:
         self._count += 1
-        self.publish(feedback_of(what, self._count))
+        self.updates.publish(feedback_of(what, self._count))
 
 
 def _pressed(values: Sequence[float]) -> frozenset[int]:

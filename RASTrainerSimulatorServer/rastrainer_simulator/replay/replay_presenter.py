@@ -248,7 +248,7 @@ class ReplayPresenter(Presenter):
             kind = feedback_event(event, result.state.touch)
             if kind is not None:
                 self._count += 1
-                self.publish(feedback_of(kind, self._count))
+                self.updates.publish(feedback_of(kind, self._count))
         is_found = self._wants_worst and self._search is not None and self._search.done()
         view = self._search.result() if self._search is not None and is_found else None
         camera = self._playback.setup.scenario.cameras[result.state.camera]
@@ -262,7 +262,7 @@ class ReplayPresenter(Presenter):
         screen = self._make_screen()
         if screen != self.screen:
             self.screen = screen
-            self.publish(screen)
+            self.updates.publish(screen)
 
     def _make_screen(self) -> Screen:
         hints = []

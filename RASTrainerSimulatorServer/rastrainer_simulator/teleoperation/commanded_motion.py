@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterable
 from enum import Enum
 
 from rastrainer.commands import CommandName
@@ -41,36 +41,16 @@ class MotionOutcome(str, Enum):
     STOPPED = "stopped"
 
 
-@dataclass(frozen=True)
-class JogCommand:
-    """Move the tip with `velocity` (m/s, World) for `duration` (s)."""
-
-    velocity: Vector
-    duration: float
-
-
-@dataclass(frozen=True)
-class MoveCommand:
-    """Move the tip to `position` (m, World) at `speed` (m/s), the tool turned to `direction`.
-
-    `direction` is the unit vector from A7 to the tip, in World; None leaves it as it is.
-    """
-
-    position: Vector
-    speed: float
-    direction: Vector | None = None
-
-
 class Jogging:
-    """A jog that is being carried out."""
+    """Moves the tip with `velocity` (m/s, World) for `duration` (s)."""
 
     motion = Motion.JOG
     direction = None
     goal = None
 
-    def __init__(self, command: JogCommand) -> None:
-        self._velocity = command.velocity
-        self._remaining = command.duration
+    def __init__(self, velocity: Vector, duration: float) -> None:
+        self._velocity = velocity
+        self._remaining = duration
 
     def displacement(self, dt: float, tip: Vector, velocity: Vector, acceleration: float) -> Vector:
         """Return this tick's displacement (m) from the velocity of the last tick (m/s)."""
@@ -86,14 +66,18 @@ class Jogging:
 
 
 class Moving:
-    """A move that is being carried out; it brakes so as to stop on the target."""
+    """Moves the tip to `goal` (m, World) at `speed` (m/s), and brakes so as to stop there.
+
+    The tool is turned to `direction`, the unit vector from A7 to the tip, in World; None leaves it
+    as it is.
+    """
 
     motion = Motion.MOVE
 
-    def __init__(self, command: MoveCommand) -> None:
-        self.direction = command.direction
-        self.goal = command.position
-        self._speed = command.speed
+    def __init__(self, goal: Vector, speed: float, direction: Vector | None = None) -> None:
+        self.goal = goal
+        self.direction = direction
+        self._speed = speed
         self._nearest = math.inf
         self._stalled = 0.0
 
@@ -106,7 +90,6 @@ class Moving:
         return shortened(remaining, length(step)) if braking_speed < self._speed else step
 
     def outcome(self, dt: float, tip: Vector, direction: Vector) -> MotionOutcome | None:
-        """Return how the move has ended, None while it lasts."""
         remaining = distance(tip, self.goal)
         turn = angle(direction, self.direction) if self.direction else 0.0
         if remaining <= ARRIVED and turn <= ARRIVED:
@@ -129,32 +112,30 @@ VIA = 1e-3
 """m: a waypoint this near is passed, whatever the direction of the tool there."""
 
 
-@dataclass(frozen=True)
-class PathCommand:
-    """Move the tip along waypoints; only the last one has to be reached exactly."""
-
-    waypoints: tuple[MoveCommand, ...]
+Waypoint = tuple[Vector, float, Vector]
+"""A goal, the speed toward it and the direction of the tool there, as of `Moving`."""
 
 
 class FollowingPath(Moving):
-    """A path that is being followed: only the alignment of the guide has one."""
+    """Moves the tip along waypoints; only the last one has to be reached exactly.
+
+    Only the alignment of the guide has a path.
+    """
 
     motion = Motion.ALIGN
 
-    def __init__(self, command: PathCommand) -> None:
-        first, *self._following = command.waypoints
-        super().__init__(first)
+    def __init__(self, waypoints: Iterable[Waypoint]) -> None:
+        first, *self._following = waypoints
+        super().__init__(*first)
 
     def outcome(self, dt: float, tip: Vector, direction: Vector) -> MotionOutcome | None:
-        """Return how the path has ended, None while it lasts."""
         if self._following and distance(tip, self.goal) <= VIA:
-            super().__init__(self._following.pop(0))
+            super().__init__(*self._following.pop(0))
             return None
         return super().outcome(dt, tip, direction)
 
 
-CommandedMotion = JogCommand | MoveCommand | PathCommand
-Running = Jogging | Moving
+CommandedMotion = Jogging | Moving
 
 
 def commanded_motion(command: OperatorCommand, camera: Axes, tool: Axes) -> CommandedMotion:
@@ -168,16 +149,10 @@ def commanded_motion(command: OperatorCommand, camera: Axes, tool: Axes) -> Comm
         velocity = scale(arguments["velocityMmS"], 1.0 / MM_PER_M)
         axes = {"camera": camera, "tool": tool}.get(arguments["frame"])
         velocity = axes.to_world(velocity) if axes else velocity
-        return JogCommand(velocity, arguments["durationS"])
+        return Jogging(velocity, arguments["durationS"])
     pointed = arguments["direction"]
-    return MoveCommand(
-        position=scale(arguments["positionMm"], 1.0 / MM_PER_M),
+    return Moving(
+        goal=scale(arguments["positionMm"], 1.0 / MM_PER_M),
         speed=arguments["speedMmS"] / MM_PER_M,
         direction=unit(pointed) if pointed and length(pointed) >= 1e-9 else None,
     )
-
-
-def started(command: CommandedMotion) -> Running:
-    if isinstance(command, PathCommand):
-        return FollowingPath(command)
-    return Jogging(command) if isinstance(command, JogCommand) else Moving(command)

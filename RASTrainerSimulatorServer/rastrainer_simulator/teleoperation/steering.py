@@ -123,9 +123,7 @@ class SteeringSettings:
     """How the tool's direction is steered; lengths in m, angles in rad.
 
     Attributes:
-        choice: how the direction is chosen.
-        coarse_turn: fastest turn by the stick, rad/s.
-        fine_turn: the same while the trigger for fine speed is held, rad/s.
+        coarse_turn, fine_turn: fastest turn by the stick, without and with the trigger, rad/s.
         leaning_turn: fastest turn toward the surface normal, rad/s.
         largest_lean: of CLEAR, between the tool and the normal at the surface.
         near: clearance of the tip up to which the lean is limited to that.
@@ -171,7 +169,6 @@ class ToolSteering:
 
     @property
     def is_steered(self) -> bool:
-        """Whether the steering stick has an effect."""
         return self._settings.choice not in (ToolDirection.FREE, ToolDirection.CLEAR)
 
     def reset(self) -> None:

@@ -7,12 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from rastrainer.json_checks import Setting
 from rastrainer_simulator.state import Motion, OperatorInput
-from rastrainer_simulator.teleoperation.commanded_motion import (
-    CommandedMotion,
-    MotionOutcome,
-    Running,
-    started,
-)
+from rastrainer_simulator.teleoperation.commanded_motion import CommandedMotion, MotionOutcome
 from rastrainer_simulator.teleoperation.steering import (
     Axes,
     NearestSurface,
@@ -135,7 +130,7 @@ class Teleoperation:
         self._held = ToolSteering(replace(settings.steering, choice=ToolDirection.HELD))
         self._steering = self._as_set
         self._velocity = ZERO
-        self._running: Running | None = None
+        self._running: CommandedMotion | None = None
 
     def hold_direction(self, is_held: bool) -> None:
         """Have the operator hold and steer the tool's direction, whatever is set."""
@@ -144,8 +139,8 @@ class Teleoperation:
             steering.reset()
             self._steering = steering
 
-    def start(self, command: CommandedMotion) -> None:
-        self._running = started(command)
+    def start(self, motion: CommandedMotion) -> None:
+        self._running = motion
 
     def stop(self) -> bool:
         """Stand still and forget held directions; return whether a commanded motion ended by it."""
@@ -207,7 +202,7 @@ class Teleoperation:
 
     def _by_command(
         self,
-        running: Running,
+        running: CommandedMotion,
         dt: float,
         tip: Tip,
         axes: Axes,

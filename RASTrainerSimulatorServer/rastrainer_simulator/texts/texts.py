@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from pathlib import Path
 from string import Formatter
 from types import MappingProxyType
@@ -27,11 +28,10 @@ def _french(text: str) -> str:
     return text.replace("« ", f"«{NARROW_SPACE}").replace("'", "’")
 
 
-def _chinese(text: str) -> str:
-    return re.sub(r" (?=[\d{/])|(?<=[\d}/]) ", NO_BREAK_SPACE, text)
-
-
-_TYPESETTING: Mapping[str, Callable[[str], str]] = {"fr": _french, "zh-Hans": _chinese}
+_TYPESETTING: Mapping[str, Callable[[str], str]] = {
+    "fr": _french,
+    "zh-Hans": partial(re.sub, r" (?=[\d{/])|(?<=[\d}/]) ", NO_BREAK_SPACE),
+}
 
 
 def _table(tag: str) -> dict[str, str]:
@@ -52,12 +52,7 @@ LANGUAGES: Mapping[str, Mapping[str, str]] = MappingProxyType(
 
 
 class LocalizedText(str):
-    """A sentence that remembers how it was made, so that a view can show it in its own language.
-
-    Attributes:
-        key: of the sentence in its table.
-        values: what was filled in.
-    """
+    """A sentence that remembers how it was made, so that a view can show it in its own language."""
 
     key: str
     values: Mapping[str, object]
@@ -106,7 +101,6 @@ class Texts:
         return key in self._table
 
     def say(self, key: str, **values: object) -> LocalizedText:
-        """Return the sentence with its values filled in."""
         return LocalizedText(self._formatter.vformat(self._table[key], (), values), key, values)
 
     def listed(self, words: Iterable[str]) -> str:
@@ -137,12 +131,9 @@ def pair_label(first: str, second: str) -> str:
 def input_label(
     texts: Texts, device: str, name: str, key_names: Mapping[str, str] = NO_NAMES
 ) -> str:
-    key = f"{device}.{name}"
-    return texts.say(key) if key in texts else key_name(name, key_names)
-
-
-def key_name(code: str, key_names: Mapping[str, str]) -> str:
-    """Return what is written on a key, or what an American keyboard has there."""
-    name = key_names.get(code, code.removeprefix("Key").removeprefix("Digit"))
+    """Return the name of an input; of a key, what is written on it, or on an American keyboard."""
+    if f"{device}.{name}" in texts:
+        return texts.say(f"{device}.{name}")
+    written = key_names.get(name, name.removeprefix("Key").removeprefix("Digit"))
     # The capital of ß is two letters, and on no key.
-    return name.upper() if len(name.upper()) == len(name) == 1 else name
+    return written.upper() if len(written.upper()) == len(written) == 1 else written

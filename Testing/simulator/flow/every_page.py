@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from concurrent.futures import Future
 from dataclasses import replace
+from functools import partial
 from importlib import import_module
 from pkgutil import iter_modules
-from types import MappingProxyType
+from types import MappingProxyType, SimpleNamespace
 
 from rastrainer.procedure.record import UsedRegistration
 from rastrainer.protocol import MAX_ASSIGNMENTS, AssignmentState, GoalKind, Phase
+from rastrainer.registration.fits import RIGID
 from rastrainer.study.ratings import FORMS
 from rastrainer.study_messages import AssignmentStanding, CurriculumMessage, StudyStep
 from rastrainer.trial.trial_feedback import PastTrial
@@ -26,13 +28,12 @@ from rastrainer_simulator.flow.pages import (
     trainee_id,
     trial_review,
 )
-from rastrainer_simulator.flow.pages.session_page import PageKind, SessionPage
+from rastrainer_simulator.flow.pages.session_page import SessionPage, ShownPage
 from rastrainer_simulator.flow.pages.trainee_id import QuestionnairePage
 from rastrainer_simulator.flow.pages.trial_review import MOST_TRIALS
 from rastrainer_simulator.flow.session.open_pages import OpenPages
 from rastrainer_simulator.flow.session.preferences import InstructorLock
 from rastrainer_simulator.flow.session.trainee_history import OwnTrial
-from rastrainer_simulator.flow.trial_screen import MatchReport
 from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.presentation.screen import Screen, without_secrets
 from rastrainer_simulator.rating.rating_presenter import DomainPage, LoadingPage, RatedPage
@@ -150,12 +151,20 @@ class _SetPin:
     is_set = True
 
 
-def _matched() -> Future[MatchReport]:
-    """Return the longest report of a match: most of what may look wrong with one does."""
-    matched: Future[MatchReport] = Future()
-    wrong = ("slides", "several-minima", "few-inliers")
-    matched.set_result(MatchReport(0.42, 0.71, 2.31, (1.12, 5.55), 4.2, wrong))
+def known_match(share: float, expected_mm: float, interval_mm: tuple, *wrong: str) -> Future:
+    """Return a match with its figures; `wrong` are the codes of what looks wrong with it."""
+    warnings = [SimpleNamespace(code=code) for code in wrong]
+    slide = SimpleNamespace(distance_mm=4.2)
+    match = SimpleNamespace(rms_mm=0.42, inlier_share=share, slide=slide, warnings=warnings)
+    at_target = SimpleNamespace(expected_mm=expected_mm, interval_mm=interval_mm)
+    matched: Future = Future()
+    matched.set_result(SimpleNamespace(match=match, target_errors={RIGID: at_target}))
     return matched
+
+
+def _matched() -> Future:
+    """Return a match about which most is said: most of what may look wrong with one does."""
+    return known_match(0.71, 2.31, (1.12, 5.55), "slides", "several-minima", "few-inliers")
 
 
 class _Loading:
@@ -223,9 +232,9 @@ def names_of_pages() -> set[str]:
     names = (each.name for each in iter_modules(pages.__path__, f"{pages.__name__}."))
     modules = (trial_screen, procedure_screen, *map(import_module, names))
     found = [value for module in modules for value in vars(module).values()]
-    kinds = [value for value in found if isinstance(value, PageKind)]
+    kinds = {v.args[0] for v in found if isinstance(v, partial) and v.func is ShownPage}
     classes = [v for v in found if isinstance(v, type) and issubclass(v, SessionPage) and v.name]
-    return {each.name for each in (*kinds, *classes)}
+    return kinds | {each.name for each in classes}
 
 
 def with_curriculum(session) -> None:

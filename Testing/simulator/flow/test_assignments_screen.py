@@ -58,7 +58,7 @@ def menu(trainee, outside):
     """The trainee at the experiment menu with the ID P07, the trial run done, and Slicer there."""
     outside.has_slicer = True
     session = trainee.presenter._session
-    session.history.note_done("P07", session.scenario.name, TRIAL_RUN)
+    session.history.done["P07", session.scenario.name].add(TRIAL_RUN)
     outside.services.assigned.take_curriculum(TOLD)
     trainee.go_to_experiment("P07")
     trainee.step(20)

@@ -50,7 +50,7 @@ def feedback_events_of(loop):
 def test_touch_undo_proximity_contact_and_finish_give_sound_and_vibration_exactly_once(pilot, felt):
     expected = feedback_events_of(pilot.loop)
     # SDL only prolongs what vibrates already: here simulated time is faster than the motors.
-    pilot.presenter.subscribe(lambda _news: pilot.presenter.rumble(0.0, 0.0))
+    pilot.presenter.updates.add(lambda _news: pilot.presenter.rumble(0.0, 0.0))
     pilot.start("task-1")
     truth = pilot.loop.simulation.truth
     center = truth.in_world(truth.target_ras) / MM_PER_M

@@ -260,5 +260,5 @@ def test_a_study_trial_has_the_skin_of_its_protocol(menu, guide):
     start_task(session, "task-2")
     menu.until_menu(None)
     truth = session.control_loop.simulation.truth
-    assert truth.skin.amounts == skin
+    assert (truth.skin.shift_mm, truth.skin.indentation_mm) == (2.0, 0.5)
     assert truth.skin.seed > 0

@@ -10,16 +10,18 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.protocol import MIN_TRACE_POINTS, Phase, RegistrationMethod
+from rastrainer.registration.fits import RIGID
 from rastrainer.registration.surface_error import COVERED_MM
 from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow.session.chosen_trial import registration_method, start_task
-from rastrainer_simulator.flow.trial_screen import MatchReport, match_page, match_report
+from rastrainer_simulator.flow.trial_screen import match_page, registration_so_far
 from rastrainer_simulator.presentation.presenter import TraceGuidance
 from rastrainer_simulator.state import TrainingState
 from rastrainer_simulator.training.replies import given
 from rastrainer_simulator.trial_state import TouchState, TracedPoint, TraceState
 from Testing.domain.registration import traces
+from Testing.simulator.flow.every_page import known_match
 from Testing.simulator.landmarked import LANDMARKS, with_landmarks
 
 
@@ -169,7 +171,7 @@ def register_matched(trainee):
     session.pages.show(match_page(session, matched))
     trainee.until_menu("match")
     assert not trainee.item("accept").is_enabled
-    matched.set_result(MatchReport(0.42, 0.97, 0.31, (0.05, 1.2), 1.1))
+    matched.set_result(known_match(0.97, 0.31, (0.05, 1.2)).result())
     trainee.until(lambda: trainee.item("accept").is_enabled, "the match")
     facts = {fact.label: fact.value for fact in trainee.menu.facts}
     assert facts == {
@@ -237,17 +239,18 @@ def drawn(scenario, where):
 
 def test_the_report_has_the_numbers_of_the_registration(landmarked):
     trial = drawn(landmarked, "face")
-    report = match_report(trial, landmarked)
+    seen = registration_so_far(trial, landmarked)
     values = {"task": "task-1", "method": "surface", **given(trial)}
     registered = register_trial(GivenPoints.of_answer(values), landmarked)
-    assert report.residual_mm == registered.rigid.fre_mm < 0.2
-    assert report.expected_mm == registered.arguments("x")["expectedTreMm"]
-    assert report.interval_mm[0] < report.expected_mm < report.interval_mm[1]
-    assert "slides" not in report.codes
+    assert seen.match.rms_mm == registered.rigid.fre_mm < 0.2
+    at_target = seen.target_errors[RIGID]
+    assert at_target.expected_mm == registered.arguments("x")["expectedTreMm"]
+    assert at_target.interval_mm[0] < at_target.expected_mm < at_target.interval_mm[1]
+    assert "slides" not in {warning.code for warning in seen.match.warnings}
 
 
 def test_a_trace_on_the_crown_alone_is_reported_before_it_is_accepted(landmarked):
-    report = match_report(drawn(landmarked, "crown"), landmarked)
-    assert report.residual_mm < 0.2
-    assert "slides" in report.codes
-    assert report.slide_mm > 3.0
+    match = registration_so_far(drawn(landmarked, "crown"), landmarked).match
+    assert match.rms_mm < 0.2
+    assert "slides" in {warning.code for warning in match.warnings}
+    assert match.slide.distance_mm > 3.0

@@ -37,8 +37,8 @@ def test_the_trial_run_counts_once_all_points_were_touched_or_its_time_was_up(
     write_journal(tmp_path, "1", "P01", "trial-run", entry)
     write_journal(tmp_path, "2", "P01", "task-2", entry)
     progress = TraineeHistory(tmp_path)
-    assert progress.has_done("P01", HEAD, "trial-run") is is_done
-    assert not progress.has_done("P01", HEAD, "task-2")
+    assert ("trial-run" in progress.done["P01", HEAD]) is is_done
+    assert "task-2" not in progress.done["P01", HEAD]
 
 
 def test_a_task_counts_once_registered(tmp_path):
@@ -47,7 +47,7 @@ def test_a_task_counts_once_registered(tmp_path):
     write_journal(tmp_path, "3", "P01", "task-2", "aborted")
     write_journal(tmp_path, "4", "P02", "task-1", "registered")
     progress = TraineeHistory(tmp_path)
-    assert [progress.has_done("P01", HEAD, task) for task in ORDER] == [True, True, False]
+    assert [task in progress.done["P01", HEAD] for task in ORDER] == [True, True, False]
     assert progress.missing_before("P01", HEAD, "task-2", ORDER) is None
     # Who has done a task skipped the trial run.
     assert progress.missing_before("P02", HEAD, "task-2", ORDER) is None
@@ -58,7 +58,7 @@ def test_a_task_counts_once_registered(tmp_path):
 def test_a_task_on_one_head_does_not_count_for_another(tmp_path):
     write_journal(tmp_path, "1", "P01", "trial-run", "registered", scenario="other")
     progress = TraineeHistory(tmp_path)
-    progress.note_done("P01", "other", "task-1")
+    progress.done["P01", "other"].add("task-1")
     assert progress.missing_before("P01", "other", "task-2", ORDER) is None
     assert progress.missing_before("P01", HEAD, "task-2", ORDER) == "trial-run"
 
@@ -73,9 +73,9 @@ def test_files_that_are_not_journals_count_for_nothing(tmp_path):
     (tmp_path / "folder.journal").mkdir()
     write_journal(tmp_path, "odd", ["P03"], {"task": 1}, "registered")
     progress = TraineeHistory(tmp_path)
-    assert progress.has_done("P01", HEAD, "task-1")
-    assert not progress.has_done("P02", HEAD, "task-1")
+    assert "task-1" in progress.done["P01", HEAD]
+    assert "task-1" not in progress.done["P02", HEAD]
 
 
 def test_a_missing_folder_counts_for_nothing(tmp_path):
-    assert not TraineeHistory(tmp_path / "later").has_done("P01", HEAD, "task-1")
+    assert "task-1" not in TraineeHistory(tmp_path / "later").done["P01", HEAD]

@@ -102,9 +102,9 @@ def test_completed_tasks_are_still_known_after_a_restart_of_the_simulator(traine
     trainee.close()
     loop.stop()
     progress, scenario = TraineeHistory(outside.services.records), loop.setup.scenario.name
-    assert progress.has_done("P07", scenario, "trial-run")
-    assert not progress.has_done("P07", scenario, "task-1")
-    assert not progress.has_done("P08", scenario, "trial-run")
+    assert "trial-run" in progress.done["P07", scenario]
+    assert "task-1" not in progress.done["P07", scenario]
+    assert "trial-run" not in progress.done["P08", scenario]
 
 
 def test_after_five_minutes_of_practice_the_trainee_is_asked_once(trainee, monkeypatch):

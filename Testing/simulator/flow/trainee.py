@@ -49,7 +49,7 @@ class Watcher:
     def __init__(self, presenter):
         self.screens, self.feedbacks, self.controls = [], [], []
         kept = {Screen: self.screens, Feedback: self.feedbacks, Control: self.controls}
-        presenter.subscribe(lambda news: kept[type(news)].append(news))
+        presenter.updates.add(lambda news: kept[type(news)].append(news))
 
     @property
     def kinds(self):

@@ -14,17 +14,26 @@ class Ear:
     def __init__(self):
         self.came, self.went, self.unknown, self.inputs = [], [], [], []
 
-    def gamepad_added(self, number, name):
-        self.came.append((number, name))
+    def take(self, news):
+        if news.kind == "moved":
+            self.inputs.append((news.number, dict(news.inputs)))
+        elif news.kind == "unknown":
+            self.unknown.append(news.name)
+        else:
+            told = self.came if news.kind == "added" else self.went
+            told.append((news.number, news.name))
 
-    def gamepad_moved(self, number, inputs):
-        self.inputs.append((number, dict(inputs)))
 
-    def gamepad_removed(self, number, name):
-        self.went.append((number, name))
+class HeardGamepads(Gamepads):
+    """Gamepads whose every poll is told to an ear."""
 
-    def gamepad_unknown(self, name):
-        self.unknown.append(name)
+    def __init__(self, ear):
+        super().__init__()
+        self._ear = ear
+
+    def poll(self):
+        for news in super().poll():
+            self._ear.take(news)
 
 
 @pytest.fixture
@@ -34,7 +43,7 @@ def ear():
 
 @pytest.fixture
 def gamepads(ear):
-    gamepads = Gamepads(ear)
+    gamepads = HeardGamepads(ear)
     yield gamepads
     gamepads.close()
 

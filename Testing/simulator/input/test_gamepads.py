@@ -106,7 +106,7 @@ def test_a_joystick_of_unknown_layout_is_named_once(gamepads, ear):
 
 def test_programs_started_by_the_simulator_do_not_inherit_sdls_settings(monkeypatch):
     monkeypatch.delenv("SDL_VIDEODRIVER", raising=False)
-    Gamepads(None).close()
+    Gamepads().close()
     assert "SDL_VIDEODRIVER" not in os.environ
 
 

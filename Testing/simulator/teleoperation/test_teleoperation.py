@@ -8,9 +8,9 @@ import pytest
 from rastrainer_simulator.state import NEUTRAL_STICKS, Motion, OperatorInput
 from rastrainer_simulator.teleoperation.commanded_motion import (
     ARRIVED,
-    JogCommand,
+    Jogging,
     MotionOutcome,
-    MoveCommand,
+    Moving,
 )
 from rastrainer_simulator.teleoperation.steering import (
     ROBOT_AXES,
@@ -180,7 +180,7 @@ def test_with_a_camera_looking_down_forward_stays_horizontal_and_up_stays_vertic
 
 def test_a_jog_moves_for_its_duration_and_then_stops():
     hand = Hand(TeleoperationSettings(acceleration=1e6))
-    hand.teleoperation.start(JogCommand(velocity=(0.0, 0.1, 0.0), duration=0.1))
+    hand.teleoperation.start(Jogging(velocity=(0.0, 0.1, 0.0), duration=0.1))
     start = hand.tip.position
     assert hand.run_until_end() is MotionOutcome.REACHED
     assert hand.tip.position == pytest.approx(add(start, (0.0, 0.01, 0.0)), abs=1e-9)
@@ -190,7 +190,7 @@ def test_a_jog_moves_for_its_duration_and_then_stops():
 def test_a_jog_replaced_by_another_continues_without_a_stop():
     hand = Hand()
     for _ in range(20):
-        hand.teleoperation.start(JogCommand(velocity=(0.1, 0.0, 0.0), duration=0.1))
+        hand.teleoperation.start(Jogging(velocity=(0.1, 0.0, 0.0), duration=0.1))
         for _ in range(12):
             motion_request = hand.step()
     assert motion_request.motion is Motion.JOG
@@ -200,7 +200,7 @@ def test_a_jog_replaced_by_another_continues_without_a_stop():
 def test_a_move_ends_on_its_target_and_never_exceeds_its_speed():
     hand = Hand()
     target = (0.42, 0.13, 0.41)
-    hand.teleoperation.start(MoveCommand(position=target, speed=0.1))
+    hand.teleoperation.start(Moving(goal=target, speed=0.1))
     fastest = 0.0
     while (motion_request := hand.step()).ended is None:
         fastest = max(fastest, length(motion_request.displacement) / DT)
@@ -212,7 +212,7 @@ def test_a_move_ends_on_its_target_and_never_exceeds_its_speed():
 def test_a_move_turns_the_tool_as_commanded_even_if_its_direction_is_free():
     hand = Hand()
     goal = unit((0.0, 1.0, -1.0))
-    hand.teleoperation.start(MoveCommand((0.5, 0.0, 0.45), speed=0.1, direction=goal))
+    hand.teleoperation.start(Moving((0.5, 0.0, 0.45), speed=0.1, direction=goal))
     assert hand.run_until_end() is MotionOutcome.REACHED
     assert angle(hand.tip.direction, goal) < 1e-9
 
@@ -220,13 +220,13 @@ def test_a_move_turns_the_tool_as_commanded_even_if_its_direction_is_free():
 def test_a_move_that_gets_no_closer_gives_up_and_reports_that_it_was_blocked():
     hand = Hand()
     hand.blocked = True
-    hand.teleoperation.start(MoveCommand((0.5, 0.0, 0.3), speed=0.1))
+    hand.teleoperation.start(Moving((0.5, 0.0, 0.3), speed=0.1))
     assert hand.run_until_end(most_ticks=200) is MotionOutcome.BLOCKED
 
 
 def test_a_stick_overrides_a_commanded_motion():
     hand = Hand()
-    hand.teleoperation.start(MoveCommand((0.5, 0.0, 0.3), speed=0.1))
+    hand.teleoperation.start(Moving((0.5, 0.0, 0.3), speed=0.1))
     hand.step()
     motion_request = hand.step(push(1.0, 0.0, 0.0))
     assert motion_request.ended is MotionOutcome.OVERRIDDEN

@@ -58,7 +58,7 @@ class Viewer:
         self.playback = Playback(trial, setup)
         self.ended, self.messages, self.tips = [], [], []
         self.presenter = ReplayPresenter(self.playback, "en", lambda: self.ended.append(True))
-        self.presenter.subscribe(self.messages.append)
+        self.presenter.updates.add(self.messages.append)
         self.playback.subscribe(lambda result: self.tips.append(result.state.tool_tip_to_world))
 
     def press(self, code):

@@ -54,7 +54,7 @@ class Rater:
         self.presenter = RatingPresenter(
             self.work, first, self._load, language, lambda: self.left.append(True)
         )
-        self.presenter.subscribe(self.messages.append)
+        self.presenter.updates.add(self.messages.append)
         self.presenter.view_joined(VIEW, Hello("page"))
 
     def _load(self, trial_id):

@@ -179,12 +179,7 @@ class ExperimentPage(SessionPage):
         )
 
     def _next_task(self) -> str:
-        """Return the first task that can be started and is to be done; "" without a trainee.
-
-        One that is not passed is to be done again, outside of a study.
-
-        Then a stray key does not change the ID of a known trainee.
-        """
+        """Return the row of the first task to be done, so that a stray key changes no known ID."""
         session, step = self.session, self.session.step
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
             return "answer"
@@ -211,7 +206,6 @@ class ExperimentPage(SessionPage):
 def open_experiment(
     session: TrainingSession, first: str = "", ignore_input_briefly: bool = False
 ) -> None:
-    """Open the experiment menu over the start page; `first` is the row with the focus."""
     session.pages.show_start()
     session.pages.open(ExperimentPage(session, first), ignore_input_briefly)
 

@@ -17,21 +17,10 @@ from rastrainer.trial.procedure_outcome import (
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.trial_review import ErrorsPage
 from rastrainer_simulator.flow.session.open_pages import PageContent
-from rastrainer_simulator.flow.session.plan_marks import (
-    PLACED,
-    PLANNED,
-    SHOWN,
-    drawn,
-    placed_line,
-)
+from rastrainer_simulator.flow.session.plan_marks import PLACED, PLANNED, SHOWN, drawn, placed_line
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.session.trainee_history import detail_number
-from rastrainer_simulator.presentation.screen import (
-    ErrorArrow,
-    Fact,
-    Screen,
-    Tone,
-)
+from rastrainer_simulator.presentation.screen import ErrorArrow, Fact, Screen, Tone
 from rastrainer_simulator.state import TrialResult
 from rastrainer_simulator.trial_state import PlannedLine
 

@@ -168,10 +168,7 @@ class ResultPage(SessionPage):
         return [*facts, *_facts_of_trial(self.session), *shown]
 
     def _rows(self) -> tuple[PageRow, ...]:
-        """Return where the trainee can go: after a failure first to what helps.
-
-        A study goes on all the same.
-        """
+        """Return where the trainee can go: after a failure first to what helps."""
         session, is_in_study = self.session, self.session.trial_step is not None
         rows = [
             *_onward(self),
@@ -257,10 +254,8 @@ def _value(texts: Texts, value: Any) -> Any:
         return value
     if isinstance(value, dict):
         # A part has no parts itself, however deep the message may be.
-        return _worded(texts, {**value, "values": _plain(value.get("values"))})
+        parts = value.get("values")
+        items = parts.items() if isinstance(parts, dict) else ()
+        plain = {name: part for name, part in items if isinstance(part, str) or is_number(part)}
+        return _worded(texts, {**value, "values": plain})
     return _worded(texts, value)
-
-
-def _plain(values: Any) -> dict[str, Any]:
-    items = values.items() if isinstance(values, dict) else ()
-    return {name: value for name, value in items if isinstance(value, str) or is_number(value)}

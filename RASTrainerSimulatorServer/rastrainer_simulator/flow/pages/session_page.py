@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from functools import partial
 from typing import TypeVar
 
 from rastrainer_simulator.flow.session.open_pages import Page, PageContent
@@ -30,51 +30,44 @@ class SessionPage(Page):
         return lambda: self.session.pages.open(page(self.session, *arguments))
 
 
-@dataclass(frozen=True)
-class PageKind:
-    """A kind of page that has no state.
+Leave = Callable[[TrainingSession], object]
+Show = Callable[..., PageContent]
 
-    Attributes:
-        show: makes what a page shows now; it is given the page, and the arguments of the call.
-        leave: is called when the trainee goes back; None closes the page.
+
+class ShownPage(SessionPage):
+    """A page without a state of its own: `show` makes what it shows now.
+
+    `show` is given the page and the arguments; `leave` is called when the trainee goes back.
     """
 
-    name: str
-    show: Callable[..., PageContent]
-    leave: Callable[[TrainingSession], object] | None = None
-    pause_goes_back: bool = False
+    def __init__(
+        self,
+        name: str,
+        show: Show,
+        leave: Leave | None,
+        pause_goes_back: bool,
+        session: TrainingSession,
+        *arguments: object,
+    ) -> None:
+        super().__init__(session)
+        self.name, self.pause_goes_back = name, pause_goes_back
+        self._show, self._leave, self._arguments = show, leave, arguments
 
-    def __call__(self, session: TrainingSession, *arguments: object) -> SessionPage:
-        return _ShownPage(session, self, arguments)
+    def content(self) -> PageContent:
+        return self._show(self, *self._arguments)
+
+    def back(self) -> None:
+        if self._leave is None:
+            super().back()
+        else:
+            self._leave(self.session)
 
 
 def page_kind(
-    name: str,
-    leave: Callable[[TrainingSession], object] | None = None,
-    pause_goes_back: bool = False,
-) -> Callable[[Callable[..., PageContent]], PageKind]:
-    """Make a function that returns the content of a page the kind of this page."""
-    return lambda show: PageKind(name, show, leave, pause_goes_back)
-
-
-class _ShownPage(SessionPage):
-    """A page of a `PageKind`."""
-
-    def __init__(
-        self, session: TrainingSession, kind: PageKind, arguments: Sequence[object]
-    ) -> None:
-        super().__init__(session)
-        self._kind, self._arguments = kind, arguments
-        self.name, self.pause_goes_back = kind.name, kind.pause_goes_back
-
-    def content(self) -> PageContent:
-        return self._kind.show(self, *self._arguments)
-
-    def back(self) -> None:
-        if self._kind.leave is None:
-            super().back()
-        else:
-            self._kind.leave(self.session)
+    name: str, leave: Leave | None = None, pause_goes_back: bool = False
+) -> Callable[[Show], Callable[..., SessionPage]]:
+    """Make a function that returns the content of a page one that makes this page."""
+    return lambda show: partial(ShownPage, name, show, leave, pause_goes_back)
 
 
 def stepped(options: Sequence[T], value: T, direction: int) -> T:

@@ -66,7 +66,7 @@ def clicked_id_page(page: SessionPage, write: Write) -> PageContent:
 
     known = (
         page.button(f"known {trainee}", partial(use, trainee), label=trainee)
-        for trainee in page.session.history.latest_trainees(MAX_KNOWN)
+        for trainee in page.session.history.latest_trainees[:MAX_KNOWN]
     )
     rows = (
         page.button(

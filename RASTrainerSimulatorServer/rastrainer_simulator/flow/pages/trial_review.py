@@ -13,13 +13,7 @@ from rastrainer_simulator.flow.session.plan_marks import plan_marks
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.session.trainee_history import OwnTrial
 from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice, SourceKind
-from rastrainer_simulator.presentation.screen import (
-    ErrorArrow,
-    Hint,
-    Screen,
-    ScreenMessage,
-    Tone,
-)
+from rastrainer_simulator.presentation.screen import ErrorArrow, Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
 from rastrainer_simulator.replay.replay_presenter import ACTIONS, Player, PlayerAction
@@ -100,11 +94,7 @@ _WORST = {InputDevice.KEYBOARD: "KeyT", InputDevice.GAMEPAD: "x"}
 
 
 class ReplayPage(SessionPage):
-    """Waits for the recorded trial, and replays it for the operator.
-
-    Attributes:
-        playback: None while the trial is being loaded.
-    """
+    """Waits for the recorded trial, and replays it for the operator."""
 
     name = "replay"
 

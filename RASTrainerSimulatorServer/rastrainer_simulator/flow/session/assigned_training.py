@@ -27,7 +27,6 @@ class AssignedTraining:
     ended by then.
 
     Attributes:
-        steps, curricula: of each trainee.
         answers: of each trainee to a questionnaire, until Slicer has acknowledged them.
     """
 

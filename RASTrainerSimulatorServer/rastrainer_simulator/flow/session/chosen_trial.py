@@ -34,10 +34,7 @@ def start_task(session: TrainingSession, task: str) -> None:
 
 
 def procedure_of(session: TrainingSession, task: str) -> str:
-    """Return the name of the procedure that follows the touches of a task; "" for none.
-
-    A study decides, else the trainee; the trial run has none.
-    """
+    """Return the name of the procedure that follows the touches of a task; "" for none."""
     step = session.step
     if step is not None:
         return step.procedure
@@ -46,10 +43,7 @@ def procedure_of(session: TrainingSession, task: str) -> str:
 
 
 def registration_method(session: TrainingSession, task: str) -> RegistrationMethod:
-    """Return the method by which a trial of a task is registered.
-
-    A study decides, else the trainee if the head allows it; the trial run is by fiducials.
-    """
+    """Return the method by which a trial of a task is registered."""
     step = session.step
     if step is not None:
         return method_of(step.method)
@@ -186,10 +180,7 @@ def tutorial_rule(session: TrainingSession) -> TutorialRule:
 
 
 def may_skip(session: TrainingSession) -> bool:
-    """Return whether the trainee may skip tutorial and trial run.
-
-    That is not for who is in a study or has a curriculum, nor where an instructor's PIN locks it.
-    """
+    """Return whether the trainee may skip tutorial and trial run."""
     is_led = session.step is not None or session.curriculum is not None
     return not is_led and not session.lock.is_locked
 
@@ -212,7 +203,7 @@ def usual_id(session: TrainingSession) -> str:
     """
     if session.services.is_slicer_connected() or session.lock.has_pin:
         return ""
-    known = session.history.latest_trainees(2)
+    known = session.history.latest_trainees[:2]
     return FIRST_ID if not known else known[0] if len(known) == 1 else ""
 
 

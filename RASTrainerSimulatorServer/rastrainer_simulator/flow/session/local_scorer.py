@@ -84,13 +84,9 @@ class LocalScorer:
         is_slicer_connected: Callable[[], bool],
         attempts_of: Callable[[str], Sequence[PastTrial]],
     ) -> None:
-        """Prepare.
+        """`attempts_of` gives a trainee's scored trials and failures, oldest first.
 
-        Args:
-            submit: has the simulation carry out a command.
-            records: folder of the trials' journals.
-            is_slicer_connected: says whether a client scores; asked in the thread, too.
-            attempts_of: gives a trainee's earlier scored trials and failures, oldest first.
+        `is_slicer_connected` is asked in the thread, too.
         """
         self.problem = ""
         self._submit = submit
@@ -175,15 +171,7 @@ def score_alone(
     earlier: Sequence[PastTrial],
     records: Path,
 ) -> None:
-    """Submit a registration, which makes it final, and the score that its truth gives.
-
-    Args:
-        ask: has a command carried out, and returns the data of its answer.
-        analysis: the registration.
-        scenario: in which the trial was played.
-        earlier: the trainee's earlier scored trials and failures, oldest first.
-        records: folder of the trials' journals.
-    """
+    """Submit a registration, which makes it final, and the score that its truth gives."""
     answer = ask(CommandName.SUBMIT_REGISTRATION, registration_arguments(analysis))
     truth = record_from_json(RevealedTruth, answer, "The simulator's answer")
     scored = scored_with_journal(analysis, truth, scenario, records=records, pause=_rest)

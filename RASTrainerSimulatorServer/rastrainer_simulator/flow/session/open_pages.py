@@ -28,10 +28,8 @@ class PageRow:
     """A line of a page with its actions.
 
     Attributes:
-        item: as views show it.
         accept: is called when a button is pressed, a text is chosen, or a choice accepted.
         step: moves a choice to its next (1) or previous (−1) option.
-        write: is called with the new value of a text.
     """
 
     item: MenuItem
@@ -62,7 +60,6 @@ class Page:
     """A page of text, facts and rows.
 
     Attributes:
-        name: of the menu.
         is_private: whether its rows are only for the views of who operates.
         pause_goes_back: whether the control that pauses, which opened the page, also closes it.
     """

@@ -27,8 +27,6 @@ class OperatorDevice:
     """The device of the holder of control, or the likely one before anyone has it.
 
     Attributes:
-        controls: who has control, and which input does what.
-        texts: name the inputs in the chosen language.
         layouts: labels of the keys of each view, by their W3C codes.
         screen_sticks: those that views draw for a mouse.
     """
@@ -50,10 +48,7 @@ class OperatorDevice:
         return InputDevice.GAMEPAD if has_pad else InputDevice.KEYBOARD
 
     def learned(self, mode: str) -> SourceKind:
-        """Return the device that drives the arm, if it has its own controls to be learned.
-
-        `mode` is "desktop" or "hmd".
-        """
+        """Return the device that drives the arm, if it has its own controls to be learned."""
         holder = self.controls.holder
         if holder is not None and holder.kind in (SourceKind.XR, SourceKind.TOUCH_SCREEN):
             return holder.kind
@@ -120,8 +115,6 @@ class ScreenSticks:
     is switched on and off here.
 
     Attributes:
-        is_shown: whether views draw them while the arm is driven.
-        is_slow: whether they move the tool slowly.
         is_tilting: whether the right stick tilts the tool in place of lifting and lowering it.
     """
 

@@ -26,10 +26,6 @@ def plan_marks(
     """Return the lines of a plan as they are drawn, by the registration; () before it is accepted.
 
     The current one has its entry and the tables of the skull on it.
-
-    Args:
-        procedure: its progress.
-        bone: where its lines go through bone.
     """
     marks: list[ErrorArrow] = []
     for number, trajectory in enumerate(procedure.trajectories if procedure.present else ()):
@@ -47,13 +43,7 @@ def plan_marks(
 def depth_ruler(
     trajectory: TrajectoryState, bone: BoneAhead | None, texts: Texts
 ) -> DepthRuler | None:
-    """Return the scale along the axis of a locked guide; None before it is locked.
-
-    Args:
-        trajectory: the current one.
-        bone: on its planned line.
-        texts: in which the marks have their names.
-    """
+    """Return the scale along the axis of a locked guide; None before it is locked."""
     guide, line = trajectory.guide, trajectory.line
     if guide is None:
         return None

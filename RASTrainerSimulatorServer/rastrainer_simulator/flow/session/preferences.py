@@ -46,19 +46,12 @@ class Preferences:
     """The choices of people at the simulator; all but the expert have `OPTIONS`.
 
     Attributes:
-        language: of everything the trainee reads.
         volume: of the sounds, percent.
-        muted: whether there are none.
         speech: whether page and headset read instructions, warnings and pages aloud.
         order: "fixed" where a task waits for the previous task, "any" by the instructor's leave.
         coarse: fastest travel of the tip, mm/s.
         fine: the same while the trigger for fine speed is held, mm/s.
-        axes: whose right, forward and up the sticks follow.
-        direction: who decides the tool's direction.
-        touch: whether a touch has to be on the skin.
-        self_alignment: whether the robot may align a procedure's guide by itself.
         view: when the view goes to each next point automatically: "practice" is outside of a study.
-        guidance: how the trainee is guided to the next point, unless a study says otherwise.
         ghost: which earlier trial is shown beside the arm, outside of studies.
         expert: ID of the trainee whose best acceptable trials are the ghost "expert"; any text.
         tutorial: whether it comes before the trial run, unless a study says otherwise.

@@ -23,15 +23,10 @@ class FlowServices:
     """Services of the process for the flow.
 
     Attributes:
-        config: folder of the settings files.
         records: folder of the trials' journals.
-        use_settings: has the simulation continue with other settings, between two trials.
-        list_scenarios: lists the scenarios that `use_scenario` takes by their names.
-        use_scenario: has the simulation continue with another scenario, between two trials.
-        is_slicer_connected: whether a client that registers and scores is connected.
+        use_settings, use_scenario: have the simulation continue with others between two trials.
         scores_alone: whether a trial outside of a study is scored here where no Slicer is
             connected.
-        pin: the instructor's; None if there can be none.
     """
 
     config: Path
@@ -62,10 +57,7 @@ class SimulationReload:
 
     @property
     def is_under_way(self) -> bool:
-        """Whether other settings of the simulation, or another scenario, are being loaded.
-
-        Clients load scenarios, too.
-        """
+        """Whether other settings of the simulation, or another scenario, are being loaded."""
         is_ours = self._answer is not None or self._wanted is not None
         return is_ours or self._control_loop.is_being_replaced
 
@@ -76,7 +68,6 @@ class SimulationReload:
         self._begins_in_s = SET_UP_AFTER_S
 
     def use_scenario(self, name: str) -> None:
-        """Continue with another scenario, as soon as it is loaded."""
         if self._answer is None:
             self._answer = self._services.use_scenario(name)
 

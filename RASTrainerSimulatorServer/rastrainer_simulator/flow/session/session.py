@@ -29,9 +29,7 @@ from rastrainer_simulator.flow.session.preferences import (
 )
 from rastrainer_simulator.flow.session.services import FlowServices, SimulationReload
 from rastrainer_simulator.flow.session.trace_places import TracePlaces
-from rastrainer_simulator.flow.session.trainee_history import (
-    TraineeHistory,
-)
+from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
 from rastrainer_simulator.flow.session.trial_view import TrialView
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, Bindings, write_bindings
@@ -42,13 +40,7 @@ from rastrainer_simulator.presentation.screen import Notices, Tone
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.replay.ghost import TrialGhost
 from rastrainer_simulator.replay.recorded_trial import TrialLoading, load_trial
-from rastrainer_simulator.state import (
-    Answer,
-    Event,
-    SimulationState,
-    TouchStage,
-    TrainingState,
-)
+from rastrainer_simulator.state import Answer, Event, SimulationState, TouchStage, TrainingState
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from rastrainer_simulator.vectors import Vector, in_meters
 from rastrainer_simulator.viewpoint.view_control import Orbit
@@ -63,16 +55,10 @@ class TrainingSession:
     """The trainee's choices and the services behind the pages.
 
     Attributes:
-        trainee: ID as typed.
         mode: "desktop" or "hmd".
-        procedure: name of the procedure after the touches; "" for none.
-        has_read_introduction: whether the pages before the experiment menu can be skipped.
-        local_scorer: scores a trial if no Slicer does; None if only Slicer may.
-        happened: gives feedback by sound and vibration.
         picture_share: how much of its picture the trainee's view has, 0 to 1, while it is awaited;
             else None.
         goes_on_blind: the trial that the trainee wants to go on without its picture; "" for none.
-        reload: has the simulation continue with other settings, or on another head.
         practiced: task and point of the latest practice; no point for the tutorial.
     """
 
@@ -140,7 +126,6 @@ class TrainingSession:
 
     @property
     def has_open_trial(self) -> bool:
-        """Whether a trial can still be changed."""
         return self.training.phase in OPEN_PHASES
 
     @property
@@ -247,7 +232,7 @@ class TrainingSession:
         return load_trial(found[0], self.control_loop.setup)
 
     def note_done(self) -> None:
-        self.history.note_done(self.training.trainee, self.scenario.name, self.training.task)
+        self.history.done[self.training.trainee, self.scenario.name].add(self.training.task)
 
     def outcome_of(self, task: str) -> str:
         """Return "passed", "failed" or "done" of the trainee's trials of a task; "" of none."""
@@ -261,7 +246,7 @@ class TrainingSession:
             return "passed"
         if trials and trials[-1].is_passed is False:
             return "failed"
-        return "done" if self.history.has_done(trainee, scenario, task) else ""
+        return "done" if task in self.history.done[trainee, scenario] else ""
 
     def rebind(self, bindings: Bindings) -> None:
         self.controls.bindings = bindings
@@ -270,7 +255,6 @@ class TrainingSession:
 
     @contextmanager
     def complaining(self) -> Iterator[None]:
-        """Tell the trainee why something is impossible."""
         try:
             yield
         except InputError as error:

@@ -50,7 +50,6 @@ class TracePlaces:
         self._since_s = 0.0
 
     def begin(self, trial_id: str, setup: SimulationSetup, truth: Truth) -> None:
-        self.forget()
         self._trial = trial_id, setup, truth
 
     def forget(self) -> None:

@@ -59,15 +59,7 @@ _START = re.compile(
 
 @dataclass(frozen=True)
 class OwnTrial:
-    """A scored or failed trial, as its trainee finds it again.
-
-    Attributes:
-        past: what progress is computed from.
-        scenario: name of the head.
-        started_utc: ISO 8601.
-        is_passed: None without a pass mark.
-        journal: file in which it is recorded.
-    """
+    """A scored or failed trial, as its trainee finds it again."""
 
     past: PastTrial
     scenario: str
@@ -84,9 +76,10 @@ class TraineeHistory:
     over, as the paper's procedure has it (figure 4).
 
     Attributes:
+        done: tasks by trainee and scenario.
         skipped_runs: trainees and scenarios whose tasks do not wait for the trial run.
         skipped_tutorials: trainees whose trial run does not wait for the tutorial.
-        learned: outcome of each trainee's latest tutorial.
+        latest_trainees: who trained here before the simulator was started, the last first.
     """
 
     def __init__(self, records: Path) -> None:
@@ -99,7 +92,7 @@ class TraineeHistory:
         self.learned: dict[str, TutorialOutcome] = {}
         self._records = records
         self._journals: dict[str, list[Path]] = defaultdict(list)
-        self._done: dict[tuple[str, str], set[str]] = defaultdict(set)
+        self.done: dict[tuple[str, str], set[str]] = defaultdict(set)
         self._devices: dict[str, set[str]] = defaultdict(set)
         self._own: dict[Path, OwnTrial | None] = {}
         for path in sorted(records.glob("*.journal")):
@@ -109,27 +102,17 @@ class TraineeHistory:
                 outcome = read_json(path, _MAX_TUTORIAL_BYTES)
                 self.note_tutorial(record_from_json(TutorialOutcome, outcome))
         latest = {trainee: paths[-1].name for trainee, paths in self._journals.items()}
-        self._by_time = sorted(latest, key=lambda trainee: latest[trainee], reverse=True)
-
-    def note_done(self, trainee: str, scenario: str, task: str) -> None:
-        self._done[trainee, scenario].add(task)
-
-    def has_done(self, trainee: str, scenario: str, task: str) -> bool:
-        return task in self._done.get((trainee, scenario), ())
+        self.latest_trainees = sorted(latest, key=lambda trainee: latest[trainee], reverse=True)
 
     def needs_no_trial_run(self, trainee: str, scenario: str) -> bool:
         head = trainee, scenario
-        return head in self.skipped_runs or bool(self._done.get(head))
-
-    def latest_trainees(self, count: int) -> tuple[str, ...]:
-        """Return those who trained here last before the simulator was started."""
-        return tuple(self._by_time[:count])
+        return head in self.skipped_runs or bool(self.done[head])
 
     def missing_before(
         self, trainee: str, scenario: str, task: str, order: Sequence[str]
     ) -> str | None:
         """Return the first task that has to be done before another; None if all are done."""
-        done = {*self._done.get((trainee, scenario), ())}
+        done = {*self.done[trainee, scenario]}
         done |= {TRIAL_RUN} if self.needs_no_trial_run(trainee, scenario) else set()
         return next((name for name in order[: order.index(task)] if name not in done), None)
 
@@ -137,7 +120,6 @@ class TraineeHistory:
         return device.value in self._devices.get(trainee, ())
 
     def keep_tutorial(self, outcome: TutorialOutcome) -> None:
-        """Count a finished tutorial, and write its file."""
         self.note_tutorial(outcome)
         utc = iso(datetime.now(timezone.utc))
         path = self._records / f"{file_stamp(utc)}_{uuid.uuid4()}{TUTORIAL_SUFFIX}"
@@ -169,10 +151,7 @@ class TraineeHistory:
         return tuple(trial.past for trial in self.own(trainee))
 
     def best(self, trainee: str, task: str) -> tuple[Path, ...]:
-        """Return the journals of a trainee's acceptable trials of a task, the best score first.
-
-        Only fiducials are compared.
-        """
+        """Return the journals of a trainee's acceptable trials of a task, the best score first."""
         found = [
             own
             for own in self.own(trainee)
@@ -208,7 +187,8 @@ class TraineeHistory:
         self._journals[what[0]].append(path)
         is_practiced = header["task"] == TRIAL_RUN and any(mark in tail for mark in _PRACTICED)
         if _REGISTERED in tail or is_practiced:
-            self.note_done(*what)
+            trainee, scenario, task = what
+            self.done[trainee, scenario].add(task)
 
 
 def _own_trial(journal: Path) -> OwnTrial | None:

@@ -44,7 +44,6 @@ class TrialView:
     """The viewpoint of the pictures of the present trial, and what the sticks mean from there.
 
     Attributes:
-        control: the view.
         stick_turn_deg: by how much right and forward of the sticks are turned against those of the
             scenario's camera, counterclockwise from above.
         yaw_deg: where the eyes look, degrees from World's x; None without a headset's controllers.
@@ -180,11 +179,7 @@ def turned(sticks: OperatorInput, turn_deg: float) -> OperatorInput:
     far = max(1.0, math.hypot(sideways, ahead))
     return replace(
         sticks,
-        translation=(
-            (c * right - s * forward) / long,
-            (s * right + c * forward) / long,
-            up / long,
-        ),
+        translation=((c * right - s * forward) / long, (s * right + c * forward) / long, up / long),
         rotation=((c * sideways - s * ahead) / far, (s * sideways + c * ahead) / far),
     )
 

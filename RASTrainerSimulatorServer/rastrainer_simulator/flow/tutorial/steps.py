@@ -75,15 +75,7 @@ class TutorialObservation:
     """An observation of what the trainee has done with the simulator.
 
     Attributes:
-        tip: position of the tool's tip, World, m.
-        axes: right, forward and up as the sticks mean them.
-        is_slow: whether the control for slow motion is held.
-        orbit: how the view is turned.
         yaw_deg: where the eyes look, from World's x; None without a headset's controllers.
-        has_best_view: whether the view has gone to the best view of the next point.
-        touch: how the next touch is going.
-        touched: number of kept touches.
-        undone: number of touches that were taken back.
         has_paused: whether the menu was opened and closed again in this step.
     """
 
@@ -112,7 +104,6 @@ class StepRule:
         controls: that do it; its sentence names the first, or the first two as a pair. Where slow
             motion is among them, the tip may go anywhere.
         goal: 1 for a condition.
-        done: how much is done.
         shown: key of the text that says how much is done; "" for none.
     """
 

@@ -41,10 +41,6 @@ class TouchPractice:
 
     The rules are those of a trial, whose state machine is used, but the simulation, its clients and
     the journals know nothing of it: only what the views show is changed (`shown`).
-
-    Attributes:
-        training: the state machine, which knows where the head and the points are.
-        has_points: whether the views mark the next point.
     """
 
     def __init__(
@@ -59,12 +55,9 @@ class TouchPractice:
         """Begin; the head stays where it is.
 
         Args:
-            setup: the simulation's.
-            state: in which it is.
             arguments: checked ones of StartTask, with `trialId`.
             points: which are touched.
             rest: where the tip may still be on the skin from a touch before, World, m.
-            task: of the points.
         """
         self._rest = rest
         self._settings = replace(setup.settings.training, acceptance_radius=CENTERED_M)
@@ -84,7 +77,6 @@ class TouchPractice:
         self._shown = self._present()
 
     def end_refusal(self, sim_time: float) -> None:
-        """Forget a refusal that has been shown long enough."""
         self.training.end_refusal(sim_time)
         self._shown = self._present()
 
@@ -146,10 +138,6 @@ class Tutorial:
     """Leads through the steps, each of which is done when what it asks for has really happened.
 
     Attributes:
-        trainee: pseudonym.
-        mode: display mode.
-        setup: the simulation's, at the beginning.
-        steps: in order, for the device in use.
         points: that are touched: label → World, m.
         praised: the step that was just done, while it is praised; else None.
         practiced: the point that is practiced instead of all that; "" in the tutorial itself.
@@ -216,7 +204,6 @@ class Tutorial:
 
     @property
     def has_learned_view(self) -> bool:
-        """Whether the view may go to the next point by itself."""
         return self.step in (None, TutorialStep.GUIDED, *OF_PRACTICE)
 
     @property

@@ -39,7 +39,7 @@ MAX_CONNECTIONS = 128
 HANDSHAKE_S = 5.0
 SHUTDOWN_S = 1.0
 LARGEST_BODY = 1024
-WATCHING_ROLES = [role for role in ViewRole if role.is_watch_only]
+WATCHING_ROLES = [role for role in ViewRole if role is not ViewRole.VIEW]
 
 _http_log = logging.getLogger(f"{__name__}.http")
 # Only our own errors are logged, and not what strangers send.

@@ -78,7 +78,7 @@ class JoinedViews:
         self._cover: ArmCover | None = None
         self._loading: asyncio.Task[None] | None = None
         self._watching: asyncio.Task[None] | None = None
-        self._unsubscribe = presenter.subscribe(self._send_update)
+        self._unsubscribe = presenter.updates.add(self._send_update)
 
     async def serve(self, stream: web.WebSocketResponse, hello: Hello, is_local: bool) -> None:
         """Have a view take part, or a spectator or a board watch, until it leaves."""

@@ -213,7 +213,7 @@ class ViewServer:
 
     async def _stream(self, request: web.Request) -> web.StreamResponse:
         role = request[ROLE]
-        if self._streams[role] >= (SPECTATORS if role.is_watch_only else self._limits.views):
+        if self._streams[role] >= (SPECTATORS if role is not ViewRole.VIEW else self._limits.views):
             raise web.HTTPServiceUnavailable(text=FULL)
         self._streams[role] += 1
         try:
@@ -248,7 +248,7 @@ async def _first_message(stream: web.WebSocketResponse, role: ViewRole) -> Hello
     hello = read_view_input(first.data) if first.type is WSMsgType.TEXT else None
     if not isinstance(hello, Hello):
         raise InputError(HELLO_FIRST)
-    if role.is_watch_only and hello.kind not in WATCHING_KINDS:
+    if role is not ViewRole.VIEW and hello.kind not in WATCHING_KINDS:
         raise InputError(ONLY_WATCHES)
     return hello
 

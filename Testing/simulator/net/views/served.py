@@ -10,6 +10,7 @@ from pathlib import Path
 import aiohttp
 
 from rastrainer_simulator.loop.control_loop import ControlLoop
+from rastrainer_simulator.loop.results import Subscribers
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.views.view_server import ViewServer
 from rastrainer_simulator.ops.instructor_pin import InstructorPin
@@ -35,11 +36,7 @@ class RecordingPresenter:
         self.reported_seat = Seat()
         self.problem = ""
         self.calls = []
-        self._listeners = []
-
-    def subscribe(self, listener):
-        self._listeners.append(listener)
-        return lambda: self._listeners.remove(listener)
+        self.updates = Subscribers()
 
     def pictures(self, _now):
         """Look through a camera that no scenario has, with nothing beside it."""
@@ -61,8 +58,7 @@ class RecordingPresenter:
 
     def tell(self, *news):
         for one in news:
-            for listener in tuple(self._listeners):
-                listener(one)
+            self.updates.publish(one)
 
     def __getattr__(self, name):
         if not name.startswith(("on_", "view_")):
