@@ -39,12 +39,7 @@ LOCK_WAIT_S = 5.0
 
 @dataclass(frozen=True)
 class ClassStanding:
-    """The standings of the active trainees of a study.
-
-    Attributes:
-        standings: Of those with a curriculum, by pseudonym.
-        without: Who follows none.
-    """
+    """The standings of the active trainees of a study."""
 
     standings: Mapping[str, CurriculumStanding]
     without: tuple[str, ...]
@@ -57,7 +52,6 @@ class ClassReader:
     """
 
     def __init__(self, place: StudyPlace) -> None:
-        """Open nothing yet."""
         self._place = place
         self._study: Study | None = None
         self._version: int | None = None
@@ -150,7 +144,6 @@ class ClassWatch:
         self._task = asyncio.create_task(self._keep_reading(self._thread))
 
     async def close(self) -> None:
-        """Stop reading."""
         if self._task is not None:
             self._task.cancel()
             await asyncio.gather(self._task, return_exceptions=True)
@@ -164,7 +157,6 @@ class ClassWatch:
         return fresh_json(record_to_json(self.message(language), with_defaults=True))
 
     def message(self, language: str) -> ClassNews:
-        """Return what the page is sent."""
         found = self._found
         if found is not None and language not in self._tables:
             self._tables[language] = class_table(found, language)
@@ -196,12 +188,7 @@ class ClassWatch:
 
 
 def class_table(found: ClassStanding, language: str) -> tuple[CurriculumTable, ...]:
-    """Return a table for each curriculum.
-
-    Args:
-        found: Where everybody stands.
-        language: Tag of `LANGUAGES`.
-    """
+    """Return a table for each curriculum."""
     texts = Texts(LANGUAGES[language])
 
     def task_title(name: str) -> str:

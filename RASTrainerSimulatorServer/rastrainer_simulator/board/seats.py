@@ -44,10 +44,7 @@ class SeatEntry:
     """A simulator that is watched.
 
     Attributes:
-        id: by which the board's page names it.
-        name: what the teacher calls it.
         address: "https://HOST:PORT", or "http://" for a simulator on this computer.
-        key: that the simulator gave to this board; it only watches.
         fingerprint: SHA-256 of the simulator's certificate, as the simulator shows it; "" without
             TLS.
     """
@@ -91,7 +88,6 @@ class SeatList:
         return iter(tuple(self._entries.values()))
 
     def put(self, entry: SeatEntry) -> None:
-        """Add a seat, or replace the one with the same `id`, and save the list."""
         self._write({**self._entries, entry.id: entry})
 
     def remove(self, seat: str) -> None:
@@ -181,7 +177,6 @@ class SeatClient:
         )
 
     async def __aenter__(self) -> SeatClient:
-        """Return itself."""
         return self
 
     async def __aexit__(self, *_exception: object) -> None:
@@ -199,7 +194,6 @@ class SeatClient:
         return digest.hex(":").upper()
 
     async def pair(self, address: str, fingerprint: str, code: str) -> str:
-        """Return a key for a pairing code."""
         entry = SeatEntry("", "", address, "", fingerprint)
         body = PairingRequest(code, ViewRole.BOARD)
         content, _ = await self.request(entry, "/pair", body)

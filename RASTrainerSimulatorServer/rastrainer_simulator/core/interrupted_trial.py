@@ -58,11 +58,7 @@ def seed_of(header: Mapping[str, Any]) -> int:
 
 
 class RecordedFeed:
-    """Follows the feed through a journal's entries.
-
-    Attributes:
-        feed: after the entries taken so far.
-    """
+    """Follows the feed through a journal's entries."""
 
     def __init__(self) -> None:
         self.feed = NO_FEED
@@ -75,7 +71,6 @@ class RecordedFeed:
         return Feed(meters(effect.get("feedMm", 0.0)), drilled, ahead)
 
     def take(self, entry: Mapping[str, Any]) -> None:
-        """Take the next entry."""
         if entry["kind"] == "sample" and "feedMm" in entry:
             depth = meters(entry["feedMm"])
             deepest = depth if self._stage is Phase.DRILLING else 0.0
@@ -123,15 +118,10 @@ class InterruptedTrial:
     """Where a trial is to be resumed.
 
     Attributes:
-        entries: of the journal.
         revision_before: of the training state before the trial.
         steps: the commands that were carried out, each with its moment; the last one pauses.
         point: the tick and the time of the last line, and the view as last chosen.
         q: joint angles of the last sample, rad; None before the first.
-        proximity: as last recorded.
-        is_within_reach: as last recorded.
-        obstacle: as last recorded.
-        feed: of the instrument in the guide, as last recorded.
     """
 
     entries: Sequence[Mapping[str, Any]]
@@ -146,7 +136,6 @@ class InterruptedTrial:
 
     @property
     def header(self) -> Mapping[str, Any]:
-        """The journal's first line."""
         return self.entries[0]
 
     @classmethod

@@ -109,7 +109,6 @@ def _arrays(value: Mapping[str, Any], *names: str) -> dict[str, Any]:
 
 
 def shape_to_json(shape: RobotShape) -> dict[str, Any]:
-    """Return a shape as a JSON object."""
     links = [asdict(link) for link in shape.links]
     return _plain({"links": links, "tool": asdict(shape.tool), "tipName": shape.tip_name})
 
@@ -163,10 +162,7 @@ class SimulationSetup:
     """Everything that a simulation starts from, besides its seed.
 
     Attributes:
-        scenario: head, tasks and cameras.
-        robot: the arm and its tool.
         shape: the arm and its tool as collisions see them.
-        settings: how it behaves.
         scenario_sha256: of what a trial depends on, which identifies the scenario in a journal.
         landmarks_sha256: of what a trial by landmarks depends on besides.
         procedure_sha256: name of a procedure → of what a trial with it depends on besides.
@@ -183,12 +179,7 @@ class SimulationSetup:
     def recorded(
         self, procedure: str = "", method: RegistrationMethod = RegistrationMethod.FIDUCIALS
     ) -> RecordedSetup:
-        """Return what identifies this setup in the journal of a trial.
-
-        Args:
-            procedure: name of the trial's procedure, "" without one.
-            method: by which the trial is registered.
-        """
+        """Return what identifies this setup in the journal of a trial."""
         by_landmarks = method is not RegistrationMethod.FIDUCIALS
         return RecordedSetup(
             RecordedContent(self.scenario.name, self.scenario_sha256),

@@ -91,7 +91,6 @@ class Simulation:
 
     @property
     def planned_bone(self) -> PlannedBone:
-        """Where the planned lines of the scenario's procedures go through bone."""
         return self._procedure_motion.planned_bone
 
     @property

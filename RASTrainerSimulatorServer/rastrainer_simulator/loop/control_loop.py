@@ -81,13 +81,10 @@ class ControlLoop:
         """Prepare the loop; `start` starts it.
 
         Args:
-            simulation: belongs to the loop from now on.
             records: folder of the trials' journals; it is created with the first trial.
-            rate_hz: ticks in a simulated second.
             speed: simulated seconds in a second; None runs as fast as the machine can.
             interrupted: journal of a trial that the simulation has loaded, which waits for Resume.
             trial_limits: how often a trial may be started; None for the default.
-            is_seeded: whether the seed of the simulation was chosen, not drawn.
         """
         self.simulation = simulation
         """The present one; it belongs to the loop's thread."""

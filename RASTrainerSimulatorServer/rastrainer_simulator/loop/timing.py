@@ -134,7 +134,6 @@ class LoopStatistics:
     """Counts of ticks since the loop was started.
 
     Attributes:
-        ticks: carried out.
         late: of these, started more than 1 ms after their time.
         skipped: never carried out, because the loop had fallen too far behind: the simulated
             clock has lost them.

@@ -20,7 +20,6 @@ async def listen(
     """Listen on each address of a host; `port` 0 is any free one.
 
     Args:
-        make_protocol: makes the protocol of a new connection.
         tls: the certificate, where the connections are encrypted, and
         handshake_s: how long a peer may then take to agree on a key.
 

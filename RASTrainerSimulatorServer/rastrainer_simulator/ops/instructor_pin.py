@@ -37,7 +37,6 @@ class GuessLimit:
     """
 
     def __init__(self, clock: Callable[[], float]) -> None:
-        """Begin without a pause; `clock` returns s."""
         self._clock = clock
         self._wrong = 0
         self._pause = FIRST_PAUSE_S

@@ -62,13 +62,8 @@ async def _show_until(
     """Show what is played to views, and in its own window if wanted, until it is to stop.
 
     Args:
-        stop: is set by what ends it: the presenter, the closed window, or a signal.
-        source: the states that are shown.
-        presenter: what is read beside them.
         advance: plays them on by some s.
         port: where views are served; None for the usual one.
-        has_window: whether a window is opened.
-        announce: reports where views are served.
     """
     window: ApplicationWindow | None = None
     tasks: list[asyncio.Task[None]] = []

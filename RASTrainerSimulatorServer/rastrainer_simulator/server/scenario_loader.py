@@ -39,8 +39,6 @@ class ScenarioLoader:
         """Prepare to load.
 
         Args:
-            control_loop: continues with what is loaded.
-            make_simulation: makes one of a scenario's folder; may take seconds.
             may_be_anywhere: any folder of this computer may be named, not only a scenario that
                 comes with RASTrainer or is in the library.
             library: folder of the user's own scenarios; None is the usual one.

@@ -61,16 +61,12 @@ class ServerOptions:
         records: folder of the trials' journals.
         seed: of the heads' poses in the trials, which determines the truth.
         is_seeded: whether that seed was chosen, not drawn.
-        host: address to listen on.
         port: to listen on; 0 is any free one.
         connect_to: host and port of a listening Slicer, in place of listening.
-        speed: simulated seconds in a second.
         scenario: folder; None is the one that comes with RASTrainer.
-        robot_meshes: folder of the robot's official meshes; None is our own.
         view_port: of the views; 0 is any free one, None the usual one or else any free one.
         has_views: whether views are served, and a trainee can operate.
         has_network: whether views of other computers are served, too.
-        has_gamepad: whether gamepads at this computer are read.
         has_desktop: whether a window is opened; the simulator ends when its user closes it.
         config: folder of the user's settings; None is the usual one.
         resumes: whether a trial that the simulator's end has interrupted is resumed.
@@ -234,7 +230,6 @@ class SimulatorServer:
         )
 
     def _make_presenter(self, link: SimulatorLink, stop: asyncio.Event) -> RunningPresenter:
-        """Return the trainee's presenter."""
         from rastrainer_simulator.flow.running_presenter import RunningPresenter
         from rastrainer_simulator.flow.session.services import FlowServices
 
@@ -314,7 +309,6 @@ class SimulatorServer:
         return self._control_loop.submit(name, arguments, sender)
 
     def _health(self) -> dict[str, Any]:
-        """Return how punctual the control loop is."""
         statistics = self._control_loop.statistics
         return {
             "ticks": statistics.ticks,

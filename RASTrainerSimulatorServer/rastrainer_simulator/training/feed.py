@@ -90,7 +90,6 @@ class Feed:
     Attributes:
         depth: of what is in the guide.
         drilled: the deepest that the drill was.
-        ahead: what lies ahead.
     """
 
     depth: float = 0.0
@@ -99,7 +98,6 @@ class Feed:
 
     @property
     def has_cut_bone(self) -> bool:
-        """Whether the drill has reached the skull."""
         return self.ahead.outer is not None and self.drilled > self.ahead.outer
 
     @property
@@ -171,7 +169,6 @@ class FeedDrive:
         self._velocity, self._remaining = velocity_mm_s / MM_PER_M, duration_s
 
     def stop(self) -> None:
-        """End a commanded feed."""
         self._remaining = 0.0
 
     def way(self, dt: float, phase: Phase, operator_input: OperatorInput) -> FeedMotion:

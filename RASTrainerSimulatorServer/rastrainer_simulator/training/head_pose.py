@@ -108,7 +108,6 @@ class PlacedHead:
     """A head in World, as the tip meets it.
 
     Attributes:
-        truth: where it truly lies, mm.
         fiducials: label → position in World, m, of a trial's task; empty between trials.
     """
 

@@ -34,7 +34,6 @@ class TrialStep:
     """The result of a command that is carried out.
 
     Attributes:
-        state: of the trial.
         key: of the instruction that goes with it.
         values: that are filled in.
         data: goes into the answer and the event, ready for JSON.

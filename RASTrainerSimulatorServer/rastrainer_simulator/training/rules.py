@@ -163,11 +163,8 @@ def refused_touch(
     """Return why a touch does not count, None if it does.
 
     Args:
-        now: where the tip is.
         next_point: label of the fiducial or landmark that is next.
         fiducials: label → position, World, m, of all of them.
-        settings: what counts as a touch.
-        method: of the trial.
     """
     away, radius = distance(now.tip, fiducials[next_point]), settings.radius(method)
     if away > radius:
@@ -214,12 +211,8 @@ def touch_stage(
     """Return the state of the next touch.
 
     Args:
-        now: where the tip is.
-        proximity: of the tool to the head.
         obstacle: what stops the arm behind the tool, "" for nothing.
-        training: the state of the trial.
         goal: position of the next fiducial, World, m; None without one.
-        settings: what counts as a touch.
     """
     if proximity is not Proximity.CONTACT:
         if obstacle:

@@ -74,7 +74,6 @@ def stroke(state: TrainingState, **others: bool) -> TrialStep:
 
 
 def begun(state: TrainingState) -> TrainingState:
-    """Return the state of a trial in which a stroke begins."""
     assert state.trace is not None
     return replace(state, phase=Phase.RUNNING, trace=state.trace.begun())
 
@@ -90,7 +89,6 @@ def ended(state: TrainingState) -> TrainingState:
 
 
 def undone(state: TrainingState) -> TrainingState:
-    """Return the state of a trial without its last stroke."""
     assert state.trace is not None
     return _with_rest(state, state.trace.undone())
 
@@ -114,5 +112,4 @@ def instruction(state: TrainingState) -> str:
 
 
 def counts(trace: TraceState) -> dict[str, int]:
-    """Return the values of the sentences about a trace."""
     return {"traced": len(trace.points), "least": MIN_TRACE_POINTS}

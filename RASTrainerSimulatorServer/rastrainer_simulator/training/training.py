@@ -130,7 +130,6 @@ class Training:
         return self._head.fiducials.get(self.state.next_point or "")
 
     def handles(self, command: str) -> bool:
-        """Return whether a command concerns the trial."""
         return command in self._handlers
 
     def handle(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:

@@ -58,8 +58,6 @@ class StartedTrial:
 
     Attributes:
         seed: of the head's pose: as secret as the pose.
-        task: the points to touch.
-        head: as the tip meets it.
         phases: of the procedure that follows the touches; None without one.
         state: before its first instruction.
     """
@@ -128,12 +126,10 @@ class TrialClock:
         self._paused_since: float | None = None
 
     def pause(self, now: float) -> None:
-        """Stop counting."""
         if self._paused_since is None:
             self._paused_since = now
 
     def resume(self, now: float) -> None:
-        """Count again."""
         if self._paused_since is not None:
             self._paused += now - self._paused_since
             self._paused_since = None
@@ -196,7 +192,6 @@ class KeptStates:
         self._feeds = {}
 
     def keep(self, state: TrainingState) -> None:
-        """Store a state that the trial adopts."""
         self._states[state.revision] = state
 
     def leave(self, revision: int, feed: Feed) -> None:

@@ -124,12 +124,7 @@ def _rounded(value: float, digits: int) -> float | None:
 
 
 class PoseSubscription:
-    """One client's subscription; a new one has received no pose.
-
-    Attributes:
-        tool_tip: when the tip's pose is due.
-        links: when those of the links are.
-    """
+    """One client's subscription; a new one has received no pose."""
 
     def __init__(
         self,
@@ -189,7 +184,6 @@ class Publisher:
         self._next = -math.inf
 
     def unsubscribe(self, connection: ClientConnection) -> None:
-        """Stop sending to a client."""
         self._poses.pop(connection, None)
 
     def is_due(self, state: SimulationState) -> bool:

@@ -44,8 +44,6 @@ class RegistrationCheck:
         """Prepare.
 
         Args:
-            submit: has the simulation carry out a command.
-            latest: gives its newest state.
             find_scenario: gives the scenario of a name, the present one for ""; may raise
                 `InputError`; called in the thread.
         """

@@ -54,10 +54,7 @@ class ClientConnection(asyncio.BufferedProtocol):
         name: what the peer called itself, at first its address.
         scores: whether it has said that it registers and scores trials.
         offered: UUIDs of the trials that it was offered.
-        host: the peer's, for the log.
         header_version: what the peer speaks.
-        is_silent: it has not sent a single message.
-        closed: set when the connection has ended.
     """
 
     def __init__(self, owner: IgtlServer):
@@ -111,7 +108,6 @@ class ClientConnection(asyncio.BufferedProtocol):
             self._open_transport.close()
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Set the socket up and report."""
         assert isinstance(transport, asyncio.Transport)
         self._transport = transport
         transport.set_write_buffer_limits(high=BUFFER_BYTES)
@@ -171,14 +167,12 @@ class ClientConnection(asyncio.BufferedProtocol):
         )
 
     def resume_writing(self) -> None:
-        """Send what waits."""
         self._is_paused = False
         if self._drop_slow is not None:
             self._drop_slow.cancel()
         self._flush_soon()
 
     def connection_lost(self, error: Exception | None) -> None:
-        """Report, once."""
         for timer in (self._open_soon, self._read_on, self._drop_slow, self._drop_stalled):
             if timer is not None:
                 timer.cancel()
@@ -247,8 +241,6 @@ class IgtlServer:
     """Owns the connections of all clients; what one of them does disturbs no other.
 
     Attributes:
-        handler: is told of clients that may be sent to, their messages, and that they have left.
-        limits: what one client may cost.
         connections: in the order in which they came, whether they may be sent to yet or not.
     """
 
@@ -320,7 +312,6 @@ class IgtlServer:
         self.connections[connection] = None
 
     def opened(self, connection: ClientConnection) -> None:
-        """Hand on a connection that may be sent to."""
         self._opened.add(connection)
         self.handler.connected(connection)
 
@@ -330,7 +321,6 @@ class IgtlServer:
             self._log.note(f"{connection.host}: {kind.value}", times)
 
     def disconnected(self, connection: ClientConnection, reason: str) -> None:
-        """Forget a connection."""
         if reason:
             self._log.note(f"{connection.host} was disconnected: {reason}")
         self.connections.pop(connection, None)
@@ -354,7 +344,6 @@ class LinkLog:
             self._write_in_turn()
 
     def close(self) -> None:
-        """Write the remaining lines."""
         if self._timer is not None:
             self._timer.cancel()
         self._write()

@@ -163,11 +163,6 @@ class SimulatorLink:
     A TRANSFORM with a foreign device name is echoed to its sender, unchanged: the test of the link
     and the measure of its delay. Anything else that is valid is accepted and ignored, such as the
     STATUS with which Slicer starts every connection.
-
-    Attributes:
-        server: listens or connects, and owns the clients.
-        publisher: sends them the state.
-        offers: the trials that wait to be acknowledged.
     """
 
     def __init__(
@@ -185,14 +180,10 @@ class SimulatorLink:
         """Make a link, in the event loop's thread.
 
         Args:
-            latest: gives the newest state.
-            submit: takes a command's name, checked arguments and sender, and returns the
-                answer's future immediately.
             unacknowledged: gives the records of the trials that no client has acknowledged.
             arrivals: counts these since the start.
             find_scenario: gives the scenario of a name, the present one for ""; in any thread.
             health: gives what the heartbeat reports about the simulator, ready for JSON.
-            limits: what clients may cost.
             answers: gives a study's answers that Slicer has not taken yet.
             slicer_left: is called when the last client that registers and scores has left.
         """
@@ -213,7 +204,6 @@ class SimulatorLink:
         self.publisher.subscribe(connection, PoseSubscription())
 
     def received(self, connection: ClientConnection, message: Message) -> None:
-        """Handle a message."""
         content = message.content
         if type(content) is Command:
             self._commands.handle(connection, content)
@@ -223,7 +213,6 @@ class SimulatorLink:
                 connection.send_latest(Outgoing(message))
 
     def disconnected(self, connection: ClientConnection) -> None:
-        """Forget a client."""
         self.publisher.unsubscribe(connection)
         self._commands.forget(connection)
         if connection.scores and not self.is_slicer_connected:

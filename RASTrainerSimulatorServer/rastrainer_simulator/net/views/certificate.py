@@ -27,7 +27,6 @@ class Certificate:
     """This machine's certificate.
 
     Attributes:
-        tls: Serves with it.
         fingerprint: SHA-256, as browsers show it.
     """
 
@@ -52,7 +51,11 @@ def own_certificate(folder: Path) -> Certificate:
             is_young = timedelta(0) <= age < timedelta(days=VALID_DAYS - RENEWED_BEFORE_DAYS)
             if is_young and set(names) <= set(made_for):
                 return _read(file)
-        _make(file, names_file, names)
+        authority = trustme.CA(organization_name="RASTrainer on this machine")
+        until = datetime.now(timezone.utc) + timedelta(days=VALID_DAYS)
+        issued = authority.issue_cert(*names, not_after=until)
+        write_bytes(file, issued.private_key_and_cert_chain_pem.bytes(), is_private=True)
+        write_text(names_file, "\n".join(names))
         return _read(file)
     except OSError as error:
         raise InputError(
@@ -92,11 +95,3 @@ def _read(file: Path) -> Certificate:
             pem = begin + "".join(rest.partition(ssl.PEM_FOOTER)[:2])
             digest = hashlib.sha256(ssl.PEM_cert_to_DER_cert(pem)).digest()
             return Certificate(tls, digest.hex(":").upper())
-
-
-def _make(file: Path, names_file: Path, names: tuple[str, ...]) -> None:
-    authority = trustme.CA(organization_name="RASTrainer on this machine")
-    until = datetime.now(timezone.utc) + timedelta(days=VALID_DAYS)
-    issued = authority.issue_cert(*names, not_after=until)
-    write_bytes(file, issued.private_key_and_cert_chain_pem.bytes(), is_private=True)
-    write_text(names_file, "\n".join(names))

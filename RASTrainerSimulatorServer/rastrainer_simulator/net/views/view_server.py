@@ -65,7 +65,6 @@ class ViewServer:
     Attributes:
         code: pairs a view; to be shown to people, and sent to this computer's own views.
         addresses: where browsers find the page, such as "http://127.0.0.1:18945".
-        sessions: keys of the views that may look.
         port: where it listens; 0 before it does.
     """
 
@@ -83,11 +82,8 @@ class ViewServer:
         """Make a server, in the event loop's thread; nothing listens yet.
 
         Args:
-            source: whose states are sent.
-            presenter: what the views' input goes to, and where their screens come from.
             announce: is given what people must know, such as pairing codes.
             robot_meshes: those that the setups are loaded with.
-            limits: what views may cost.
             scenario_picture: returns the picture of a scenario by its name.
             config: folder of the settings, with the keys of boards; None keeps none.
             pin: that boards need to give orders; None takes none.
@@ -174,7 +170,6 @@ class ViewServer:
         self._views.announce_pairing(self.code.code, self.addresses)
 
     async def close(self) -> None:
-        """Close the views and stop listening."""
         self._unsubscribe()
         self._http.stop_listening()
         await self._views.close()
@@ -204,7 +199,6 @@ class ViewServer:
         return web.Response(body=content, content_type="model/gltf-binary", headers=headers)
 
     async def _send_file(self, request: web.Request) -> web.StreamResponse:
-        """Send a sound, or the picture of a scenario."""
         name, is_sound = request.match_info["name"], request.path.endswith(".wav")
         path = asset_path("sounds", f"{name}.wav") if is_sound else self._scenario_picture(name)
         if path is None or not path.is_file():

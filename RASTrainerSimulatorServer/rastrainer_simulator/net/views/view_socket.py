@@ -60,10 +60,7 @@ class ViewSocket:
 
     Attributes:
         number: of the view; none is used twice.
-        hello: its description of itself.
         is_local: whether it is on this computer, as far as the network can tell.
-        outbox: what waits to be sent to it.
-        held: what it holds down.
         headset_pose: what a headset has sent last; None while nobody wears it.
     """
 
@@ -194,7 +191,6 @@ class HeldInput:
         self._presenter.on_key(self._view, code, is_down, text)
 
     def pad(self, axes: Sequence[float], buttons: Sequence[float]) -> None:
-        """Process a gamepad's position."""
         self._pad = (len(axes), len(buttons)) if any(axes) or any(buttons) else None
         self._presenter.on_pad(self._view, axes, buttons)
 
@@ -205,7 +201,6 @@ class HeldInput:
         is_fine: bool,
         yaw_deg: float,
     ) -> None:
-        """Process the sticks of XR controllers."""
         self._has_sticks = any(translation) or any(rotation) or is_fine
         self._presenter.on_sticks(self._view, translation, rotation, is_fine, yaw_deg)
 
