@@ -82,11 +82,7 @@ class BoardServer:
         on_new_code: Callable[[str], None],
         study: StudyPlace | None = None,
     ) -> None:
-        """Watch the seats that the folder of settings lists; in the event loop's thread.
-
-        Args:
-            study: Whose trainees are the class; None for a board of seats alone.
-        """
+        """Watch the seats in the folder of settings, and the class of a study if there is one."""
         self._client = client
         self._list = SeatList(config)
         self._changed = asyncio.Event()

@@ -59,39 +59,31 @@ class ClassReader:
         self._found: ClassStanding | None = None
 
     def read(self) -> ClassStanding:
-        """Return everybody's standing; the same object as before if nothing has changed.
-
-        Raises:
-            InputError: the study cannot be read, or has too many active trainees.
-            StudyBusyError: it cannot be read now.
-        """
+        """Return everybody's standing; the same object as before if nothing has changed."""
         try:
-            return self._read()
+            file = _file(self._place)
+            if self._study is None:
+                self._study = Study.open_for_reading(self._place, LockWait(LOCK_WAIT_S))
+            # Before anything is read: what changes meanwhile is read next time.
+            version = self._study.database.version()
+            is_same = version is not None and version == self._version
+            if self._found is not None and is_same and file != self._file:
+                # Another file has taken its place, or the open study is an old one's migrated copy.
+                self.close()
+                return self.read()
+            if self._found is None or not is_same:
+                self._found = _standing(self._study)
         except InputError:
             # It is reopened next time: it may have been restored meanwhile.
             self.close()
             raise
+        self._version, self._file = version, file
+        return self._found
 
     def close(self) -> None:
         if self._study is not None:
             self._study.close()
         self._study = self._found = None
-
-    def _read(self) -> ClassStanding:
-        file = _file(self._place)
-        if self._study is None:
-            self._study = Study.open_for_reading(self._place, LockWait(LOCK_WAIT_S))
-        # Before anything is read: what changes meanwhile is read next time.
-        version = self._study.database.version()
-        is_same = version is not None and version == self._version
-        if self._found is not None and is_same and file != self._file:
-            # Another file has taken its place, or the open study is an old one's migrated copy.
-            self.close()
-            return self._read()
-        if self._found is None or not is_same:
-            self._found = _standing(self._study)
-        self._version, self._file = version, file
-        return self._found
 
 
 def _file(place: StudyPlace) -> tuple[int, ...]:
@@ -151,7 +143,6 @@ class ClassWatch:
             await self._thread.close()
 
     async def send(self, request: web.Request) -> web.Response:
-        """Answer a page with the table in its language."""
         asked = request.query.get("language", "")
         language = asked if asked in LANGUAGES else next(iter(LANGUAGES))
         return fresh_json(record_to_json(self.message(language), with_defaults=True))
@@ -188,7 +179,6 @@ class ClassWatch:
 
 
 def class_table(found: ClassStanding, language: str) -> tuple[CurriculumTable, ...]:
-    """Return a table for each curriculum."""
     texts = Texts(LANGUAGES[language])
 
     def task_title(name: str) -> str:

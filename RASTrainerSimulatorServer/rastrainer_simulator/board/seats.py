@@ -84,7 +84,6 @@ class SeatList:
             self._entries = {entry.id: entry for entry in file.seats}
 
     def __iter__(self) -> Iterator[SeatEntry]:
-        """Return the seats in the order in which they were added."""
         return iter(tuple(self._entries.values()))
 
     def put(self, entry: SeatEntry) -> None:

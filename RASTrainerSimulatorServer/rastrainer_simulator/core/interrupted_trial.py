@@ -31,10 +31,7 @@ from rastrainer_simulator.vectors import ZERO, vector
 
 @contextlib.contextmanager
 def refusing_malformed(sentence: str) -> Iterator[None]:
-    """Raise InputError if entries of a journal are not as they should be: forged, or foreign.
-
-    Its message is the `sentence`, without its full stop, and what was wrong.
-    """
+    """Raise InputError with a sentence if a journal's entries are malformed: forged, or foreign."""
     try:
         yield
     except InputError:
@@ -77,16 +74,14 @@ class RecordedFeed:
             drilled = max(self.feed.drilled, deepest)
             self.feed = replace(self.feed, depth=depth, drilled=drilled)
         elif entry["kind"] == "phase" and "procedure" in entry:
-            self._enter(entry, Phase(entry["procedure"]["stage"]))
-
-    def _enter(self, entry: Mapping[str, Any], stage: Phase) -> None:
-        is_exchanged = self._stage is Phase.DRILLING and stage is Phase.INSERTING
-        feed = self.before(entry)
-        self._stage, self._ahead = stage, feed.ahead
-        if stage not in FEED_PHASES:
-            self.feed = NO_FEED
-        else:
-            self.feed = replace(feed, depth=0.0) if is_exchanged else feed
+            stage = Phase(entry["procedure"]["stage"])
+            is_exchanged = self._stage is Phase.DRILLING and stage is Phase.INSERTING
+            feed = self.before(entry)
+            self._stage, self._ahead = stage, feed.ahead
+            if stage not in FEED_PHASES:
+                self.feed = NO_FEED
+            else:
+                self.feed = replace(feed, depth=0.0) if is_exchanged else feed
 
 
 def _ahead(effect: Mapping[str, Any]) -> HeadAhead | None:
@@ -115,16 +110,12 @@ _EFFECTS: Mapping[str, frozenset[str]] = {
 
 @dataclass(frozen=True)
 class InterruptedTrial:
-    """Where a trial is to be resumed.
+    """Where a trial is to be resumed, by what was recorded last.
 
-    Attributes:
-        revision_before: of the training state before the trial.
-        steps: the commands that were carried out, each with its moment; the last one pauses.
-        point: the tick and the time of the last line, and the view as last chosen.
-        q: joint angles of the last sample, rad; None before the first.
+    `steps` are the commands that were carried out, each with its moment; the last one pauses.
+    `q` are joint angles in rad, None before the first sample.
     """
 
-    entries: Sequence[Mapping[str, Any]]
     revision_before: int
     steps: tuple[tuple[OperatorCommand, TouchMoment], ...]
     point: StartingPoint
@@ -134,18 +125,10 @@ class InterruptedTrial:
     obstacle: str
     feed: Feed = NO_FEED
 
-    @property
-    def header(self) -> Mapping[str, Any]:
-        return self.entries[0]
-
     @classmethod
+    @refusing_malformed(MALFORMED)
     def of(cls, entries: Sequence[Mapping[str, Any]]) -> InterruptedTrial | None:
         """Read the entries of a journal; None if no trial is open."""
-        with refusing_malformed(MALFORMED):
-            return cls._of(entries)
-
-    @classmethod
-    def _of(cls, entries: Sequence[Mapping[str, Any]]) -> InterruptedTrial | None:
         if any(entry["kind"] in _OVER for entry in entries):
             return None
         header = entries[0]
@@ -158,11 +141,15 @@ class InterruptedTrial:
         steps.append((OperatorCommand(INTERRUPTED), TouchMoment(last["simTimeS"], ZERO, 0.0)))
         latest = {entry["kind"]: entry for entry in entries}
         reach = latest.get("reach", {"isWithinReach": True, "obstacle": ""})
+        chosen = [e["camera"] for e in entries if e["kind"] in ("camera", "continued")]
         return cls(
-            entries=tuple(entries),
             revision_before=header["before"]["revision"],
             steps=tuple(steps),
-            point=StartingPoint(last["tick"], last["simTimeS"], camera=_camera(entries)),
+            point=StartingPoint(
+                last["tick"],
+                last["simTimeS"],
+                camera=chosen[-1] if chosen else entries[0]["before"]["camera"],
+            ),
             q=tuple(map(float, latest["sample"]["q"])) if "sample" in latest else None,
             proximity=Proximity(latest["proximity"]["to"] if "proximity" in latest else "free"),
             is_within_reach=reach["isWithinReach"],
@@ -188,10 +175,7 @@ def find_interrupted(folder: Path) -> tuple[JournalReading, InterruptedTrial] | 
 
 
 def recorded_command(entry: Mapping[str, Any], seed: int) -> OperatorCommand:
-    """Return a recorded command; its arguments are checked, as the file may be forged.
-
-    `seed` is that of the trial.
-    """
+    """Return a recorded command; its arguments are checked, as the file may be forged."""
     name = entry["name"]
     arguments = {key: value for key, value in entry["arguments"].items() if value is not None}
     if name == RECORDING_FAILED:
@@ -235,9 +219,3 @@ def _steps(
                     feed=recorded.before(effect),
                 )
                 yield recorded_command(entry, seed_of(entries[0])), moment
-
-
-def _camera(entries: Sequence[Mapping[str, Any]]) -> str | None:
-    """Return the view that was chosen last."""
-    chosen = [e["camera"] for e in entries if e["kind"] in ("camera", "continued")]
-    return chosen[-1] if chosen else entries[0]["before"]["camera"]

@@ -91,11 +91,7 @@ NOT_FED = Fed()
 
 
 class ProcedureMotion:
-    """The feed of drill and instrument, and the geometry that a procedure needs of the head.
-
-    Attributes:
-        planned_bone: where the planned lines go through bone; empty without procedures.
-    """
+    """The feed of drill and instrument, and the geometry that a procedure needs of the head."""
 
     def __init__(self, setup: SimulationSetup, head: HeadMesh, reach: PlanReach) -> None:
         """`head` is the scenario's; without procedures nothing is made of it."""
@@ -147,9 +143,7 @@ class ProcedureMotion:
     ) -> PathCommand | LocalizedText:
         """Return the robot's own path onto the planned line, or why there is none.
 
-        Args:
-            procedure: in the phase `aligning`; the line is by the registration in use.
-            stand_off_mm: of the tip before the line's entry at the end.
+        The line is by the registration in use; the tip ends `stand_off_mm` before its entry.
         """
         if not self._may_align:
             return say("no self-alignment")
@@ -190,10 +184,7 @@ def _guide_path(
 ) -> PathCommand:
     """Return the path of the guide to `stand_off` m before a line's entry: out, around, and in.
 
-    Args:
-        stand_off: from the tip to the entry at the end, m.
-        middle: of the head by the registration in use, World, m.
-        radius: of the head in each direction, by the same registration.
+    Middle (World, m) and radius of the head are by the registration in use.
     """
 
     def outside(position: Vector) -> bool:
@@ -240,9 +231,12 @@ class HeadOutline:
         self.middle = middle
         out = vertices - middle
         radii = np.linalg.norm(out, axis=1)
-        bands, sectors = _sectors(out / radii[:, None])
+        x, y, z = (out / radii[:, None]).T
+        bands = (_BANDS * np.arccos(np.clip(z, -1.0, 1.0)) / np.pi).astype(int)
+        sectors = (_BANDS * (np.arctan2(y, x) + np.pi) / np.pi).astype(int)
+        places = np.minimum(bands, _BANDS - 1), np.minimum(sectors, 2 * _BANDS - 1)
         table = np.zeros((_BANDS, 2 * _BANDS))
-        np.maximum.at(table, (bands, sectors), radii)
+        np.maximum.at(table, places, radii)
         # A direction may lie at the edge of its sector: the neighbors count, too.
         wide = np.maximum.reduce([np.roll(table, turn, axis=1) for turn in (-1, 0, 1)])
         tall = np.pad(wide, ((1, 1), (0, 0)), mode="edge")
@@ -258,11 +252,3 @@ class HeadOutline:
         band = _BANDS * math.acos(min(max(z, -1.0), 1.0)) / math.pi
         sector = _BANDS * (math.atan2(y, x) + math.pi) / math.pi
         return self._radii[min(int(band), _BANDS - 1)][min(int(sector), 2 * _BANDS - 1)]
-
-
-def _sectors(directions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the band and the sector of unit vectors, (n,) int each."""
-    x, y, z = directions.T
-    bands = (_BANDS * np.arccos(np.clip(z, -1.0, 1.0)) / np.pi).astype(int)
-    sectors = (_BANDS * (np.arctan2(y, x) + np.pi) / np.pi).astype(int)
-    return np.minimum(bands, _BANDS - 1), np.minimum(sectors, 2 * _BANDS - 1)

@@ -15,12 +15,7 @@ from rastrainer_simulator.training.rules import TrainingSettings
 
 @dataclass(frozen=True)
 class SimulationSettings:
-    """How the simulation behaves.
-
-    Attributes:
-        start_height: of the tip above the head's target when a trial starts, m.
-        axes: whose right, forward and up the sticks follow.
-    """
+    """How the simulation behaves; a trial starts `start_height` m above the head's target."""
 
     teleoperation: TeleoperationSettings = field(default_factory=TeleoperationSettings)
     fabrik: FabrikSettings = field(default_factory=FabrikSettings)

@@ -161,11 +161,8 @@ class RecordedSetup:
 class SimulationSetup:
     """Everything that a simulation starts from, besides its seed.
 
-    Attributes:
-        shape: the arm and its tool as collisions see them.
-        scenario_sha256: of what a trial depends on, which identifies the scenario in a journal.
-        landmarks_sha256: of what a trial by landmarks depends on besides.
-        procedure_sha256: name of a procedure → of what a trial with it depends on besides.
+    The hashes are of what a trial depends on, which identifies it in a journal; those of landmarks
+    and of procedures, by name, are of what such a trial depends on besides.
     """
 
     scenario: Scenario
@@ -212,7 +209,15 @@ def load_setup(
     """Load a scenario and a robot; by default those that come with RASTrainer."""
     folder = scenario_folder or asset_path(*DEFAULT_SCENARIO)
     scenario = load_scenario(folder)
-    robot, shape = _robot_and_shape(urdf_path, robot_meshes)
+    path = urdf_path or asset_path(*DEFAULT_URDF)
+    prepared = read_prepared(path) if robot_meshes is None else None
+    if prepared is None:
+        robot = load_robot(path, robot_meshes)
+        shape = robot_shape(robot)
+    else:
+        robot = model_from_json(prepared["model"], path.parent)
+        shape = shape_from_json(prepared["shape"])
+    skull = scenario.skull_mesh
     return SimulationSetup(
         scenario=scenario,
         robot=robot,
@@ -220,26 +225,13 @@ def load_setup(
         settings=settings or SimulationSettings(),
         scenario_sha256=scenario_sha256(scenario),
         landmarks_sha256=landmarks_sha256(scenario),
-        procedure_sha256=_procedure_sha256(scenario),
+        procedure_sha256={}
+        if skull is None
+        else {procedure.name: procedure.sha256(skull) for procedure in scenario.procedures},
     )
 
 
-def _procedure_sha256(scenario: Scenario) -> dict[str, str]:
-    skull = scenario.skull_mesh
-    if skull is None:
-        return {}
-    return {procedure.name: procedure.sha256(skull) for procedure in scenario.procedures}
-
-
-def _robot_and_shape(
-    urdf_path: Path | None, robot_meshes: Path | None
-) -> tuple[RobotModel, RobotShape]:
-    path = urdf_path or asset_path(*DEFAULT_URDF)
-    prepared = read_prepared(path) if robot_meshes is None else None
-    if prepared is None:
-        robot = load_robot(path, robot_meshes)
-        return robot, robot_shape(robot)
-    return model_from_json(prepared["model"], path.parent), shape_from_json(prepared["shape"])
+_ADDED_LATER = ("volume", "skull", "procedures", "landmarks")
 
 
 def scenario_sha256(scenario: Scenario) -> str:
@@ -249,13 +241,14 @@ def scenario_sha256(scenario: Scenario) -> str:
     simulator never reads, landmarks, skull and procedures. A trial with a procedure, or by
     landmarks, has a hash of its own (`Procedure.sha256`, `landmarks_sha256`) in its journal.
     """
-    left_out = ["volume", "skull", "procedures", "landmarks"]
+    content = (scenario.folder / FILE_NAME).read_bytes()
+    values = json.loads(content)
+    kept = {name: value for name, value in values.items() if name not in _ADDED_LATER}
+    if kept != values:
+        content = (json.dumps(kept, indent=2, ensure_ascii=False) + "\n").encode()
     whole = hashlib.sha256()
-    for content in (
-        _without(scenario.folder / FILE_NAME, left_out),
-        scenario.head_mesh.read_bytes(),
-    ):
-        whole.update(hashlib.sha256(content).digest())
+    whole.update(hashlib.sha256(content).digest())
+    whole.update(hashlib.sha256(scenario.head_mesh.read_bytes()).digest())
     for task in scenario.tasks:
         whole.update(task.name.encode() + task.fiducials.astype("<f8").tobytes())
     return whole.hexdigest()
@@ -268,13 +261,3 @@ def landmarks_sha256(scenario: Scenario) -> str:
         name = json.dumps(landmark.name).encode()
         whole.update(name + np.asarray(landmark.position_ras, dtype="<f8").tobytes())
     return whole.hexdigest()
-
-
-def _without(path: Path, names: list[str]) -> bytes:
-    """Return a `scenario.json` as it would be written without some fields."""
-    content = path.read_bytes()
-    values = json.loads(content)
-    if not any(name in values for name in names):
-        return content
-    kept = {name: value for name, value in values.items() if name not in names}
-    return (json.dumps(kept, indent=2, ensure_ascii=False) + "\n").encode()

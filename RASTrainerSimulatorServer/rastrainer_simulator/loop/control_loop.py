@@ -141,12 +141,10 @@ class ControlLoop:
 
     @property
     def setup(self) -> SimulationSetup:
-        """What the present simulation was made from."""
         return self.simulation.setup
 
     @property
     def statistics(self) -> LoopStatistics:
-        """How punctual the loop has been."""
         return replace(self._statistics)
 
     def subscribe(self, callback: Callable[[StepResult], None]) -> Callable[[], None]:

@@ -208,6 +208,5 @@ class PendingAnswers:
             future.set_result(answer)
 
     def refuse_all(self, sentence: str) -> None:
-        """Refuse everything that still waits for an answer."""
         for ticket in tuple(self._futures):
             self.give(Answer(ticket, False, sentence))

@@ -58,18 +58,14 @@ class ServerOptions:
     """What the simulator is started with.
 
     Attributes:
-        records: folder of the trials' journals.
         seed: of the heads' poses in the trials, which determines the truth.
         is_seeded: whether that seed was chosen, not drawn.
         port: to listen on; 0 is any free one.
         connect_to: host and port of a listening Slicer, in place of listening.
         scenario: folder; None is the one that comes with RASTrainer.
         view_port: of the views; 0 is any free one, None the usual one or else any free one.
-        has_views: whether views are served, and a trainee can operate.
         has_network: whether views of other computers are served, too.
         has_desktop: whether a window is opened; the simulator ends when its user closes it.
-        config: folder of the user's settings; None is the usual one.
-        resumes: whether a trial that the simulator's end has interrupted is resumed.
         scores_alone: whether a trial outside of a study is scored where no Slicer is connected.
     """
 
@@ -132,12 +128,7 @@ class SimulatorServer:
         )
 
     async def run(self, on_ready: Callable[[str], None]) -> None:
-        """Serve until SIGTERM or Ctrl-C; `on_ready` is called with the address and pairing codes.
-
-        Raises:
-            InputError: the address cannot be listened on.
-            RASTrainerError: the control loop has broken down.
-        """
+        """Serve until SIGTERM or Ctrl-C; `on_ready` is called with address and pairing codes."""
         for problem in self._control_loop.archive.problems:
             _log.warning("%s", problem)
         if self._control_loop.is_first_in_line:

@@ -62,7 +62,6 @@ class RefusedStep:
 
 
 def summary(state: TrainingState) -> dict[str, Any]:
-    """Return the state of a trial."""
     data: dict[str, Any] = {
         "trialId": state.trial_id,
         "phase": state.phase.value,

@@ -85,10 +85,7 @@ _OF_A_TRACE = {"all touched": "all traced", "not paused": "not paused trace"}
 
 
 def _trace_key(command: str, state: TrainingState, key: str | None) -> str | None:
-    """Return the key of a refusal where the trial has a trace, or the command needs one.
-
-    `key` is that of the phase.
-    """
+    """Return a refusal's key where the trial has a trace, or the command needs one; else `key`."""
     trace, is_running = state.trace, state.phase is Phase.RUNNING
     if command in (CommandName.TRACE, TRACED) and key is None:
         return _why_not_traced(state)
@@ -160,12 +157,7 @@ def refused_touch(
     settings: TrainingSettings,
     method: RegistrationMethod,
 ) -> str | None:
-    """Return why a touch does not count, None if it does.
-
-    Args:
-        next_point: label of the fiducial or landmark that is next.
-        fiducials: label → position, World, m, of all of them.
-    """
+    """Return why a touch does not count, None if it does; `fiducials` are in World, m."""
     away, radius = distance(now.tip, fiducials[next_point]), settings.radius(method)
     if away > radius:
         label = min(fiducials, key=lambda key: distance(now.tip, fiducials[key]))
@@ -208,12 +200,7 @@ def touch_stage(
     goal: Vector | None,
     settings: TrainingSettings,
 ) -> TouchStage:
-    """Return the state of the next touch.
-
-    Args:
-        obstacle: what stops the arm behind the tool, "" for nothing.
-        goal: position of the next fiducial, World, m; None without one.
-    """
+    """Return the state of the next touch; `goal` is its place, World, m, None without one."""
     if proximity is not Proximity.CONTACT:
         if obstacle:
             return TouchStage.ARM

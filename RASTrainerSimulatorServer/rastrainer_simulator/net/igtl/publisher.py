@@ -104,10 +104,7 @@ def _procedure(state: SimulationState, procedure: ProcedureState) -> dict[str, A
 
 
 def sim_state(changing: Mapping[str, Any], state: SimulationState, seq: int) -> Message:
-    """Return the state of trial and robot as text: ASCII JSON.
-
-    `changing` is what `what_changes` gives; the times go along and are no reason to send it.
-    """
+    """Return `what_changes` with number and times as text: ASCII JSON."""
     times = {"simTimeS": round(state.sim_time, 6), "elapsedS": round(state.completion_time, 3)}
     text = json.dumps({"seq": seq, **times, **changing}, allow_nan=False)
     return Message(DeviceName.SIM_STATE, String(text))
@@ -139,10 +136,7 @@ class PoseSubscription:
         self._sent: dict[str, bytes] = {}
 
     def is_news(self, device: str, content: bytes) -> bool:
-        """Return whether a pose is to be sent, which then counts as sent.
-
-        Poses are compared as they are sent, with 32 bits.
-        """
+        """Return whether a pose, as sent with 32 bits, is to be sent; it then counts as sent."""
         if self._sent.get(device) == content and not self._is_steady:
             return False
         self._sent[device] = content

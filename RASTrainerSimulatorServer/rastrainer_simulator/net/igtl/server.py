@@ -12,14 +12,17 @@ import socket
 import time
 from collections import Counter
 from collections.abc import Collection
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 from rastrainer.errors import InputError
-from rastrainer.igtl.message import CONTENTS, Message, MessageReader
+from rastrainer.igtl.message import CONTENTS, MessageReader
 from rastrainer_simulator.loop.timing import ReadingBudget
 from rastrainer_simulator.net.igtl.outgoing import BUFFER_BYTES, Outgoing, OutgoingQueue
 from rastrainer_simulator.net.limits import LinkLimits
 from rastrainer_simulator.net.listener import listen
+
+if TYPE_CHECKING:
+    from rastrainer_simulator.net.igtl.simulator_link import SimulatorLink
 
 FIRST_MESSAGE_S = 0.25
 """Time that a client has to show by its first message which header version it speaks; then it is
@@ -142,9 +145,9 @@ class ClientConnection(asyncio.BufferedProtocol):
         for message in messages:
             self.is_silent = False
             self._owner.handler.received(self, message)
-        if self._reader.errors:
-            self._owner.bad_bytes(self, self._reader.errors)
-            self._reader.errors.clear()
+        for kind, times in self._reader.errors.items():
+            self._owner.log.note(f"{self.host}: {kind.value}", times)
+        self._reader.errors.clear()
         if self._reader.refusal:
             self.drop(self._reader.refusal)
         number = None if self._reader.is_between_messages else self._reader.taken
@@ -224,30 +227,13 @@ def set_up_socket(peer: socket.socket) -> None:
             peer.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)
 
 
-class LinkHandler(Protocol):
-    """Handles clients and their messages; called in the event loop's thread."""
-
-    def connected(self, connection: ClientConnection) -> None:
-        """Greet a client, which may be sent to from now on."""
-
-    def received(self, connection: ClientConnection, message: Message) -> None:
-        """Process one valid message."""
-
-    def disconnected(self, connection: ClientConnection) -> None:
-        """Forget a client."""
-
-
 class IgtlServer:
-    """Owns the connections of all clients; what one of them does disturbs no other.
+    """Owns the connections of all clients; what one of them does disturbs no other."""
 
-    Attributes:
-        connections: in the order in which they came, whether they may be sent to yet or not.
-    """
-
-    def __init__(self, handler: LinkHandler, limits: LinkLimits | None = None):
+    def __init__(self, handler: SimulatorLink, limits: LinkLimits | None = None):
         self.limits = limits or LinkLimits()
         self.handler = handler
-        self._log = LinkLog()
+        self.log = LinkLog()
         self.connections: dict[ClientConnection, None] = {}
         self._opened: set[ClientConnection] = set()
         self._listening: list[asyncio.Server] = []
@@ -281,7 +267,7 @@ class IgtlServer:
                 await connection.closed.wait()
             except (OSError, asyncio.TimeoutError):
                 if not is_absence_logged:
-                    self._log.note(f"Nothing listens at {host}:{port} yet.")
+                    self.log.note(f"Nothing listens at {host}:{port} yet.")
                     is_absence_logged = True
             await asyncio.sleep(RECONNECT_S)
 
@@ -298,7 +284,7 @@ class IgtlServer:
         for connection in connections:
             connection.drop()
         await asyncio.gather(*closed)
-        self._log.close()
+        self.log.close()
 
     def connected(self, connection: ClientConnection) -> None:
         """Accept a connection; if there are too many, the oldest silent one is dropped for it."""
@@ -315,14 +301,9 @@ class IgtlServer:
         self._opened.add(connection)
         self.handler.connected(connection)
 
-    def bad_bytes(self, connection: ClientConnection, errors: Counter) -> None:
-        """Log what was no valid message."""
-        for kind, times in errors.items():
-            self._log.note(f"{connection.host}: {kind.value}", times)
-
     def disconnected(self, connection: ClientConnection, reason: str) -> None:
         if reason:
-            self._log.note(f"{connection.host} was disconnected: {reason}")
+            self.log.note(f"{connection.host} was disconnected: {reason}")
         self.connections.pop(connection, None)
         if connection in self._opened:
             self._opened.discard(connection)

@@ -180,8 +180,7 @@ class SimulatorLink:
         """Make a link, in the event loop's thread.
 
         Args:
-            unacknowledged: gives the records of the trials that no client has acknowledged.
-            arrivals: counts these since the start.
+            arrivals: counts the records that `unacknowledged` gives, since the start.
             find_scenario: gives the scenario of a name, the present one for ""; in any thread.
             health: gives what the heartbeat reports about the simulator, ready for JSON.
             answers: gives a study's answers that Slicer has not taken yet.

@@ -24,11 +24,7 @@ NAMES_NAME = "views.names"
 
 @dataclass(frozen=True)
 class Certificate:
-    """This machine's certificate.
-
-    Attributes:
-        fingerprint: SHA-256, as browsers show it.
-    """
+    """This machine's certificate, and its SHA-256 fingerprint as browsers show it."""
 
     tls: ssl.SSLContext
     fingerprint: str
@@ -40,7 +36,8 @@ def own_certificate(folder: Path) -> Certificate:
     The file holds the private key: only its owner can read it, and it never leaves the machine.
     """
     file, names_file = folder / FILE_NAME, folder / NAMES_NAME
-    names = own_names()
+    host = socket.gethostname().lower().removesuffix(".local")
+    names = ("localhost", host, f"{host}.local", "127.0.0.1", "::1", *own_addresses())
     try:
         make_private_folder(folder)
         # None yet, or an incomplete one, as after a full disk, is replaced.
@@ -62,12 +59,6 @@ def own_certificate(folder: Path) -> Certificate:
             f"The certificate for the local network cannot be kept in {folder}: {error.strerror}. "
             "Allow writing to it, or choose another folder of settings."
         ) from None
-
-
-def own_names() -> tuple[str, ...]:
-    """Return the names and addresses by which others find this machine."""
-    host = socket.gethostname().lower().removesuffix(".local")
-    return ("localhost", host, f"{host}.local", "127.0.0.1", "::1", *own_addresses())
 
 
 def own_addresses() -> tuple[str, ...]:

@@ -63,12 +63,7 @@ class GuardedServer:
         routes: Sequence[web.RouteDef],
         page: Path | None,
     ) -> None:
-        """Make a server; nothing listens yet.
-
-        Args:
-            code: that a new session is given for, at `POST /pair`.
-            page: folder of the built page, whose files are public; None where there is none.
-        """
+        """Make a server; `page` is the folder of the built page, whose files are public."""
         self._sessions = sessions
         self._code = code
         self._roles: dict[asyncio.BaseProtocol, ViewRole] = {}

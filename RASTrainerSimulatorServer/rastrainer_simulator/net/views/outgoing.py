@@ -72,10 +72,8 @@ def state_news(
 ) -> StateNews:
     """Return what moves.
 
-    Args:
-        delayed: how many of the control loop's ticks were late or skipped.
-        translucent: bodies that cover tip or point in each picture.
-        ghost: poses of `GHOST_BODIES`, (4, 4) float, to World, m; None without a ghost.
+    `delayed` ticks of the control loop were late or skipped; `ghost` are poses of `GHOST_BODIES`,
+    (4, 4) float, to World, m.
     """
     training, planned = now.training, now.planned_target
     # Where the registration in use puts the MRI; else World's origin.

@@ -153,7 +153,6 @@ class ViewServer:
         )
 
     async def listen(self, host: str, port: int) -> int:
-        """Listen, and return on which port; 0 is any free one."""
         self.port = await self._http.listen(host, port)
         self.add_addresses(f"http://{host}:{self.port}")
         feed = StateFeed(self._views.is_due, self._views.tell, asyncio.get_running_loop())

@@ -56,13 +56,7 @@ _BEFORE_EVENTS = tuple(
 
 
 class ViewSocket:
-    """A view's WebSocket.
-
-    Attributes:
-        number: of the view; none is used twice.
-        is_local: whether it is on this computer, as far as the network can tell.
-        headset_pose: what a headset has sent last; None while nobody wears it.
-    """
+    """A view's WebSocket; no number is used twice, and a headset that nobody wears has no pose."""
 
     def __init__(
         self,
