@@ -12,12 +12,8 @@ from aiohttp import web
 
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_to_json
-from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
-from rastrainer.study.curriculum.standing import (
-    CurriculumStanding,
-    by_curriculum,
-)
+from rastrainer.study.curriculum.standing import CurriculumStanding, by_curriculum
 from rastrainer.study.database.database import LockWait, StudyBusyError, StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import utc_now
@@ -186,22 +182,16 @@ def class_table(found: ClassStanding, language: str) -> tuple[CurriculumTable, .
         return texts.say(key) if key in texts else _spoken(name)
 
     words = AssignmentTexts(texts, task_title, _spoken)
-    groups = by_curriculum(found.standings)
-    return tuple(_table(curriculum, group, words) for curriculum, group in groups.items())
-
-
-def _table(
-    curriculum: Curriculum, group: Mapping[str, CurriculumStanding], words: AssignmentTexts
-) -> CurriculumTable:
-    first = next(iter(group.values()))
-    return CurriculumTable(
-        curriculum.title,
-        tuple(
+    tables = []
+    for curriculum, group in by_curriculum(found.standings).items():
+        first = next(iter(group.values()))
+        columns = tuple(
             AssignmentColumn(each.name, words.label(each), words.goal(each))
             for each in first.standings
-        ),
-        tuple(_row(name, standing, words) for name, standing in group.items()),
-    )
+        )
+        rows = tuple(_row(name, standing, words) for name, standing in group.items())
+        tables.append(CurriculumTable(curriculum.title, columns, rows))
+    return tuple(tables)
 
 
 def _row(name: str, standing: CurriculumStanding, words: AssignmentTexts) -> TraineeRow:

@@ -41,13 +41,7 @@ _FINGERPRINT = re.compile(r"([0-9A-F]{2}:){31}[0-9A-F]{2}")
 
 @dataclass(frozen=True)
 class SeatEntry:
-    """A simulator that is watched.
-
-    Attributes:
-        address: "https://HOST:PORT", or "http://" for a simulator on this computer.
-        fingerprint: SHA-256 of the simulator's certificate, as the simulator shows it; "" without
-            TLS.
-    """
+    """A simulator that is watched; `fingerprint` is its certificate's SHA-256, "" without TLS."""
 
     id: Annotated[str, identifier]
     name: Annotated[str, text(40)]

@@ -74,14 +74,16 @@ class RecordedFeed:
             drilled = max(self.feed.drilled, deepest)
             self.feed = replace(self.feed, depth=depth, drilled=drilled)
         elif entry["kind"] == "phase" and "procedure" in entry:
-            stage = Phase(entry["procedure"]["stage"])
-            is_exchanged = self._stage is Phase.DRILLING and stage is Phase.INSERTING
-            feed = self.before(entry)
-            self._stage, self._ahead = stage, feed.ahead
-            if stage not in FEED_PHASES:
-                self.feed = NO_FEED
-            else:
-                self.feed = replace(feed, depth=0.0) if is_exchanged else feed
+            self._enter(entry, Phase(entry["procedure"]["stage"]))
+
+    def _enter(self, entry: Mapping[str, Any], stage: Phase) -> None:
+        is_exchanged = self._stage is Phase.DRILLING and stage is Phase.INSERTING
+        feed = self.before(entry)
+        self._stage, self._ahead = stage, feed.ahead
+        if stage not in FEED_PHASES:
+            self.feed = NO_FEED
+        else:
+            self.feed = replace(feed, depth=0.0) if is_exchanged else feed
 
 
 def _ahead(effect: Mapping[str, Any]) -> HeadAhead | None:
@@ -141,15 +143,10 @@ class InterruptedTrial:
         steps.append((OperatorCommand(INTERRUPTED), TouchMoment(last["simTimeS"], ZERO, 0.0)))
         latest = {entry["kind"]: entry for entry in entries}
         reach = latest.get("reach", {"isWithinReach": True, "obstacle": ""})
-        chosen = [e["camera"] for e in entries if e["kind"] in ("camera", "continued")]
         return cls(
             revision_before=header["before"]["revision"],
             steps=tuple(steps),
-            point=StartingPoint(
-                last["tick"],
-                last["simTimeS"],
-                camera=chosen[-1] if chosen else entries[0]["before"]["camera"],
-            ),
+            point=StartingPoint(last["tick"], last["simTimeS"], camera=_camera(entries)),
             q=tuple(map(float, latest["sample"]["q"])) if "sample" in latest else None,
             proximity=Proximity(latest["proximity"]["to"] if "proximity" in latest else "free"),
             is_within_reach=reach["isWithinReach"],
@@ -219,3 +216,9 @@ def _steps(
                     feed=recorded.before(effect),
                 )
                 yield recorded_command(entry, seed_of(entries[0])), moment
+
+
+def _camera(entries: Sequence[Mapping[str, Any]]) -> str | None:
+    """Return the view that was chosen last."""
+    chosen = [e["camera"] for e in entries if e["kind"] in ("camera", "continued")]
+    return chosen[-1] if chosen else entries[0]["before"]["camera"]

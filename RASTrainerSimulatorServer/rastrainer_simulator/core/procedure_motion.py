@@ -136,10 +136,7 @@ class ProcedureMotion:
         return Fed(has_moved, way.is_by_stick, (event,))
 
     def way(
-        self,
-        guide: GuideAxis,
-        procedure: ProcedureState | None,
-        stand_off_mm: float,
+        self, guide: GuideAxis, procedure: ProcedureState | None, stand_off_mm: float
     ) -> PathCommand | LocalizedText:
         """Return the robot's own path onto the planned line, or why there is none.
 
@@ -231,12 +228,9 @@ class HeadOutline:
         self.middle = middle
         out = vertices - middle
         radii = np.linalg.norm(out, axis=1)
-        x, y, z = (out / radii[:, None]).T
-        bands = (_BANDS * np.arccos(np.clip(z, -1.0, 1.0)) / np.pi).astype(int)
-        sectors = (_BANDS * (np.arctan2(y, x) + np.pi) / np.pi).astype(int)
-        places = np.minimum(bands, _BANDS - 1), np.minimum(sectors, 2 * _BANDS - 1)
+        bands, sectors = _sectors(out / radii[:, None])
         table = np.zeros((_BANDS, 2 * _BANDS))
-        np.maximum.at(table, places, radii)
+        np.maximum.at(table, (bands, sectors), radii)
         # A direction may lie at the edge of its sector: the neighbors count, too.
         wide = np.maximum.reduce([np.roll(table, turn, axis=1) for turn in (-1, 0, 1)])
         tall = np.pad(wide, ((1, 1), (0, 0)), mode="edge")
@@ -252,3 +246,11 @@ class HeadOutline:
         band = _BANDS * math.acos(min(max(z, -1.0), 1.0)) / math.pi
         sector = _BANDS * (math.atan2(y, x) + math.pi) / math.pi
         return self._radii[min(int(band), _BANDS - 1)][min(int(sector), 2 * _BANDS - 1)]
+
+
+def _sectors(directions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the band and the sector of unit vectors, (n,) int each."""
+    x, y, z = directions.T
+    bands = (_BANDS * np.arccos(np.clip(z, -1.0, 1.0)) / np.pi).astype(int)
+    sectors = (_BANDS * (np.arctan2(y, x) + np.pi) / np.pi).astype(int)
+    return np.minimum(bands, _BANDS - 1), np.minimum(sectors, 2 * _BANDS - 1)

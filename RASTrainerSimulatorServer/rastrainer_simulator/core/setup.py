@@ -231,9 +231,6 @@ def load_setup(
     )
 
 
-_ADDED_LATER = ("volume", "skull", "procedures", "landmarks")
-
-
 def scenario_sha256(scenario: Scenario) -> str:
     """Return one hash of what a trial of touches depends on: `scenario.json`, head and fiducials.
 
@@ -241,14 +238,13 @@ def scenario_sha256(scenario: Scenario) -> str:
     simulator never reads, landmarks, skull and procedures. A trial with a procedure, or by
     landmarks, has a hash of its own (`Procedure.sha256`, `landmarks_sha256`) in its journal.
     """
-    content = (scenario.folder / FILE_NAME).read_bytes()
-    values = json.loads(content)
-    kept = {name: value for name, value in values.items() if name not in _ADDED_LATER}
-    if kept != values:
-        content = (json.dumps(kept, indent=2, ensure_ascii=False) + "\n").encode()
+    left_out = ["volume", "skull", "procedures", "landmarks"]
     whole = hashlib.sha256()
-    whole.update(hashlib.sha256(content).digest())
-    whole.update(hashlib.sha256(scenario.head_mesh.read_bytes()).digest())
+    for content in (
+        _without(scenario.folder / FILE_NAME, left_out),
+        scenario.head_mesh.read_bytes(),
+    ):
+        whole.update(hashlib.sha256(content).digest())
     for task in scenario.tasks:
         whole.update(task.name.encode() + task.fiducials.astype("<f8").tobytes())
     return whole.hexdigest()
@@ -261,3 +257,13 @@ def landmarks_sha256(scenario: Scenario) -> str:
         name = json.dumps(landmark.name).encode()
         whole.update(name + np.asarray(landmark.position_ras, dtype="<f8").tobytes())
     return whole.hexdigest()
+
+
+def _without(path: Path, names: list[str]) -> bytes:
+    """Return a `scenario.json` as it would be written without some fields."""
+    content = path.read_bytes()
+    values = json.loads(content)
+    if not any(name in values for name in names):
+        return content
+    kept = {name: value for name, value in values.items() if name not in names}
+    return (json.dumps(kept, indent=2, ensure_ascii=False) + "\n").encode()

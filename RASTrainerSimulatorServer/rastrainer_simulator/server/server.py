@@ -24,10 +24,7 @@ from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow.session.assigned_training import AssignedTraining
-from rastrainer_simulator.flow.session.preferences import (
-    PREFERENCES_FILE,
-    read_preferences,
-)
+from rastrainer_simulator.flow.session.preferences import PREFERENCES_FILE, read_preferences
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.loop.results import StateFeed, trial_log
 from rastrainer_simulator.loop.timing import raise_thread_priority
@@ -158,7 +155,7 @@ class SimulatorServer:
         gc.collect()
         gc.freeze()
         with stop_on_signals(stop):
-            self._control_loop.start()
+            self._control_loop.thread.start()
             _log.info("The simulator has started.", extra={"data": versions()})
             try:
                 port = await self._open(link, tasks, on_ready)

@@ -133,12 +133,9 @@ class TouchMoment:
     """When and where a command is carried out.
 
     Attributes:
-        sim_time: simulated time, s.
-        tip: position of the tool's tip, World, m.
         tip_clearance: signed distance of the tip to the skin, m; below 0 within the head.
         depth: how far the tip is pressed in, m; see `SimulationState.depth`.
-        direction: of the tool, a unit vector from A7 to the tip, World; ZERO where it plays no
-            part.
+        direction: of the tool, a unit vector from A7 to the tip, World; ZERO where it has no part.
         feed: how far what is in the guide is beyond its tip; of LockGuide, what lies ahead of it.
     """
 

@@ -147,18 +147,14 @@ class Publisher:
     """Sends the simulation's state to its subscribers, at rates of simulated time.
 
     While nothing changes nothing is sent: for Slicer each pose, even the same again, is a reason to
-    render all its views.
-
-    `is_due` may be called in the control loop's thread; everything else belongs to the event
-    loop's.
-
-    Attributes:
-        is_guided: says whether a trainee who traces the skin is shown where to draw next.
+    render all its views. `is_due` may be called in the control loop's thread; everything else
+    belongs to the event loop's.
     """
 
     def __init__(self, latest: Callable[[], SimulationState]):
         """`latest` returns the newest state, for clients that subscribe between publications."""
         self.is_guided: Callable[[], bool] = lambda: False
+        """Says whether a trainee who traces the skin is shown where to draw next."""
         self._latest = latest
         self._poses: dict[ClientConnection, PoseSubscription] = {}
         self._state = Pacer(Rate.STATE_HZ)

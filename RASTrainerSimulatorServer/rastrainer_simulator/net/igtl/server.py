@@ -47,17 +47,11 @@ _MAX_KINDS = 20
 
 
 class ClientConnection(asyncio.BufferedProtocol):
-    """One peer.
+    """One peer; `scores` is whether it has said that it registers and scores trials.
 
     Messages go out with the header version that the peer speaks. A peer of version 1 could not
     even pass over one of version 2: so nothing is sent before the peer's first header, whatever
     follows it, or some tenths of a second in which a mere listener has sent none.
-
-    Attributes:
-        name: what the peer called itself, at first its address.
-        scores: whether it has said that it registers and scores trials.
-        offered: UUIDs of the trials that it was offered.
-        header_version: what the peer speaks.
     """
 
     def __init__(self, owner: IgtlServer):

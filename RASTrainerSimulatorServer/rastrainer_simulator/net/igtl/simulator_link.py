@@ -51,11 +51,7 @@ from rastrainer_simulator.texts.texts import LocalizedText
 
 Submit = Callable[[ClientConnection, str, Mapping[str, Any]], "Future[Answer]"]
 _OWN_DEVICES = frozenset(
-    {
-        DeviceName.TOOL_TIP_TO_WORLD,
-        DeviceName.INSTRUMENT_TIP_TO_WORLD,
-        *DeviceName.LINK_TO_WORLD,
-    }
+    {DeviceName.TOOL_TIP_TO_WORLD, DeviceName.INSTRUMENT_TIP_TO_WORLD, *DeviceName.LINK_TO_WORLD}
 )
 COMMANDS_AT_ONCE = 16
 """Commands of one client that are submitted to the control loop at a time."""

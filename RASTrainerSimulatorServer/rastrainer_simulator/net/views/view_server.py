@@ -81,12 +81,8 @@ class ViewServer:
     ) -> None:
         """Make a server, in the event loop's thread; nothing listens yet.
 
-        Args:
-            announce: is given what people must know, such as pairing codes.
-            robot_meshes: those that the setups are loaded with.
-            scenario_picture: returns the picture of a scenario by its name.
-            config: folder of the settings, with the keys of boards; None keeps none.
-            pin: that boards need to give orders; None takes none.
+        `announce` is given what people must know, such as pairing codes. Without `config`, the
+        folder of settings, no keys of boards are kept; without `pin` boards give no orders.
         """
         self._scenario_picture = scenario_picture
         self._source = source
