@@ -12,17 +12,14 @@ import socket
 import time
 from collections import Counter
 from collections.abc import Collection
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from rastrainer.errors import InputError
-from rastrainer.igtl.message import CONTENTS, MessageReader
+from rastrainer.igtl.message import CONTENTS, Message, MessageReader
 from rastrainer_simulator.loop.timing import ReadingBudget
 from rastrainer_simulator.net.igtl.outgoing import BUFFER_BYTES, Outgoing, OutgoingQueue
 from rastrainer_simulator.net.limits import LinkLimits
 from rastrainer_simulator.net.listener import listen
-
-if TYPE_CHECKING:
-    from rastrainer_simulator.net.igtl.simulator_link import SimulatorLink
 
 FIRST_MESSAGE_S = 0.25
 """Time that a client has to show by its first message which header version it speaks; then it is
@@ -221,10 +218,23 @@ def set_up_socket(peer: socket.socket) -> None:
             peer.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)
 
 
+class LinkHandler(Protocol):
+    """Handles clients and their messages; called in the event loop's thread."""
+
+    def connected(self, connection: ClientConnection) -> None:
+        """Greet a client, which may be sent to from now on."""
+
+    def received(self, connection: ClientConnection, message: Message) -> None:
+        """Process one valid message."""
+
+    def disconnected(self, connection: ClientConnection) -> None:
+        """Forget a client."""
+
+
 class IgtlServer:
     """Owns the connections of all clients; what one of them does disturbs no other."""
 
-    def __init__(self, handler: SimulatorLink, limits: LinkLimits | None = None):
+    def __init__(self, handler: LinkHandler, limits: LinkLimits | None = None):
         self.limits = limits or LinkLimits()
         self.handler = handler
         self.log = LinkLog()
