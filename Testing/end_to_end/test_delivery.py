@@ -45,7 +45,7 @@ class Server:
     def __init__(self, thread, simulation, records):
         self._thread = thread
         self._loop = ControlLoop(simulation, records, rate_hz=50.0)
-        self._loop.start()
+        self._loop.thread.start()
         self._link = thread.call(
             SimulatorLink,
             latest=lambda: self._loop.latest,

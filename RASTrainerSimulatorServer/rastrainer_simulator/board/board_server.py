@@ -73,11 +73,7 @@ ONLY_TEACHERS = "This browser only watches the board: pair it with the board aga
 
 
 class BoardServer:
-    """Watches the seats of a list, and serves the board's page.
-
-    Attributes:
-        code: pairs a teacher's browser with the board.
-    """
+    """Watches the seats of a list, and serves the board's page."""
 
     def __init__(
         self,
@@ -86,14 +82,7 @@ class BoardServer:
         on_new_code: Callable[[str], None],
         study: StudyPlace | None = None,
     ) -> None:
-        """Watch the seats that the folder of settings lists; in the event loop's thread.
-
-        Args:
-            config: Folder of settings.
-            client: Talks to the seats.
-            on_new_code: Called with each new code for browsers.
-            study: Whose trainees are the class; None for a board of seats alone.
-        """
+        """Watch the seats in the folder of settings, and the class of a study if there is one."""
         self._client = client
         self._list = SeatList(config)
         self._changed = asyncio.Event()
@@ -122,7 +111,6 @@ class BoardServer:
         self._http = GuardedServer(Sessions(), self.code, routes, self._page)
 
     async def listen(self, host: str, port: int) -> int:
-        """Listen and return the port; 0 is any free one."""
         await self._class.begin()
         return await self._http.listen(host, port)
 
@@ -144,7 +132,6 @@ class BoardServer:
         return seat.entry
 
     async def _send_page(self, request: web.Request) -> web.StreamResponse:
-        """Send the board's page, or the page of a seat or its code."""
         if "seat" not in request.match_info:
             return page_answer(self._page, "board.html")
         self._entry(request)

@@ -12,12 +12,8 @@ from aiohttp import web
 
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_to_json
-from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
-from rastrainer.study.curriculum.standing import (
-    CurriculumStanding,
-    by_curriculum,
-)
+from rastrainer.study.curriculum.standing import CurriculumStanding, by_curriculum
 from rastrainer.study.database.database import LockWait, StudyBusyError, StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import utc_now
@@ -39,12 +35,7 @@ LOCK_WAIT_S = 5.0
 
 @dataclass(frozen=True)
 class ClassStanding:
-    """The standings of the active trainees of a study.
-
-    Attributes:
-        standings: Of those with a curriculum, by pseudonym.
-        without: Who follows none.
-    """
+    """The standings of the active trainees of a study."""
 
     standings: Mapping[str, CurriculumStanding]
     without: tuple[str, ...]
@@ -57,7 +48,6 @@ class ClassReader:
     """
 
     def __init__(self, place: StudyPlace) -> None:
-        """Open nothing yet."""
         self._place = place
         self._study: Study | None = None
         self._version: int | None = None
@@ -65,39 +55,31 @@ class ClassReader:
         self._found: ClassStanding | None = None
 
     def read(self) -> ClassStanding:
-        """Return everybody's standing; the same object as before if nothing has changed.
-
-        Raises:
-            InputError: the study cannot be read, or has too many active trainees.
-            StudyBusyError: it cannot be read now.
-        """
+        """Return everybody's standing; the same object as before if nothing has changed."""
         try:
-            return self._read()
+            file = _file(self._place)
+            if self._study is None:
+                self._study = Study.open_for_reading(self._place, LockWait(LOCK_WAIT_S))
+            # Before anything is read: what changes meanwhile is read next time.
+            version = self._study.database.version()
+            is_same = version is not None and version == self._version
+            if self._found is not None and is_same and file != self._file:
+                # Another file has taken its place, or the open study is an old one's migrated copy.
+                self.close()
+                return self.read()
+            if self._found is None or not is_same:
+                self._found = _standing(self._study)
         except InputError:
             # It is reopened next time: it may have been restored meanwhile.
             self.close()
             raise
+        self._version, self._file = version, file
+        return self._found
 
     def close(self) -> None:
         if self._study is not None:
             self._study.close()
         self._study = self._found = None
-
-    def _read(self) -> ClassStanding:
-        file = _file(self._place)
-        if self._study is None:
-            self._study = Study.open_for_reading(self._place, LockWait(LOCK_WAIT_S))
-        # Before anything is read: what changes meanwhile is read next time.
-        version = self._study.database.version()
-        is_same = version is not None and version == self._version
-        if self._found is not None and is_same and file != self._file:
-            # Another file has taken its place, or the open study is an old one's migrated copy.
-            self.close()
-            return self._read()
-        if self._found is None or not is_same:
-            self._found = _standing(self._study)
-        self._version, self._file = version, file
-        return self._found
 
 
 def _file(place: StudyPlace) -> tuple[int, ...]:
@@ -150,7 +132,6 @@ class ClassWatch:
         self._task = asyncio.create_task(self._keep_reading(self._thread))
 
     async def close(self) -> None:
-        """Stop reading."""
         if self._task is not None:
             self._task.cancel()
             await asyncio.gather(self._task, return_exceptions=True)
@@ -158,13 +139,11 @@ class ClassWatch:
             await self._thread.close()
 
     async def send(self, request: web.Request) -> web.Response:
-        """Answer a page with the table in its language."""
         asked = request.query.get("language", "")
         language = asked if asked in LANGUAGES else next(iter(LANGUAGES))
         return fresh_json(record_to_json(self.message(language), with_defaults=True))
 
     def message(self, language: str) -> ClassNews:
-        """Return what the page is sent."""
         found = self._found
         if found is not None and language not in self._tables:
             self._tables[language] = class_table(found, language)
@@ -196,12 +175,6 @@ class ClassWatch:
 
 
 def class_table(found: ClassStanding, language: str) -> tuple[CurriculumTable, ...]:
-    """Return a table for each curriculum.
-
-    Args:
-        found: Where everybody stands.
-        language: Tag of `LANGUAGES`.
-    """
     texts = Texts(LANGUAGES[language])
 
     def task_title(name: str) -> str:
@@ -209,22 +182,16 @@ def class_table(found: ClassStanding, language: str) -> tuple[CurriculumTable, .
         return texts.say(key) if key in texts else _spoken(name)
 
     words = AssignmentTexts(texts, task_title, _spoken)
-    groups = by_curriculum(found.standings)
-    return tuple(_table(curriculum, group, words) for curriculum, group in groups.items())
-
-
-def _table(
-    curriculum: Curriculum, group: Mapping[str, CurriculumStanding], words: AssignmentTexts
-) -> CurriculumTable:
-    first = next(iter(group.values()))
-    return CurriculumTable(
-        curriculum.title,
-        tuple(
+    tables = []
+    for curriculum, group in by_curriculum(found.standings).items():
+        first = next(iter(group.values()))
+        columns = tuple(
             AssignmentColumn(each.name, words.label(each), words.goal(each))
             for each in first.standings
-        ),
-        tuple(_row(name, standing, words) for name, standing in group.items()),
-    )
+        )
+        rows = tuple(_row(name, standing, words) for name, standing in group.items())
+        tables.append(CurriculumTable(curriculum.title, columns, rows))
+    return tuple(tables)
 
 
 def _row(name: str, standing: CurriculumStanding, words: AssignmentTexts) -> TraineeRow:

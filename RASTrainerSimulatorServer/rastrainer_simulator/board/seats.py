@@ -41,16 +41,7 @@ _FINGERPRINT = re.compile(r"([0-9A-F]{2}:){31}[0-9A-F]{2}")
 
 @dataclass(frozen=True)
 class SeatEntry:
-    """A simulator that is watched.
-
-    Attributes:
-        id: by which the board's page names it.
-        name: what the teacher calls it.
-        address: "https://HOST:PORT", or "http://" for a simulator on this computer.
-        key: that the simulator gave to this board; it only watches.
-        fingerprint: SHA-256 of the simulator's certificate, as the simulator shows it; "" without
-            TLS.
-    """
+    """A simulator that is watched; `fingerprint` is its certificate's SHA-256, "" without TLS."""
 
     id: Annotated[str, identifier]
     name: Annotated[str, text(40)]
@@ -87,11 +78,9 @@ class SeatList:
             self._entries = {entry.id: entry for entry in file.seats}
 
     def __iter__(self) -> Iterator[SeatEntry]:
-        """Return the seats in the order in which they were added."""
         return iter(tuple(self._entries.values()))
 
     def put(self, entry: SeatEntry) -> None:
-        """Add a seat, or replace the one with the same `id`, and save the list."""
         self._write({**self._entries, entry.id: entry})
 
     def remove(self, seat: str) -> None:
@@ -181,7 +170,6 @@ class SeatClient:
         )
 
     async def __aenter__(self) -> SeatClient:
-        """Return itself."""
         return self
 
     async def __aexit__(self, *_exception: object) -> None:
@@ -199,7 +187,6 @@ class SeatClient:
         return digest.hex(":").upper()
 
     async def pair(self, address: str, fingerprint: str, code: str) -> str:
-        """Return a key for a pairing code."""
         entry = SeatEntry("", "", address, "", fingerprint)
         body = PairingRequest(code, ViewRole.BOARD)
         content, _ = await self.request(entry, "/pair", body)

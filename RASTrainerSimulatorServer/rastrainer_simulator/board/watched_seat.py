@@ -24,11 +24,7 @@ _BOARD_HELLO = message_text(Hello("board"))
 
 
 class WatchedSeat:
-    """Watches one simulator in a separate task.
-
-    Attributes:
-        entry: which one.
-    """
+    """Watches one simulator in a separate task."""
 
     def __init__(self, entry: SeatEntry, client: SeatClient, changed: Callable[[], None]) -> None:
         """Start to watch; `changed` is called whenever the tile changes."""
@@ -40,7 +36,6 @@ class WatchedSeat:
         self._task = asyncio.create_task(self._watch())
 
     def tile(self) -> TileNews:
-        """Return what a board shows of it."""
         entry = self.entry
         return TileNews(entry.id, entry.name, entry.address, self._link, self._seat)
 

@@ -35,8 +35,6 @@ class Posture:
         q: seven joint angles, rad.
         links: LinkToWorld of links 0 to 7, (4, 4) float, m.
         tool_tip_to_world: (4, 4) float, m.
-        tip: the tip's position and the tool's direction.
-        clearance: to the head, to itself and to the table.
     """
 
     q: tuple[float, ...]
@@ -75,7 +73,6 @@ class Postures:
         self._links = moving_links(robot)
 
     def of(self, moved: Moved) -> Posture:
-        """Return the posture in which a motion has ended."""
         poses = moved.link_to_world
         tip = poses[self._tip]
         (ax, _, dx, x), (ay, _, dy, y), (az, _, dz, z), _ = tip.tolist()

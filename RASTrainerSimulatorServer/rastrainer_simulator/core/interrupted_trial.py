@@ -31,10 +31,7 @@ from rastrainer_simulator.vectors import ZERO, vector
 
 @contextlib.contextmanager
 def refusing_malformed(sentence: str) -> Iterator[None]:
-    """Raise InputError if entries of a journal are not as they should be: forged, or foreign.
-
-    Its message is the `sentence`, without its full stop, and what was wrong.
-    """
+    """Raise InputError with a sentence if a journal's entries are malformed: forged, or foreign."""
     try:
         yield
     except InputError:
@@ -58,11 +55,7 @@ def seed_of(header: Mapping[str, Any]) -> int:
 
 
 class RecordedFeed:
-    """Follows the feed through a journal's entries.
-
-    Attributes:
-        feed: after the entries taken so far.
-    """
+    """Follows the feed through a journal's entries."""
 
     def __init__(self) -> None:
         self.feed = NO_FEED
@@ -75,7 +68,6 @@ class RecordedFeed:
         return Feed(meters(effect.get("feedMm", 0.0)), drilled, ahead)
 
     def take(self, entry: Mapping[str, Any]) -> None:
-        """Take the next entry."""
         if entry["kind"] == "sample" and "feedMm" in entry:
             depth = meters(entry["feedMm"])
             deepest = depth if self._stage is Phase.DRILLING else 0.0
@@ -120,21 +112,12 @@ _EFFECTS: Mapping[str, frozenset[str]] = {
 
 @dataclass(frozen=True)
 class InterruptedTrial:
-    """Where a trial is to be resumed.
+    """Where a trial is to be resumed, by what was recorded last.
 
-    Attributes:
-        entries: of the journal.
-        revision_before: of the training state before the trial.
-        steps: the commands that were carried out, each with its moment; the last one pauses.
-        point: the tick and the time of the last line, and the view as last chosen.
-        q: joint angles of the last sample, rad; None before the first.
-        proximity: as last recorded.
-        is_within_reach: as last recorded.
-        obstacle: as last recorded.
-        feed: of the instrument in the guide, as last recorded.
+    `steps` are the commands that were carried out, each with its moment; the last one pauses.
+    `q` are joint angles in rad, None before the first sample.
     """
 
-    entries: Sequence[Mapping[str, Any]]
     revision_before: int
     steps: tuple[tuple[OperatorCommand, TouchMoment], ...]
     point: StartingPoint
@@ -144,19 +127,10 @@ class InterruptedTrial:
     obstacle: str
     feed: Feed = NO_FEED
 
-    @property
-    def header(self) -> Mapping[str, Any]:
-        """The journal's first line."""
-        return self.entries[0]
-
     @classmethod
+    @refusing_malformed(MALFORMED)
     def of(cls, entries: Sequence[Mapping[str, Any]]) -> InterruptedTrial | None:
         """Read the entries of a journal; None if no trial is open."""
-        with refusing_malformed(MALFORMED):
-            return cls._of(entries)
-
-    @classmethod
-    def _of(cls, entries: Sequence[Mapping[str, Any]]) -> InterruptedTrial | None:
         if any(entry["kind"] in _OVER for entry in entries):
             return None
         header = entries[0]
@@ -170,7 +144,6 @@ class InterruptedTrial:
         latest = {entry["kind"]: entry for entry in entries}
         reach = latest.get("reach", {"isWithinReach": True, "obstacle": ""})
         return cls(
-            entries=tuple(entries),
             revision_before=header["before"]["revision"],
             steps=tuple(steps),
             point=StartingPoint(last["tick"], last["simTimeS"], camera=_camera(entries)),
@@ -199,10 +172,7 @@ def find_interrupted(folder: Path) -> tuple[JournalReading, InterruptedTrial] | 
 
 
 def recorded_command(entry: Mapping[str, Any], seed: int) -> OperatorCommand:
-    """Return a recorded command; its arguments are checked, as the file may be forged.
-
-    `seed` is that of the trial.
-    """
+    """Return a recorded command; its arguments are checked, as the file may be forged."""
     name = entry["name"]
     arguments = {key: value for key, value in entry["arguments"].items() if value is not None}
     if name == RECORDING_FAILED:

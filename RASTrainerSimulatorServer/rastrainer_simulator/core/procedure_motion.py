@@ -44,14 +44,9 @@ PlannedBone = Mapping[str, tuple[BoneAhead | None, ...]]
 
 
 class TrueHead:
-    """The surfaces of skin and skull of a scenario with procedures.
-
-    Attributes:
-        planned_bone: on the lines of each procedure, in their order.
-    """
+    """The surfaces of skin and skull of a scenario with procedures."""
 
     def __init__(self, scenario: Scenario, skin: HeadMesh) -> None:
-        """Read the skull of the scenario whose skin is given."""
         assert scenario.skull_mesh is not None, "a scenario with procedures has a skull"
         self._skin, self._skull = skin, read_head_mesh(scenario.skull_mesh)
         # Computed now, not in the tick in which the first guide is locked.
@@ -96,13 +91,7 @@ NOT_FED = Fed()
 
 
 class ProcedureMotion:
-    """The feed of drill and instrument, and the geometry that a procedure needs of the head.
-
-    Attributes:
-        feed: what is in the guide.
-        planned_bone: where the planned lines go through bone; empty without procedures.
-        drive: moves the instrument, at a stick's velocity or a commanded one.
-    """
+    """The feed of drill and instrument, and the geometry that a procedure needs of the head."""
 
     def __init__(self, setup: SimulationSetup, head: HeadMesh, reach: PlanReach) -> None:
         """`head` is the scenario's; without procedures nothing is made of it."""
@@ -147,17 +136,11 @@ class ProcedureMotion:
         return Fed(has_moved, way.is_by_stick, (event,))
 
     def way(
-        self,
-        guide: GuideAxis,
-        procedure: ProcedureState | None,
-        stand_off_mm: float,
+        self, guide: GuideAxis, procedure: ProcedureState | None, stand_off_mm: float
     ) -> FollowingPath | LocalizedText:
         """Return the robot's own path onto the planned line, or why there is none.
 
-        Args:
-            guide: where it is now.
-            procedure: in the phase `aligning`; the line is by the registration in use.
-            stand_off_mm: of the tip before the line's entry at the end.
+        The line is by the registration in use; the tip ends `stand_off_mm` before its entry.
         """
         if not self._may_align:
             return say("no self-alignment")
@@ -198,12 +181,7 @@ def _guide_path(
 ) -> FollowingPath:
     """Return the path of the guide to `stand_off` m before a line's entry: out, around, and in.
 
-    Args:
-        guide: where it is.
-        line: onto which it is brought, World.
-        stand_off: from the tip to the entry at the end, m.
-        middle: of the head by the registration in use, World, m.
-        radius: of the head in each direction, by the same registration.
+    Middle (World, m) and radius of the head are by the registration in use.
     """
 
     def outside(position: Vector) -> bool:
@@ -238,11 +216,7 @@ _BANDS = 12
 
 
 class HeadOutline:
-    """The greatest distance of the skin from the middle of the head, by sectors of 15°.
-
-    Attributes:
-        middle: of the head, RAS mm.
-    """
+    """The greatest distance of the skin from the middle of the head, by sectors of 15°."""
 
     def __init__(self, vertices: np.ndarray, middle: np.ndarray) -> None:
         """Take the head's vertices, (n, 3) float, and its middle, (3,) float, RAS mm."""

@@ -15,18 +15,7 @@ from rastrainer_simulator.training.rules import TrainingSettings
 
 @dataclass(frozen=True)
 class SimulationSettings:
-    """How the simulation behaves.
-
-    Attributes:
-        teleoperation: how the arm answers to the operator.
-        fabrik: tolerances and the most iterations of the inverse kinematics.
-        training: what counts as a touch.
-        proximity: where proximity and contact start and end.
-        start_height: of the tip above the head's target when a trial starts, m.
-        axes: whose right, forward and up the sticks follow.
-        camera: the view at the start.
-        procedure: how a procedure is carried out.
-    """
+    """How the simulation behaves; a trial starts `start_height` m above the head's target."""
 
     teleoperation: TeleoperationSettings = field(default_factory=TeleoperationSettings)
     fabrik: FabrikSettings = field(default_factory=FabrikSettings)

@@ -109,7 +109,6 @@ def _arrays(value: Mapping[str, Any], *names: str) -> dict[str, Any]:
 
 
 def shape_to_json(shape: RobotShape) -> dict[str, Any]:
-    """Return a shape as a JSON object."""
     links = [asdict(link) for link in shape.links]
     return _plain({"links": links, "tool": asdict(shape.tool), "tipName": shape.tip_name})
 
@@ -162,14 +161,8 @@ class RecordedSetup:
 class SimulationSetup:
     """Everything that a simulation starts from, besides its seed.
 
-    Attributes:
-        scenario: head, tasks and cameras.
-        robot: the arm and its tool.
-        shape: the arm and its tool as collisions see them.
-        settings: how it behaves.
-        scenario_sha256: of what a trial depends on, which identifies the scenario in a journal.
-        landmarks_sha256: of what a trial by landmarks depends on besides.
-        procedure_sha256: name of a procedure → of what a trial with it depends on besides.
+    The hashes are of what a trial depends on, which identifies it in a journal; those of landmarks
+    and of procedures, by name, are of what such a trial depends on besides.
     """
 
     scenario: Scenario
@@ -183,12 +176,7 @@ class SimulationSetup:
     def recorded(
         self, procedure: str = "", method: RegistrationMethod = RegistrationMethod.FIDUCIALS
     ) -> RecordedSetup:
-        """Return what identifies this setup in the journal of a trial.
-
-        Args:
-            procedure: name of the trial's procedure, "" without one.
-            method: by which the trial is registered.
-        """
+        """Return what identifies this setup in the journal of a trial."""
         by_landmarks = method is not RegistrationMethod.FIDUCIALS
         return RecordedSetup(
             RecordedContent(self.scenario.name, self.scenario_sha256),
@@ -221,7 +209,15 @@ def load_setup(
     """Load a scenario and a robot; by default those that come with RASTrainer."""
     folder = scenario_folder or asset_path(*DEFAULT_SCENARIO)
     scenario = load_scenario(folder)
-    robot, shape = _robot_and_shape(urdf_path, robot_meshes)
+    path = urdf_path or asset_path(*DEFAULT_URDF)
+    prepared = read_prepared(path) if robot_meshes is None else None
+    if prepared is None:
+        robot = load_robot(path, robot_meshes)
+        shape = robot_shape(robot)
+    else:
+        robot = model_from_json(prepared["model"], path.parent)
+        shape = shape_from_json(prepared["shape"])
+    skull = scenario.skull_mesh
     return SimulationSetup(
         scenario=scenario,
         robot=robot,
@@ -229,26 +225,10 @@ def load_setup(
         settings=settings or SimulationSettings(),
         scenario_sha256=scenario_sha256(scenario),
         landmarks_sha256=landmarks_sha256(scenario),
-        procedure_sha256=_procedure_sha256(scenario),
+        procedure_sha256={}
+        if skull is None
+        else {procedure.name: procedure.sha256(skull) for procedure in scenario.procedures},
     )
-
-
-def _procedure_sha256(scenario: Scenario) -> dict[str, str]:
-    skull = scenario.skull_mesh
-    if skull is None:
-        return {}
-    return {procedure.name: procedure.sha256(skull) for procedure in scenario.procedures}
-
-
-def _robot_and_shape(
-    urdf_path: Path | None, robot_meshes: Path | None
-) -> tuple[RobotModel, RobotShape]:
-    path = urdf_path or asset_path(*DEFAULT_URDF)
-    prepared = read_prepared(path) if robot_meshes is None else None
-    if prepared is None:
-        robot = load_robot(path, robot_meshes)
-        return robot, robot_shape(robot)
-    return model_from_json(prepared["model"], path.parent), shape_from_json(prepared["shape"])
 
 
 def scenario_sha256(scenario: Scenario) -> str:

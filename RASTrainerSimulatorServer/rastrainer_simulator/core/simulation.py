@@ -18,7 +18,7 @@ from rastrainer_simulator.collision.contact import Contact, Moved
 from rastrainer_simulator.collision.proximity import Pressing, next_proximity
 from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.arm import JointMotion, Joints, Postures, start_joints
-from rastrainer_simulator.core.procedure_motion import FEED_PHASES, PlannedBone, ProcedureMotion
+from rastrainer_simulator.core.procedure_motion import FEED_PHASES, ProcedureMotion
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.state import (
@@ -78,6 +78,7 @@ class Simulation:
         self._contact = Contact(self._collision, kinematics)
         self._plan_reach = PlanReach(setup.robot, kinematics, self._collision)
         self._procedure_motion = ProcedureMotion(setup, head, self._plan_reach)
+        self.planned_bone = self._procedure_motion.planned_bone
         self._postures = Postures(setup.robot)
         self._start = start_joints(setup.robot, setup.scenario, settings.start_height)
         self._joint_motion = JointMotion(setup.robot, self._start, settings.fabrik)
@@ -88,11 +89,6 @@ class Simulation:
     def truth(self) -> Truth:
         """True pose of the head. Hidden from clients until the trial is scored."""
         return self._training.truth
-
-    @property
-    def planned_bone(self) -> PlannedBone:
-        """Where the planned lines of the scenario's procedures go through bone."""
-        return self._procedure_motion.planned_bone
 
     @property
     def trial_seed(self) -> int:

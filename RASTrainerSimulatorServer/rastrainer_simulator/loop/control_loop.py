@@ -78,16 +78,10 @@ class ControlLoop:
         trial_limits: TrialLimits | None = None,
         is_seeded: bool = False,
     ) -> None:
-        """Prepare the loop; `start` starts it.
+        """Prepare the loop; its thread is to be started.
 
-        Args:
-            simulation: belongs to the loop from now on.
-            records: folder of the trials' journals; it is created with the first trial.
-            rate_hz: ticks in a simulated second.
-            speed: simulated seconds in a second; None runs as fast as the machine can.
-            interrupted: journal of a trial that the simulation has loaded, which waits for Resume.
-            trial_limits: how often a trial may be started; None for the default.
-            is_seeded: whether the seed of the simulation was chosen, not drawn.
+        `speed` is in simulated seconds a second; with None it runs as fast as the machine can.
+        `interrupted` is the journal of a trial that the simulation has loaded; it waits for Resume.
         """
         self.simulation = simulation
         """The present one; it belongs to the loop's thread."""
@@ -127,14 +121,11 @@ class ControlLoop:
         """The last published state."""
 
     def __enter__(self) -> ControlLoop:
-        self.start()
+        self.thread.start()
         return self
 
     def __exit__(self, *_exception: object) -> None:
         self.stop()
-
-    def start(self) -> None:
-        self.thread.start()
 
     def stop(self) -> None:
         """Stop ticking, and return when everything recorded is on the disk."""
@@ -144,12 +135,10 @@ class ControlLoop:
 
     @property
     def setup(self) -> SimulationSetup:
-        """What the present simulation was made from."""
         return self.simulation.setup
 
     @property
     def statistics(self) -> LoopStatistics:
-        """How punctual the loop has been."""
         return replace(self._statistics)
 
     def subscribe(self, callback: Callable[[StepResult], None]) -> Callable[[], None]:

@@ -33,9 +33,6 @@ class DurableResults:
     """Holds back changes of the trial until they have been written.
 
     Poses are published immediately, with the trial as it last was on the disk.
-
-    Attributes:
-        safe: the trial as it last was on the disk.
     """
 
     def __init__(self, training: TrainingState) -> None:
@@ -158,7 +155,6 @@ class StateFeed:
         self._is_scheduled = False
 
     def __call__(self, result: StepResult) -> None:
-        """Note a tick's state; called in the control loop's thread."""
         self._newest = result.state
         if not self._is_scheduled and self._is_due(result.state):
             self._is_scheduled = True
@@ -212,6 +208,5 @@ class PendingAnswers:
             future.set_result(answer)
 
     def refuse_all(self, sentence: str) -> None:
-        """Refuse everything that still waits for an answer."""
         for ticket in tuple(self._futures):
             self.give(Answer(ticket, False, sentence))

@@ -133,12 +133,8 @@ LATE_S = 0.001
 class LoopStatistics:
     """Counts of ticks since the loop was started.
 
-    Attributes:
-        ticks: carried out.
-        late: of these, started more than 1 ms after their time.
-        skipped: never carried out, because the loop had fallen too far behind: the simulated
-            clock has lost them.
-        worst_delay_s: the longest time by which a tick was late.
+    Late ones started more than 1 ms after their time. Skipped ones were never carried out, because
+    the loop had fallen too far behind: the simulated clock has lost them.
     """
 
     ticks: int = 0
@@ -147,7 +143,6 @@ class LoopStatistics:
     worst_delay_s: float = 0.0
 
     def count(self, delay: float) -> None:
-        """Count a tick that starts `delay` seconds after its time."""
         self.ticks += 1
         if delay > LATE_S:
             self.late += 1
@@ -188,13 +183,9 @@ def above_zero(most: float, is_whole: bool = False) -> Callable[[Any], float]:
 
 @dataclass(frozen=True)
 class TrialLimits:
-    """Limits of all trials; further ones are refused.
+    """Trials that may be started on average, by simulated time, and at once after a pause.
 
     Each makes a journal, and its start takes as long as several ticks.
-
-    Attributes:
-        starts_per_s: trials that may be started in a simulated second, on average.
-        starts_at_once: trials that may be started at once after a pause.
     """
 
     starts_per_s: Annotated[float, above_zero(2**20)] = 0.2

@@ -49,13 +49,7 @@ class ViewLimits:
 
 @dataclass(frozen=True)
 class ServerLimits:
-    """What everyone at the server's ports may cost.
-
-    Attributes:
-        clients: those over OpenIGTLink.
-        views: the window, browsers and headsets.
-        trials: started by any of these.
-    """
+    """What everyone at the server's ports may cost."""
 
     clients: LinkLimits = field(default_factory=LinkLimits)
     views: ViewLimits = field(default_factory=ViewLimits)

@@ -17,15 +17,10 @@ async def listen(
     tls: ssl.SSLContext | None = None,
     handshake_s: float | None = None,
 ) -> list[asyncio.Server]:
-    """Listen on each address of a host; `port` 0 is any free one.
+    """Listen on each address of a host, encrypted with `tls`; `port` 0 is any free one.
 
-    Args:
-        make_protocol: makes the protocol of a new connection.
-        tls: the certificate, where the connections are encrypted, and
-        handshake_s: how long a peer may then take to agree on a key.
-
-    Raises:
-        OSError, OverflowError: the address cannot be listened on.
+    A peer may take `handshake_s` to agree on a key. Raises OSError or OverflowError if the address
+    cannot be listened on.
     """
     loop = asyncio.get_running_loop()
     found = await loop.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)
@@ -45,11 +40,7 @@ async def listen(
 
 
 def listening_socket(family: int, address: tuple) -> socket.socket:
-    """Return a socket that listens, with the address to itself.
-
-    Raises:
-        OSError, OverflowError: the address cannot be listened on.
-    """
+    """Return a socket that listens, with the address to itself."""
     # The protocol is named, since asyncio sets TCP_NODELAY by it.
     listening = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
     try:

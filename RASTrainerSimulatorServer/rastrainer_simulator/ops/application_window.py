@@ -106,7 +106,13 @@ class ApplicationWindow:
         usual browser shows the page, the simulator stays; `announce` says how to come back.
         """
         browser = application_browser()
-        page = self._write_redirection()
+        # Not in a hidden folder or that of temporary files: Ubuntu's Chromium sees neither.
+        parent = home_folder() / "RASTrainer" / "window"
+        make_private_folder(parent)
+        self._folder = Path(tempfile.mkdtemp(dir=parent))
+        # A page that leads to ours: others can read a command line, but not this file.
+        page = self._folder / "open.html"
+        write_text(page, _REDIRECTION.format(url=self._url, code=self._code), is_private=True)
         if browser is None:
             if not webbrowser.open(page.as_uri()):
                 announce(NO_BROWSER.format(url=self._url, code=self._code))
@@ -142,13 +148,3 @@ class ApplicationWindow:
                 break
             shutil.rmtree(self._folder, ignore_errors=True)
             await asyncio.sleep(LOOK_S)
-
-    def _write_redirection(self) -> Path:
-        """Write the page that leads to ours; others can read a command line, but not this file."""
-        # Not in a hidden folder or that of temporary files: Ubuntu's Chromium sees neither.
-        parent = home_folder() / "RASTrainer" / "window"
-        make_private_folder(parent)
-        self._folder = Path(tempfile.mkdtemp(dir=parent))
-        page = self._folder / "open.html"
-        write_text(page, _REDIRECTION.format(url=self._url, code=self._code), is_private=True)
-        return page

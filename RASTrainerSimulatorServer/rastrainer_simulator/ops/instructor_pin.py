@@ -37,7 +37,6 @@ class GuessLimit:
     """
 
     def __init__(self, clock: Callable[[], float]) -> None:
-        """Begin without a pause; `clock` returns s."""
         self._clock = clock
         self._wrong = 0
         self._pause = FIRST_PAUSE_S
@@ -62,11 +61,7 @@ class GuessLimit:
 
 @dataclass(frozen=True)
 class PinAnswer:
-    """The outcome of a guess at a PIN.
-
-    Attributes:
-        wait_s: how long no guess is checked from now on, s; 0 if one may be made.
-    """
+    """The outcome of a guess at a PIN, and how long no other is checked, s."""
 
     is_right: bool
     wait_s: float

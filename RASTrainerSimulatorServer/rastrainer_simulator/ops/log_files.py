@@ -70,8 +70,15 @@ def keep_logs(folder: Path, name: str) -> Iterator[None]:
             _crashes.propagate = False
             for package in _OURS:
                 logging.getLogger(package).setLevel(logging.INFO)
-        with _crashes_logged():
+        try:
             yield
+        except RASTrainerError as error:
+            # The caller prints it.
+            _crashes.error("%s", error)
+            raise
+        except Exception:
+            _crashes.critical("The program has crashed.", exc_info=True)
+            raise
 
 
 def _opened(ends: contextlib.ExitStack, folder: Path, name: str) -> _LogFile | None:
@@ -107,19 +114,6 @@ def _add(ends: contextlib.ExitStack, logger: logging.Logger, handler: logging.Ha
     logger.addHandler(handler)
     ends.callback(handler.close)
     ends.callback(logger.removeHandler, handler)
-
-
-@contextlib.contextmanager
-def _crashes_logged() -> Iterator[None]:
-    """Log the error that ends the program; the caller prints it."""
-    try:
-        yield
-    except RASTrainerError as error:
-        _crashes.error("%s", error)
-        raise
-    except Exception:
-        _crashes.critical("The program has crashed.", exc_info=True)
-        raise
 
 
 class JsonLines(logging.Formatter):

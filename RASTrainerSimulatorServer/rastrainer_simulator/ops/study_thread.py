@@ -29,7 +29,6 @@ class StudyThread(Generic[Opened]):
         self._executor = ThreadPoolExecutor(1, "study")
 
     async def do(self, work: Callable[[Opened], T]) -> T:
-        """Return what a function returns for the study."""
         return await asyncio.get_running_loop().run_in_executor(self._executor, self._run, work)
 
     def _run(self, work: Callable[[Opened], T]) -> T:

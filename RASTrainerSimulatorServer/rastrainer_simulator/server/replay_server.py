@@ -61,14 +61,7 @@ async def _show_until(
 ) -> None:
     """Show what is played to views, and in its own window if wanted, until it is to stop.
 
-    Args:
-        stop: is set by what ends it: the presenter, the closed window, or a signal.
-        source: the states that are shown.
-        presenter: what is read beside them.
-        advance: plays them on by some s.
-        port: where views are served; None for the usual one.
-        has_window: whether a window is opened.
-        announce: reports where views are served.
+    `advance` plays it on by some s; `port` None is the usual one.
     """
     window: ApplicationWindow | None = None
     tasks: list[asyncio.Task[None]] = []
@@ -125,7 +118,6 @@ class ReplayLoader:
     """Loads the replays of trials; those of one set-up share it, and views load its scene once."""
 
     def __init__(self, records: Path, scenario: Path | None) -> None:
-        """Load from a folder of journals; `scenario` is a folder, None the usual one."""
         self._records = records
         self._scenario = scenario
         self._setups: dict[str, SimulationSetup] = {}

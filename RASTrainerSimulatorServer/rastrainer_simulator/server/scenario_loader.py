@@ -36,15 +36,7 @@ class ScenarioLoader:
         may_be_anywhere: bool,
         library: Path | None = None,
     ):
-        """Prepare to load.
-
-        Args:
-            control_loop: continues with what is loaded.
-            make_simulation: makes one of a scenario's folder; may take seconds.
-            may_be_anywhere: any folder of this computer may be named, not only a scenario that
-                comes with RASTrainer or is in the library.
-            library: folder of the user's own scenarios; None is the usual one.
-        """
+        """Prepare to load, from any folder of this computer if it `may_be_anywhere`."""
         self._control_loop = control_loop
         self._make_simulation = make_simulation
         self._may_be_anywhere = may_be_anywhere
@@ -99,7 +91,17 @@ class ScenarioLoader:
         if not begun.result().ok:
             return begun.result()
         try:
-            return self._use(find(), is_checked)
+            simulation = self._make_simulation(find())
+            scenario = simulation.setup.scenario
+            if is_checked and scenario.procedures:
+                # Here, since the import takes half a second that few need.
+                from rastrainer_simulator.authoring.procedure_plan import require_usable_procedures
+
+                require_usable_procedures(simulation.setup)
+            answer = self._control_loop.replace_simulation(simulation).result()
+            if not answer.ok:
+                return answer
+            return Answer(0, True, data={"name": scenario.name, "title": scenario.title})
         except InputError as error:
             return Answer(0, False, str(error))
         except Exception:
@@ -107,19 +109,6 @@ class ScenarioLoader:
             return Answer(0, False, FAILED)
         finally:
             self._control_loop.end_replacement()
-
-    def _use(self, folder: Path, is_checked: bool) -> Answer:
-        simulation = self._make_simulation(folder)
-        if is_checked and simulation.setup.scenario.procedures:
-            # Here, since the import takes half a second that few need.
-            from rastrainer_simulator.authoring.procedure_plan import require_usable_procedures
-
-            require_usable_procedures(simulation.setup)
-        answer = self._control_loop.replace_simulation(simulation).result()
-        if not answer.ok:
-            return answer
-        scenario = simulation.setup.scenario
-        return Answer(0, True, data={"name": scenario.name, "title": scenario.title})
 
     def _listed(self) -> list[ListedScenario]:
         found = self._known()

@@ -24,10 +24,7 @@ from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow.session.assigned_training import AssignedTraining
-from rastrainer_simulator.flow.session.preferences import (
-    PREFERENCES_FILE,
-    read_preferences,
-)
+from rastrainer_simulator.flow.session.preferences import PREFERENCES_FILE, read_preferences
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.loop.results import StateFeed, trial_log
 from rastrainer_simulator.loop.timing import raise_thread_priority
@@ -58,22 +55,14 @@ class ServerOptions:
     """What the simulator is started with.
 
     Attributes:
-        records: folder of the trials' journals.
         seed: of the heads' poses in the trials, which determines the truth.
         is_seeded: whether that seed was chosen, not drawn.
-        host: address to listen on.
         port: to listen on; 0 is any free one.
         connect_to: host and port of a listening Slicer, in place of listening.
-        speed: simulated seconds in a second.
         scenario: folder; None is the one that comes with RASTrainer.
-        robot_meshes: folder of the robot's official meshes; None is our own.
         view_port: of the views; 0 is any free one, None the usual one or else any free one.
-        has_views: whether views are served, and a trainee can operate.
         has_network: whether views of other computers are served, too.
-        has_gamepad: whether gamepads at this computer are read.
         has_desktop: whether a window is opened; the simulator ends when its user closes it.
-        config: folder of the user's settings; None is the usual one.
-        resumes: whether a trial that the simulator's end has interrupted is resumed.
         scores_alone: whether a trial outside of a study is scored where no Slicer is connected.
     """
 
@@ -136,12 +125,7 @@ class SimulatorServer:
         )
 
     async def run(self, on_ready: Callable[[str], None]) -> None:
-        """Serve until SIGTERM or Ctrl-C; `on_ready` is called with the address and pairing codes.
-
-        Raises:
-            InputError: the address cannot be listened on.
-            RASTrainerError: the control loop has broken down.
-        """
+        """Serve until SIGTERM or Ctrl-C; `on_ready` is called with address and pairing codes."""
         for problem in self._control_loop.archive.problems:
             _log.warning("%s", problem)
         if self._control_loop.is_first_in_line:
@@ -171,7 +155,7 @@ class SimulatorServer:
         gc.collect()
         gc.freeze()
         with stop_on_signals(stop):
-            self._control_loop.start()
+            self._control_loop.thread.start()
             _log.info("The simulator has started.", extra={"data": versions()})
             try:
                 port = await self._open(link, tasks, on_ready)
@@ -234,7 +218,6 @@ class SimulatorServer:
         )
 
     def _make_presenter(self, link: SimulatorLink, stop: asyncio.Event) -> RunningPresenter:
-        """Return the trainee's presenter."""
         from rastrainer_simulator.flow.running_presenter import RunningPresenter
         from rastrainer_simulator.flow.session.services import FlowServices
 
@@ -314,7 +297,6 @@ class SimulatorServer:
         return self._control_loop.submit(name, arguments, sender)
 
     def _health(self) -> dict[str, Any]:
-        """Return how punctual the control loop is."""
         statistics = self._control_loop.statistics
         return {
             "ticks": statistics.ticks,

@@ -24,14 +24,8 @@ LONGEST_FEED_M = 0.25
 class ProcedureSettings:
     """How a procedure is carried out.
 
-    Attributes:
-        self_alignment: whether the robot may align the guide by itself.
-        checkpoint_radius: how far a checkpoint may be from where it is touched, by the registration
-            in use, m.
-        drill_speed: fastest feed of the drill, m/s.
-        fine_drill_speed: the same while the trigger for fine speed is held, m/s.
-        insertion_speed: fastest feed of the instrument, m/s.
-        fine_insertion_speed: the same while the trigger for fine speed is held, m/s.
+    A touch may be `checkpoint_radius` (m) from its checkpoint, by the registration in use.
+    The speeds are the fastest feed, m/s; the fine ones while the trigger for fine speed is held.
     """
 
     self_alignment: bool = True
@@ -42,7 +36,6 @@ class ProcedureSettings:
     fine_insertion_speed: Setting = 0.001
 
     def fastest(self, phase: Phase, fine: bool) -> float:
-        """Return the fastest feed in a phase, m/s."""
         if phase is Phase.DRILLING:
             return self.fine_drill_speed if fine else self.drill_speed
         return self.fine_insertion_speed if fine else self.insertion_speed
@@ -65,12 +58,8 @@ class FeedLayer(str, Enum):
 class HeadAhead:
     """What lies ahead along the guide's axis: distances from its tip, m, None if it is missed.
 
-    Only the simulator knows them; the trainee feels them.
-
-    Attributes:
-        skin: where the axis enters the head.
-        outer: where it enters the skull.
-        inner: where it leaves the skull again.
+    `outer` is where the axis enters the skull, `inner` where it leaves it. Only the simulator knows
+    them; the trainee feels them.
     """
 
     skin: float | None = None
@@ -85,13 +74,7 @@ class HeadAhead:
 
 @dataclass(frozen=True)
 class Feed:
-    """How far the instrument in the guide is beyond its tip, m.
-
-    Attributes:
-        depth: of what is in the guide.
-        drilled: the deepest that the drill was.
-        ahead: what lies ahead.
-    """
+    """How far the instrument is beyond the guide's tip, m; `drilled` is the drill's deepest."""
 
     depth: float = 0.0
     drilled: float = 0.0
@@ -99,7 +82,6 @@ class Feed:
 
     @property
     def has_cut_bone(self) -> bool:
-        """Whether the drill has reached the skull."""
         return self.ahead.outer is not None and self.drilled > self.ahead.outer
 
     @property
@@ -171,11 +153,9 @@ class FeedDrive:
         self._velocity, self._remaining = velocity_mm_s / MM_PER_M, duration_s
 
     def stop(self) -> None:
-        """End a commanded feed."""
         self._remaining = 0.0
 
     def way(self, dt: float, phase: Phase, operator_input: OperatorInput) -> FeedMotion:
-        """Return how far to feed in `dt` s."""
         up = self._response(operator_input.translation)[2]
         fastest = self._settings.fastest(phase, operator_input.fine)
         if up != 0.0:

@@ -65,17 +65,11 @@ class Truth:
         return self.head_to_world[:3, :3].T @ (point - self.head_to_world[:3, 3])
 
     def measured(self, tip: np.ndarray, mesh: HeadMesh) -> np.ndarray:
-        """Return where a tip on the skin of the images is measured, (3,) float, World, mm.
-
-        `tip` is (3,) float, World, mm, and `mesh` the head of the images, RAS mm.
-        """
+        """Return where a tip on the skin of the images (`mesh`, RAS) is measured; World, mm."""
         return self.in_world(self.skin.measured(self.in_head(tip)[None], mesh)[0])
 
     def target_error_mm(self, world_to_head: np.ndarray) -> float:
-        """Return |WorldToHead · HeadToWorld(target) − target|, the true TRE of a registration.
-
-        `world_to_head` is the registration found, (4, 4) float, mm.
-        """
+        """Return the true TRE, mm: |WorldToHead · HeadToWorld(target) − target|."""
         return float(
             np.linalg.norm(true_errors(world_to_head, self.head_to_world, self.target_ras))
         )
@@ -105,12 +99,7 @@ class Truth:
 
 @dataclass(frozen=True, eq=False)
 class PlacedHead:
-    """A head in World, as the tip meets it.
-
-    Attributes:
-        truth: where it truly lies, mm.
-        fiducials: label → position in World, m, of a trial's task; empty between trials.
-    """
+    """A head in World, as the tip meets it; `fiducials` (World, m) are those of a trial's task."""
 
     truth: Truth
     fiducials: Mapping[str, Vector] = field(default_factory=dict)

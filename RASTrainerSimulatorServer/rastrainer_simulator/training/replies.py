@@ -34,7 +34,6 @@ class TrialStep:
     """The result of a command that is carried out.
 
     Attributes:
-        state: of the trial.
         key: of the instruction that goes with it.
         values: that are filled in.
         data: goes into the answer and the event, ready for JSON.
@@ -63,7 +62,6 @@ class RefusedStep:
 
 
 def summary(state: TrainingState) -> dict[str, Any]:
-    """Return the state of a trial."""
     data: dict[str, Any] = {
         "trialId": state.trial_id,
         "phase": state.phase.value,

@@ -85,10 +85,7 @@ _OF_A_TRACE = {"all touched": "all traced", "not paused": "not paused trace"}
 
 
 def _trace_key(command: str, state: TrainingState, key: str | None) -> str | None:
-    """Return the key of a refusal where the trial has a trace, or the command needs one.
-
-    `key` is that of the phase.
-    """
+    """Return a refusal's key where the trial has a trace, or the command needs one; else `key`."""
     trace, is_running = state.trace, state.phase is Phase.RUNNING
     if command in (CommandName.TRACE, TRACED) and key is None:
         return _why_not_traced(state)
@@ -136,12 +133,9 @@ class TouchMoment:
     """When and where a command is carried out.
 
     Attributes:
-        sim_time: simulated time, s.
-        tip: position of the tool's tip, World, m.
         tip_clearance: signed distance of the tip to the skin, m; below 0 within the head.
         depth: how far the tip is pressed in, m; see `SimulationState.depth`.
-        direction: of the tool, a unit vector from A7 to the tip, World; ZERO where it plays no
-            part.
+        direction: of the tool, a unit vector from A7 to the tip, World; ZERO where it has no part.
         feed: how far what is in the guide is beyond its tip; of LockGuide, what lies ahead of it.
     """
 
@@ -160,15 +154,7 @@ def refused_touch(
     settings: TrainingSettings,
     method: RegistrationMethod,
 ) -> str | None:
-    """Return why a touch does not count, None if it does.
-
-    Args:
-        now: where the tip is.
-        next_point: label of the fiducial or landmark that is next.
-        fiducials: label → position, World, m, of all of them.
-        settings: what counts as a touch.
-        method: of the trial.
-    """
+    """Return why a touch does not count, None if it does; `fiducials` are in World, m."""
     away, radius = distance(now.tip, fiducials[next_point]), settings.radius(method)
     if away > radius:
         label = min(fiducials, key=lambda key: distance(now.tip, fiducials[key]))
@@ -211,16 +197,7 @@ def touch_stage(
     goal: Vector | None,
     settings: TrainingSettings,
 ) -> TouchStage:
-    """Return the state of the next touch.
-
-    Args:
-        now: where the tip is.
-        proximity: of the tool to the head.
-        obstacle: what stops the arm behind the tool, "" for nothing.
-        training: the state of the trial.
-        goal: position of the next fiducial, World, m; None without one.
-        settings: what counts as a touch.
-    """
+    """Return the state of the next touch; `goal` is its place, World, m, None without one."""
     if proximity is not Proximity.CONTACT:
         if obstacle:
             return TouchStage.ARM

@@ -19,10 +19,7 @@ from rastrainer_simulator.vectors import Vector, distance
 
 
 def takes_point(trace: TraceState | None, now: TouchMoment, settings: TrainingSettings) -> bool:
-    """Return whether the tip leaves a point of a trace where it is.
-
-    It has to be on the skin, whatever the rule for touches, and not pressed in.
-    """
+    """Return whether the tip leaves a point: on the skin, whatever the rule, and not pressed in."""
     if trace is None or not trace.is_on or now.tip_clearance > settings.skin_tolerance:
         return False
     if MM_PER_M * now.depth > PRESSED_MM:
@@ -34,10 +31,7 @@ def takes_point(trace: TraceState | None, now: TouchMoment, settings: TrainingSe
 def with_point(
     state: TrainingState, now: TouchMoment, measured: Vector, elapsed: float
 ) -> TrainingState:
-    """Return the state of a trial with a point where the tip is; `elapsed` is its time, s.
-
-    `measured` is where it is measured, World, m.
-    """
+    """Return a trial's state with a point at the tip; `elapsed` is the trial's time, s."""
     assert state.trace is not None
     tip = None if measured == now.tip else now.tip
     point = TracedPoint(measured, now.sim_time, elapsed, tip)
@@ -47,10 +41,7 @@ def with_point(
 def point_event(state: TrainingState, now: TouchMoment) -> Event:
     """Return the event of the point that was just traced."""
     assert state.trace is not None
-    data = {
-        **tip_data(now, state.trace.points[-1].position),
-        "kept": len(state.trace.points),
-    }
+    data = {**tip_data(now, state.trace.points[-1].position), "kept": len(state.trace.points)}
     return Event(EventKind.TRACE, now.sim_time, data)
 
 
@@ -74,23 +65,18 @@ def stroke(state: TrainingState, **others: bool) -> TrialStep:
 
 
 def begun(state: TrainingState) -> TrainingState:
-    """Return the state of a trial in which a stroke begins."""
     assert state.trace is not None
     return replace(state, phase=Phase.RUNNING, trace=state.trace.begun())
 
 
 def ended(state: TrainingState) -> TrainingState:
-    """Return the state of a trial in which no stroke is being drawn; what was drawn is kept.
-
-    With enough points the trial may be registered.
-    """
+    """Return the state of a trial in which no stroke is being drawn; what was drawn is kept."""
     if state.trace is None:
         return state
     return _with_rest(state, state.trace.ended())
 
 
 def undone(state: TrainingState) -> TrainingState:
-    """Return the state of a trial without its last stroke."""
     assert state.trace is not None
     return _with_rest(state, state.trace.undone())
 
@@ -114,5 +100,4 @@ def instruction(state: TrainingState) -> str:
 
 
 def counts(trace: TraceState) -> dict[str, int]:
-    """Return the values of the sentences about a trace."""
     return {"traced": len(trace.points), "least": MIN_TRACE_POINTS}

@@ -121,7 +121,6 @@ class Training:
 
     @property
     def truth(self) -> Truth:
-        """Where the head really is."""
         return self._head.truth
 
     @property
@@ -130,7 +129,6 @@ class Training:
         return self._head.fiducials.get(self.state.next_point or "")
 
     def handles(self, command: str) -> bool:
-        """Return whether a command concerns the trial."""
         return command in self._handlers
 
     def handle(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
@@ -166,7 +164,6 @@ class Training:
 
     @property
     def _count(self) -> int:
-        """How many points the trial has to touch."""
         return len(self._task.labels) if self._task else 0
 
     def elapsed(self, sim_time: float) -> float:
@@ -185,7 +182,6 @@ class Training:
         return TrainingReply(True, data=summary(self.state), events=(event,))
 
     def _in_procedure(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
-        """Carry out a command of the procedure in its phase."""
         assert self._phases is not None, "the phase has a procedure"
         elapsed = self._clock.elapsed(now.sim_time)
         step = self._phases.step(command, self.state, now, elapsed)

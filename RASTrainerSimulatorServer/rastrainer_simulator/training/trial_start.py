@@ -8,31 +8,25 @@ from __future__ import annotations
 import hashlib
 import uuid
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.head.trial_head import SkinShift
 from rastrainer.json_records import record_from_json
-from rastrainer.protocol import TRACED_METHODS, Phase
+from rastrainer.protocol import PROCEDURE_PHASES, TRACED_METHODS, Phase
 from rastrainer.scenario.scenario import method_of, task_by_method
 from rastrainer_simulator.state import TrainingState
-from rastrainer_simulator.training.feed import ProcedureSettings
+from rastrainer_simulator.training import tracing
+from rastrainer_simulator.training.feed import Feed, ProcedureSettings
 from rastrainer_simulator.training.head_pose import PlacedHead
 from rastrainer_simulator.training.procedure_phases import ProcedurePhases
+from rastrainer_simulator.training.replies import TrialStep
 from rastrainer_simulator.training.rules import TrainingSettings
 from rastrainer_simulator.trial_state import ProcedureState, TraceState
 
 if TYPE_CHECKING:
     from rastrainer.scenario.points import Task
     from rastrainer.scenario.scenario import Scenario
-
-
-from dataclasses import replace
-
-from rastrainer.protocol import PROCEDURE_PHASES
-from rastrainer_simulator.training import tracing
-from rastrainer_simulator.training.feed import Feed
-from rastrainer_simulator.training.replies import TrialStep
 
 DRAWN_SEED = "drawnSeed"
 """Argument of StartTask where a recorded trial begins again: its seed, which no client chose."""
@@ -54,15 +48,7 @@ def _digest(what: str, seed: int, number: int) -> bytes:
 
 @dataclass(frozen=True)
 class StartedTrial:
-    """A trial as StartTask makes it.
-
-    Attributes:
-        seed: of the head's pose: as secret as the pose.
-        task: the points to touch.
-        head: as the tip meets it.
-        phases: of the procedure that follows the touches; None without one.
-        state: before its first instruction.
-    """
+    """A trial as StartTask makes it; its seed is as secret as the head's pose."""
 
     seed: int
     task: Task
@@ -128,12 +114,10 @@ class TrialClock:
         self._paused_since: float | None = None
 
     def pause(self, now: float) -> None:
-        """Stop counting."""
         if self._paused_since is None:
             self._paused_since = now
 
     def resume(self, now: float) -> None:
-        """Count again."""
         if self._paused_since is not None:
             self._paused += now - self._paused_since
             self._paused_since = None
@@ -196,16 +180,12 @@ class KeptStates:
         self._feeds = {}
 
     def keep(self, state: TrainingState) -> None:
-        """Store a state that the trial adopts."""
         self._states[state.revision] = state
 
     def leave(self, revision: int, feed: Feed) -> None:
         self._feeds[revision] = feed
 
     def find(self, revision: int) -> tuple[TrainingState, Feed | None] | None:
-        """Return the state of a revision and the feed at which it was left, None if it is present.
-
-        None instead of both if there is no such state.
-        """
+        """Return a revision's state, and the feed at which it was left, None of the present one."""
         state = self._states.get(revision)
         return None if state is None else (state, self._feeds.get(revision))

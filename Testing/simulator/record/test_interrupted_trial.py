@@ -40,7 +40,7 @@ class Server:
         self.taken_up = self.loop.latest
 
     def __enter__(self):
-        self.loop.start()
+        self.loop.thread.start()
         return self
 
     def __exit__(self, *_exception):

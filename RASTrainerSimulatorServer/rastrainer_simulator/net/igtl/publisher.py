@@ -104,10 +104,7 @@ def _procedure(state: SimulationState, procedure: ProcedureState) -> dict[str, A
 
 
 def sim_state(changing: Mapping[str, Any], state: SimulationState, seq: int) -> Message:
-    """Return the state of trial and robot as text: ASCII JSON.
-
-    `changing` is what `what_changes` gives; the times go along and are no reason to send it.
-    """
+    """Return `what_changes` with number and times as text: ASCII JSON."""
     times = {"simTimeS": round(state.sim_time, 6), "elapsedS": round(state.completion_time, 3)}
     text = json.dumps({"seq": seq, **times, **changing}, allow_nan=False)
     return Message(DeviceName.SIM_STATE, String(text))
@@ -124,12 +121,7 @@ def _rounded(value: float, digits: int) -> float | None:
 
 
 class PoseSubscription:
-    """One client's subscription; a new one has received no pose.
-
-    Attributes:
-        tool_tip: when the tip's pose is due.
-        links: when those of the links are.
-    """
+    """One client's subscription; a new one has received no pose."""
 
     def __init__(
         self,
@@ -144,10 +136,7 @@ class PoseSubscription:
         self._sent: dict[str, bytes] = {}
 
     def is_news(self, device: str, content: bytes) -> bool:
-        """Return whether a pose is to be sent, which then counts as sent.
-
-        Poses are compared as they are sent, with 32 bits.
-        """
+        """Return whether a pose, as sent with 32 bits, is to be sent; it then counts as sent."""
         if self._sent.get(device) == content and not self._is_steady:
             return False
         self._sent[device] = content
@@ -158,18 +147,14 @@ class Publisher:
     """Sends the simulation's state to its subscribers, at rates of simulated time.
 
     While nothing changes nothing is sent: for Slicer each pose, even the same again, is a reason to
-    render all its views.
-
-    `is_due` may be called in the control loop's thread; everything else belongs to the event
-    loop's.
-
-    Attributes:
-        is_guided: says whether a trainee who traces the skin is shown where to draw next.
+    render all its views. `is_due` may be called in the control loop's thread; everything else
+    belongs to the event loop's.
     """
 
     def __init__(self, latest: Callable[[], SimulationState]):
         """`latest` returns the newest state, for clients that subscribe between publications."""
         self.is_guided: Callable[[], bool] = lambda: False
+        """Says whether a trainee who traces the skin is shown where to draw next."""
         self._latest = latest
         self._poses: dict[ClientConnection, PoseSubscription] = {}
         self._state = Pacer(Rate.STATE_HZ)
@@ -189,7 +174,6 @@ class Publisher:
         self._next = -math.inf
 
     def unsubscribe(self, connection: ClientConnection) -> None:
-        """Stop sending to a client."""
         self._poses.pop(connection, None)
 
     def is_due(self, state: SimulationState) -> bool:

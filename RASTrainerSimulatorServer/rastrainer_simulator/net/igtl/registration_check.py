@@ -41,14 +41,7 @@ class RegistrationCheck:
         latest: Callable[[], SimulationState],
         find_scenario: Callable[[str], Scenario],
     ) -> None:
-        """Prepare.
-
-        Args:
-            submit: has the simulation carry out a command.
-            latest: gives its newest state.
-            find_scenario: gives the scenario of a name, the present one for ""; may raise
-                `InputError`; called in the thread.
-        """
+        """Prepare; `find_scenario` is called in the thread, and gives the present one for ""."""
         self._submit_command = submit
         self._latest = latest
         self._find_scenario = find_scenario
@@ -64,18 +57,14 @@ class RegistrationCheck:
         if not found.ok:
             return found
         if found.data["phase"] not in {each.value for each in Phase if each not in REFUSALS[name]}:
-            return Answer(0, False, self._refusal(name, arguments))
+            # The state may have changed meanwhile.
+            sentence = refusal(OperatorCommand(name, arguments), self._latest().training)
+            return Answer(0, False, sentence or f"{name} is not due in this trial.")
         try:
             fit = self._fit(found.data, arguments)
         except InputError as error:
             return Answer(0, False, str(error))
         return self._submit_command(name, fit, sender).result()
-
-    def _refusal(self, name: str, arguments: Mapping[str, Any]) -> str:
-        """Return why a registration is not due; the state may have changed meanwhile."""
-        command = OperatorCommand(name, arguments)
-        sentence = refusal(command, self._latest().training)
-        return sentence or f"{name} is not due in this trial."
 
     def _fit(self, data: Mapping[str, Any], arguments: Mapping[str, Any]) -> dict[str, Any]:
         """Return the arguments that the trial's own points give."""

@@ -44,20 +44,11 @@ _MAX_KINDS = 20
 
 
 class ClientConnection(asyncio.BufferedProtocol):
-    """One peer.
+    """One peer; `scores` is whether it has said that it registers and scores trials.
 
     Messages go out with the header version that the peer speaks. A peer of version 1 could not
     even pass over one of version 2: so nothing is sent before the peer's first header, whatever
     follows it, or some tenths of a second in which a mere listener has sent none.
-
-    Attributes:
-        name: what the peer called itself, at first its address.
-        scores: whether it has said that it registers and scores trials.
-        offered: UUIDs of the trials that it was offered.
-        host: the peer's, for the log.
-        header_version: what the peer speaks.
-        is_silent: it has not sent a single message.
-        closed: set when the connection has ended.
     """
 
     def __init__(self, owner: IgtlServer):
@@ -111,7 +102,6 @@ class ClientConnection(asyncio.BufferedProtocol):
             self._open_transport.close()
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Set the socket up and report."""
         assert isinstance(transport, asyncio.Transport)
         self._transport = transport
         transport.set_write_buffer_limits(high=BUFFER_BYTES)
@@ -146,9 +136,9 @@ class ClientConnection(asyncio.BufferedProtocol):
         for message in messages:
             self.is_silent = False
             self._owner.handler.received(self, message)
-        if self._reader.errors:
-            self._owner.bad_bytes(self, self._reader.errors)
-            self._reader.errors.clear()
+        for kind, times in self._reader.errors.items():
+            self._owner.log.note(f"{self.host}: {kind.value}", times)
+        self._reader.errors.clear()
         if self._reader.refusal:
             self.drop(self._reader.refusal)
         number = None if self._reader.is_between_messages else self._reader.taken
@@ -171,14 +161,12 @@ class ClientConnection(asyncio.BufferedProtocol):
         )
 
     def resume_writing(self) -> None:
-        """Send what waits."""
         self._is_paused = False
         if self._drop_slow is not None:
             self._drop_slow.cancel()
         self._flush_soon()
 
     def connection_lost(self, error: Exception | None) -> None:
-        """Report, once."""
         for timer in (self._open_soon, self._read_on, self._drop_slow, self._drop_stalled):
             if timer is not None:
                 timer.cancel()
@@ -244,18 +232,12 @@ class LinkHandler(Protocol):
 
 
 class IgtlServer:
-    """Owns the connections of all clients; what one of them does disturbs no other.
-
-    Attributes:
-        handler: is told of clients that may be sent to, their messages, and that they have left.
-        limits: what one client may cost.
-        connections: in the order in which they came, whether they may be sent to yet or not.
-    """
+    """Owns the connections of all clients; what one of them does disturbs no other."""
 
     def __init__(self, handler: LinkHandler, limits: LinkLimits | None = None):
         self.limits = limits or LinkLimits()
         self.handler = handler
-        self._log = LinkLog()
+        self.log = LinkLog()
         self.connections: dict[ClientConnection, None] = {}
         self._opened: set[ClientConnection] = set()
         self._listening: list[asyncio.Server] = []
@@ -289,7 +271,7 @@ class IgtlServer:
                 await connection.closed.wait()
             except (OSError, asyncio.TimeoutError):
                 if not is_absence_logged:
-                    self._log.note(f"Nothing listens at {host}:{port} yet.")
+                    self.log.note(f"Nothing listens at {host}:{port} yet.")
                     is_absence_logged = True
             await asyncio.sleep(RECONNECT_S)
 
@@ -306,7 +288,7 @@ class IgtlServer:
         for connection in connections:
             connection.drop()
         await asyncio.gather(*closed)
-        self._log.close()
+        self.log.close()
 
     def connected(self, connection: ClientConnection) -> None:
         """Accept a connection; if there are too many, the oldest silent one is dropped for it."""
@@ -320,19 +302,12 @@ class IgtlServer:
         self.connections[connection] = None
 
     def opened(self, connection: ClientConnection) -> None:
-        """Hand on a connection that may be sent to."""
         self._opened.add(connection)
         self.handler.connected(connection)
 
-    def bad_bytes(self, connection: ClientConnection, errors: Counter) -> None:
-        """Log what was no valid message."""
-        for kind, times in errors.items():
-            self._log.note(f"{connection.host}: {kind.value}", times)
-
     def disconnected(self, connection: ClientConnection, reason: str) -> None:
-        """Forget a connection."""
         if reason:
-            self._log.note(f"{connection.host} was disconnected: {reason}")
+            self.log.note(f"{connection.host} was disconnected: {reason}")
         self.connections.pop(connection, None)
         if connection in self._opened:
             self._opened.discard(connection)
@@ -354,7 +329,6 @@ class LinkLog:
             self._write_in_turn()
 
     def close(self) -> None:
-        """Write the remaining lines."""
         if self._timer is not None:
             self._timer.cancel()
         self._write()

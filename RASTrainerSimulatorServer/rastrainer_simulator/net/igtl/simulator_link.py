@@ -51,11 +51,7 @@ from rastrainer_simulator.texts.texts import LocalizedText
 
 Submit = Callable[[ClientConnection, str, Mapping[str, Any]], "Future[Answer]"]
 _OWN_DEVICES = frozenset(
-    {
-        DeviceName.TOOL_TIP_TO_WORLD,
-        DeviceName.INSTRUMENT_TIP_TO_WORLD,
-        *DeviceName.LINK_TO_WORLD,
-    }
+    {DeviceName.TOOL_TIP_TO_WORLD, DeviceName.INSTRUMENT_TIP_TO_WORLD, *DeviceName.LINK_TO_WORLD}
 )
 COMMANDS_AT_ONCE = 16
 """Commands of one client that are submitted to the control loop at a time."""
@@ -163,11 +159,6 @@ class SimulatorLink:
     A TRANSFORM with a foreign device name is echoed to its sender, unchanged: the test of the link
     and the measure of its delay. Anything else that is valid is accepted and ignored, such as the
     STATUS with which Slicer starts every connection.
-
-    Attributes:
-        server: listens or connects, and owns the clients.
-        publisher: sends them the state.
-        offers: the trials that wait to be acknowledged.
     """
 
     def __init__(
@@ -185,14 +176,9 @@ class SimulatorLink:
         """Make a link, in the event loop's thread.
 
         Args:
-            latest: gives the newest state.
-            submit: takes a command's name, checked arguments and sender, and returns the
-                answer's future immediately.
-            unacknowledged: gives the records of the trials that no client has acknowledged.
-            arrivals: counts these since the start.
+            arrivals: counts the records that `unacknowledged` gives, since the start.
             find_scenario: gives the scenario of a name, the present one for ""; in any thread.
             health: gives what the heartbeat reports about the simulator, ready for JSON.
-            limits: what clients may cost.
             answers: gives a study's answers that Slicer has not taken yet.
             slicer_left: is called when the last client that registers and scores has left.
         """
@@ -213,7 +199,6 @@ class SimulatorLink:
         self.publisher.subscribe(connection, PoseSubscription())
 
     def received(self, connection: ClientConnection, message: Message) -> None:
-        """Handle a message."""
         content = message.content
         if type(content) is Command:
             self._commands.handle(connection, content)
@@ -223,7 +208,6 @@ class SimulatorLink:
                 connection.send_latest(Outgoing(message))
 
     def disconnected(self, connection: ClientConnection) -> None:
-        """Forget a client."""
         self.publisher.unsubscribe(connection)
         self._commands.forget(connection)
         if connection.scores and not self.is_slicer_connected:

@@ -64,7 +64,6 @@ class Sessions:
             ) from None
 
     def open(self, role: ViewRole = ViewRole.VIEW) -> str:
-        """Return a new key."""
         key = secrets.token_urlsafe(KEY_BYTES)
         self._hashes[role].append(_hash(key))
         if role is ViewRole.BOARD and self._boards is not None:
@@ -139,11 +138,7 @@ HEADERS = {
 
 
 def refuse_for(wait_s: float, why: str) -> None:
-    """Refuse with a sentence where there are seconds to wait.
-
-    Raises:
-        web.HTTPTooManyRequests: there are; its `Retry-After` has them.
-    """
+    """Raise `web.HTTPTooManyRequests` with a sentence where there are seconds to wait."""
     if wait_s > 0:
         headers = {hdrs.RETRY_AFTER: str(math.ceil(wait_s))}
         raise web.HTTPTooManyRequests(text=why, headers=headers)
@@ -177,12 +172,9 @@ async def read_body(request: web.Request, kind: type[T]) -> T:
 
 
 def check_origin(request: web.Request) -> None:
-    """Let a request pass if it is for us and, from a browser, from our own page.
+    """Raise `web.HTTPForbidden` unless a request is for us and, of a browser, from our own page.
 
     A name that another name server points here (DNS rebinding) is not ours.
-
-    Raises:
-        web.HTTPForbidden: it may not pass.
     """
     name, colon, port = request.host.rpartition(":")
     bare = (name if colon and port.isdecimal() else request.host).strip("[]")
@@ -217,7 +209,6 @@ async def open_socket(
 
 
 async def add_security_headers(_request: web.Request, response: web.StreamResponse) -> None:
-    """Add them to any answer before it is sent."""
     for name, value in HEADERS.items():
         response.headers.setdefault(name, value)
     response.headers.setdefault("Cache-Control", "no-cache")

@@ -15,12 +15,7 @@ from rastrainer.errors import InputError
 from rastrainer.number_text import with_units
 from rastrainer.protocol import OPEN_PHASES
 from rastrainer_simulator.loop.timing import Pacer
-from rastrainer_simulator.net.views.access_control import (
-    ROLE,
-    fresh_json,
-    read_body,
-    refuse_for,
-)
+from rastrainer_simulator.net.views.access_control import ROLE, fresh_json, read_body, refuse_for
 from rastrainer_simulator.net.views.view_socket import ViewSocket
 from rastrainer_simulator.ops.instructor_pin import InstructorPin
 from rastrainer_simulator.presentation.messages import (

@@ -24,12 +24,7 @@ NAMES_NAME = "views.names"
 
 @dataclass(frozen=True)
 class Certificate:
-    """This machine's certificate.
-
-    Attributes:
-        tls: Serves with it.
-        fingerprint: SHA-256, as browsers show it.
-    """
+    """This machine's certificate, and its SHA-256 fingerprint as browsers show it."""
 
     tls: ssl.SSLContext
     fingerprint: str
@@ -41,7 +36,8 @@ def own_certificate(folder: Path) -> Certificate:
     The file holds the private key: only its owner can read it, and it never leaves the machine.
     """
     file, names_file = folder / FILE_NAME, folder / NAMES_NAME
-    names = own_names()
+    host = socket.gethostname().lower().removesuffix(".local")
+    names = ("localhost", host, f"{host}.local", "127.0.0.1", "::1", *own_addresses())
     try:
         make_private_folder(folder)
         # None yet, or an incomplete one, as after a full disk, is replaced.
@@ -52,19 +48,17 @@ def own_certificate(folder: Path) -> Certificate:
             is_young = timedelta(0) <= age < timedelta(days=VALID_DAYS - RENEWED_BEFORE_DAYS)
             if is_young and set(names) <= set(made_for):
                 return _read(file)
-        _make(file, names_file, names)
+        authority = trustme.CA(organization_name="RASTrainer on this machine")
+        until = datetime.now(timezone.utc) + timedelta(days=VALID_DAYS)
+        issued = authority.issue_cert(*names, not_after=until)
+        write_bytes(file, issued.private_key_and_cert_chain_pem.bytes(), is_private=True)
+        write_text(names_file, "\n".join(names))
         return _read(file)
     except OSError as error:
         raise InputError(
             f"The certificate for the local network cannot be kept in {folder}: {error.strerror}. "
             "Allow writing to it, or choose another folder of settings."
         ) from None
-
-
-def own_names() -> tuple[str, ...]:
-    """Return the names and addresses by which others find this machine."""
-    host = socket.gethostname().lower().removesuffix(".local")
-    return ("localhost", host, f"{host}.local", "127.0.0.1", "::1", *own_addresses())
 
 
 def own_addresses() -> tuple[str, ...]:
@@ -92,11 +86,3 @@ def _read(file: Path) -> Certificate:
             pem = begin + "".join(rest.partition(ssl.PEM_FOOTER)[:2])
             digest = hashlib.sha256(ssl.PEM_cert_to_DER_cert(pem)).digest()
             return Certificate(tls, digest.hex(":").upper())
-
-
-def _make(file: Path, names_file: Path, names: tuple[str, ...]) -> None:
-    authority = trustme.CA(organization_name="RASTrainer on this machine")
-    until = datetime.now(timezone.utc) + timedelta(days=VALID_DAYS)
-    issued = authority.issue_cert(*names, not_after=until)
-    write_bytes(file, issued.private_key_and_cert_chain_pem.bytes(), is_private=True)
-    write_text(names_file, "\n".join(names))

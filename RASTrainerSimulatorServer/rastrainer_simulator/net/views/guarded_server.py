@@ -63,14 +63,7 @@ class GuardedServer:
         routes: Sequence[web.RouteDef],
         page: Path | None,
     ) -> None:
-        """Make a server; nothing listens yet.
-
-        Args:
-            sessions: whose keys let somebody through.
-            code: that a new session is given for, at `POST /pair`.
-            routes: what else is answered.
-            page: folder of the built page, whose files are public; None where there is none.
-        """
+        """Make a server; `page` is the folder of the built page, whose files are public."""
         self._sessions = sessions
         self._code = code
         self._roles: dict[asyncio.BaseProtocol, ViewRole] = {}
@@ -97,12 +90,10 @@ class GuardedServer:
         return servers[0].sockets[0].getsockname()[1]
 
     def stop_listening(self) -> None:
-        """Take no further connection."""
         for server in self._listening:
             server.close()
 
     async def close(self) -> None:
-        """End what is still connected."""
         await self._runner.cleanup()
 
     def _protocol(self) -> asyncio.BaseProtocol:
@@ -154,14 +145,11 @@ class GuardedServer:
 
 
 class _Refused(asyncio.Protocol):
-    """Ends a connection at once."""
-
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         transport.close()
 
 
 def page_answer(page: Path | None, name: str) -> web.StreamResponse:
-    """Return a file of the built page, or a note that it has not been built."""
     if page is None:
         return web.Response(text=NOT_BUILT, content_type="text/html")
     return web.FileResponse(page / name)

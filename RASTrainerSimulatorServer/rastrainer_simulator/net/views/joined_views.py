@@ -107,7 +107,6 @@ class JoinedViews:
             self._put_pairing(view)
 
     async def close(self) -> None:
-        """Send everyone away and stop."""
         self._unsubscribe()
         tasks = [task for task in (self._loading, self._watching) if task is not None]
         for task in tasks:

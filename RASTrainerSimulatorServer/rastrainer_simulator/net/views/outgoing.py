@@ -72,12 +72,8 @@ def state_news(
 ) -> StateNews:
     """Return what moves.
 
-    Args:
-        now: a state.
-        delayed: how many of the control loop's ticks were late or skipped.
-        pictures: from where it is seen.
-        translucent: bodies that cover tip or point in each picture.
-        ghost: poses of `GHOST_BODIES`, (4, 4) float, to World, m; None without a ghost.
+    `delayed` ticks of the control loop were late or skipped; `ghost` are poses of `GHOST_BODIES`,
+    (4, 4) float, to World, m.
     """
     training, planned = now.training, now.planned_target
     # Where the registration in use puts the MRI; else World's origin.
@@ -118,7 +114,6 @@ def state_news(
 
 
 def screen_text(screen: Screen) -> str:
-    """Return the message of what the trainee reads."""
     return with_units(message_text(ScreenNews(screen)))
 
 
@@ -189,13 +184,7 @@ class TraceUpdate:
     def news(
         self, now: SimulationState, guidance: TraceGuidance, time_s: float
     ) -> TraceNews | None:
-        """Return what is new; None where nothing is, or it is too early to send it.
-
-        Args:
-            now: a state.
-            guidance: in that state.
-            time_s: by which the messages are paced.
-        """
+        """Return what is new; None where nothing is, or it is too early to send it."""
         traced, phase = now.training.trace, now.training.phase
         is_shown = traced is not None and phase in OPEN_PHASES and phase not in PROCEDURE_PHASES
         points = traced.points if traced is not None and is_shown else ()

@@ -65,7 +65,6 @@ class ViewServer:
     Attributes:
         code: pairs a view; to be shown to people, and sent to this computer's own views.
         addresses: where browsers find the page, such as "http://127.0.0.1:18945".
-        sessions: keys of the views that may look.
         port: where it listens; 0 before it does.
     """
 
@@ -82,15 +81,8 @@ class ViewServer:
     ) -> None:
         """Make a server, in the event loop's thread; nothing listens yet.
 
-        Args:
-            source: whose states are sent.
-            presenter: what the views' input goes to, and where their screens come from.
-            announce: is given what people must know, such as pairing codes.
-            robot_meshes: those that the setups are loaded with.
-            limits: what views may cost.
-            scenario_picture: returns the picture of a scenario by its name.
-            config: folder of the settings, with the keys of boards; None keeps none.
-            pin: that boards need to give orders; None takes none.
+        `announce` is given what people must know, such as pairing codes. Without `config`, the
+        folder of settings, no keys of boards are kept; without `pin` boards give no orders.
         """
         self._scenario_picture = scenario_picture
         self._source = source
@@ -157,7 +149,6 @@ class ViewServer:
         )
 
     async def listen(self, host: str, port: int) -> int:
-        """Listen, and return on which port; 0 is any free one."""
         self.port = await self._http.listen(host, port)
         self.add_addresses(f"http://{host}:{self.port}")
         feed = StateFeed(self._views.is_due, self._views.tell, asyncio.get_running_loop())
@@ -174,7 +165,6 @@ class ViewServer:
         self._views.announce_pairing(self.code.code, self.addresses)
 
     async def close(self) -> None:
-        """Close the views and stop listening."""
         self._unsubscribe()
         self._http.stop_listening()
         await self._views.close()
@@ -204,7 +194,6 @@ class ViewServer:
         return web.Response(body=content, content_type="model/gltf-binary", headers=headers)
 
     async def _send_file(self, request: web.Request) -> web.StreamResponse:
-        """Send a sound, or the picture of a scenario."""
         name, is_sound = request.match_info["name"], request.path.endswith(".wav")
         path = asset_path("sounds", f"{name}.wav") if is_sound else self._scenario_picture(name)
         if path is None or not path.is_file():

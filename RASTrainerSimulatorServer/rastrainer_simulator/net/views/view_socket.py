@@ -56,16 +56,7 @@ _BEFORE_EVENTS = tuple(
 
 
 class ViewSocket:
-    """A view's WebSocket.
-
-    Attributes:
-        number: of the view; none is used twice.
-        hello: its description of itself.
-        is_local: whether it is on this computer, as far as the network can tell.
-        outbox: what waits to be sent to it.
-        held: what it holds down.
-        headset_pose: what a headset has sent last; None while nobody wears it.
-    """
+    """A view's WebSocket; no number is used twice, and a headset that nobody wears has no pose."""
 
     def __init__(
         self,
@@ -194,7 +185,6 @@ class HeldInput:
         self._presenter.on_key(self._view, code, is_down, text)
 
     def pad(self, axes: Sequence[float], buttons: Sequence[float]) -> None:
-        """Process a gamepad's position."""
         self._pad = (len(axes), len(buttons)) if any(axes) or any(buttons) else None
         self._presenter.on_pad(self._view, axes, buttons)
 
@@ -205,7 +195,6 @@ class HeldInput:
         is_fine: bool,
         yaw_deg: float,
     ) -> None:
-        """Process the sticks of XR controllers."""
         self._has_sticks = any(translation) or any(rotation) or is_fine
         self._presenter.on_sticks(self._view, translation, rotation, is_fine, yaw_deg)
 
