@@ -5,6 +5,7 @@ from __future__ import annotations
 import bisect
 import functools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -143,9 +144,6 @@ class Estimate:
         low, high = self.interval
         return Estimate(-self.value, (-high, -low))
 
-    def holds(self, truth: float) -> bool:
-        return self.interval[0] <= truth <= self.interval[1]
-
 
 @dataclass(frozen=True)
 class MeanSquare:
@@ -165,6 +163,10 @@ def mean(values: np.ndarray) -> Estimate:
     """Return the mean of (n,) float independent values, n ≥ 2."""
     error = float(values.std(ddof=1)) / math.sqrt(len(values))
     return coefficient(float(values.mean()), error, len(values) - 1)
+
+
+def rms(values: Sequence[float] | np.ndarray) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))
 
 
 def variance(square: MeanSquare) -> Estimate:
