@@ -76,11 +76,7 @@ def study_variation(data: StudyData) -> StudyVariation | None:
 
 @dataclass(frozen=True)
 class ViewBias:
-    """The displacement of the target by a view that the residuals do not show.
-
-    Attributes:
-        squared: Of the displacement, mm²; below 0 by chance where it is about 0.
-    """
+    """The square of the displacement of the target by a view that residuals do not show, mm²."""
 
     trainees: int
     trials: int

@@ -21,11 +21,7 @@ _Number = TypeVar("_Number", float, np.ndarray)
 
 @dataclass(frozen=True)
 class Agreement:
-    """A coefficient: 1 if raters always agree, 0 if they agree by chance only.
-
-    Attributes:
-        interval: The 95 % interval; None if the data give none, as of raters who always agree.
-    """
+    """A coefficient, 1 if raters always agree, 0 if by chance only, and its 95 % interval."""
 
     value: float
     interval: tuple[float, float] | None

@@ -193,8 +193,7 @@ def difference(first: MeanSquare, second: MeanSquare) -> Estimate:
 def _factors(tail: float, dof: float, other_dof: float) -> np.ndarray:
     """Return the factors of both squares and of their product in the square of one reach.
 
-    Args:
-        tail: Probability above the quantile of the first mean square: small for the lower limit.
+    `tail`, the probability above the first mean square's quantile, is small for the lower limit.
     """
     own = 1 - 1 / chi2_ratio(1 - tail, dof)
     others = 1 - 1 / chi2_ratio(tail, other_dof)

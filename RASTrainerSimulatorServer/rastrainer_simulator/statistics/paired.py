@@ -31,12 +31,9 @@ MIN_SUBJECTS = 4
 
 @dataclass(frozen=True)
 class DifferenceFit:
-    """The mean of differences, and the effect of the period if separated.
+    """The mean of differences without the order's effect, and the period's if separated.
 
     Arrays have the shape of the data without its last axis.
-
-    Attributes:
-        mean: Difference for subjects unaffected by the order.
     """
 
     mean: np.ndarray

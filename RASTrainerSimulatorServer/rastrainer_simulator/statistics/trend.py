@@ -150,11 +150,8 @@ Series = Sequence[Sequence[float]]
 def cohort_trends(tested: Sequence[tuple[Series, int]]) -> list[CohortTrend | None]:
     """Return the trend of several trainees in each of some outcomes, with p adjusted (Holm).
 
-    There is none where no trainee has four trials.
-
-    Args:
-        tested: Of each outcome, the values of all trials of each trainee, in their order; and -1
-            where less is better, 1 where more is.
+    There is none where no trainee has four trials. Of each outcome, `tested` has the values of all
+    trials of each trainee, in their order; and -1 where less is better, 1 where more is.
     """
     found = [_cohort_trend(*each) for each in tested]
     p_values = {

@@ -102,12 +102,7 @@ DATABASE, TRUTH, PROTOCOL, RECORDS = "study.db", "truth.json", "protocol.json", 
 
 @dataclass(frozen=True)
 class CohortRun:
-    """How a simulation went.
-
-    Attributes:
-        found: Trials that had been played before, if the cohort was resumed.
-        stuck: Trials played now in which the virtual trainee did not reach a fiducial.
-    """
+    """How many trials were found played, were played now, or got stuck, and how long it took."""
 
     found: int
     played: int
