@@ -18,12 +18,14 @@ from rastrainer.journal.journal_file import read_journal
 from rastrainer.registration.localization_error import error_along_surface
 from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import target_error
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record.trial_archive import SUFFIX, TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
 from rastrainer_simulator.replay.resimulation import ReplayReport, replay
-from rastrainer_simulator.virtual.play import VirtualTrial, play_virtual_trial
+from rastrainer_simulator.virtual.play import play_virtual_trial
 from rastrainer_simulator.virtual.scripted_trainee import Skill
 
 BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04, slip_at=None)
@@ -51,20 +53,23 @@ def play(simulation: Simulation, setup: SimulationSetup, seed: int, folder: Path
     with ThreadPoolExecutor(max_workers=1) as writer:
         recorder = TrialRecorder(folder, TrialArchive(folder), writer, STEP_S)
         task = tasks[seed % len(tasks)].name
-        trial = play_virtual_trial(simulation, task, seed, BRISK, STEP_S, recorder.record)
+        play_virtual_trial(simulation, task, seed, BRISK, STEP_S, recorder.record)
         recorder.stop(simulation.state)
     (journal,) = folder.glob(f"*{SUFFIX}")
     report = replay(read_journal(journal), setup)
     journal.unlink()
-    return Played(is_within_interval(trial, setup), report.difference, *compared(report))
+    touches_mm = MM_PER_M * np.array([one.position for one in simulation.state.training.touches])
+    is_within = is_within_interval(touches_mm, task, seed, setup.scenario)
+    return Played(is_within, report.difference, *compared(report))
 
 
-def is_within_interval(trial: VirtualTrial, setup: SimulationSetup) -> bool:
-    target = setup.scenario.target_position
-    registration = register(trial.touches_mm, trial.fiducials_mm)
-    there_and_back = transforms.apply(registration.matrix @ trial.head_to_world, target[None])
+def is_within_interval(touches_mm: np.ndarray, task: str, seed: int, scenario: Scenario) -> bool:
+    target, fiducials_mm = scenario.target_position, scenario.task(task).fiducials
+    registration = register(touches_mm, fiducials_mm)
+    head_to_world = scenario.perturbed_head_to_world(seed)
+    there_and_back = transforms.apply(registration.matrix @ head_to_world, target[None])
     true_tre_mm = np.linalg.norm(there_and_back[0] - target)
-    normals = outward_normals(read_head_mesh(setup.scenario.head_mesh), trial.fiducials_mm)
+    normals = outward_normals(read_head_mesh(scenario.head_mesh), fiducials_mm)
     error = target_error(registration, target, error_along_surface(registration, normals))
     low, high = error.interval_mm
     return bool(low <= true_tre_mm <= high)

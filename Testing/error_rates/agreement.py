@@ -18,7 +18,7 @@ from rastrainer_simulator.statistics.agreement import (
     quadratic_kappa,
 )
 from rastrainer_simulator.statistics.intervals import TAIL
-from Testing.error_rates.measured import Measured, share_of, share_text
+from Testing.error_rates.measured import Measured, holds, share_of, share_text
 
 HEADER = (
     "raters",
@@ -81,9 +81,9 @@ def _measured(
             continue
         missing += agreement.interval is None
         agreements += [agreement] if agreement.interval is not None else []
-        before += [rate_before(ratings).holds(truth)] if rate_before else []
+        before += [holds(rate_before(ratings).interval, truth)] if rate_before else []
     widths = [each.interval[1] - each.interval[0] for each in agreements]
-    share = share_of([each.holds(truth) for each in agreements])
+    share = share_of([holds(each.interval, truth) for each in agreements])
     previous = share_text(share_of(before)) if before else "–"
     beside = (fixed(truth, 2), fixed(float(np.mean(widths)), 2), share_text(missing / sets))
     return Measured(case, share, len(agreements), at_least=asked, beside=(*beside, previous))

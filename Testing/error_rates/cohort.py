@@ -31,6 +31,7 @@ from rastrainer_simulator.virtual.play import PlaySettings
 from rastrainer_simulator.virtual.population import ModeEffect, Population, trial_jobs
 from rastrainer_simulator.virtual.scripted_trainee import Skill
 from Testing.error_rates.hands import HEADS, USUAL, trials_of
+from Testing.error_rates.measured import holds
 from Testing.error_rates.recovery import PROTOCOL, estimates, truths
 
 STUDY_PROTOCOL = replace(PROTOCOL, name="known-truth", title="A cohort whose truth is known")
@@ -101,7 +102,7 @@ class PlayedParameter:
             fixed(self.truth, 4),
             fixed(self.estimate.value, 4),
             f"{low} to {high}",
-            "yes" if self.estimate.holds(self.truth) else "no",
+            "yes" if holds(self.estimate.interval, self.truth) else "no",
         ]
 
 

@@ -54,6 +54,10 @@ class Measured:
         return [self.case, share_text(self.share), asked, *self.beside]
 
 
+def holds(interval: tuple[float, float] | None, truth: float) -> bool:
+    return interval is not None and interval[0] <= truth <= interval[1]
+
+
 def share_of(happened: Sequence[bool] | np.ndarray) -> float:
     """Return the share of true values."""
     return float(np.mean(happened))

@@ -20,7 +20,7 @@ from rastrainer_simulator.report.variation import StudyVariation, study_variatio
 from rastrainer_simulator.statistics.intervals import Estimate
 from rastrainer_simulator.virtual.outcome_model import DOF, OutcomeModel, draw
 from rastrainer_simulator.virtual.population import pseudonym
-from Testing.error_rates.measured import Measured, share_of
+from Testing.error_rates.measured import Measured, holds, share_of
 
 
 @dataclass(frozen=True)
@@ -187,7 +187,13 @@ def coverage(sets: int) -> list[Measured]:
     """Return how often the interval of each parameter contains it, in the same studies."""
     found = _estimated(TIMES * sets)
     return [
-        Measured(name, share_of([own[place].holds(truth) for own in found]), len(found), None, 0.94)
+        Measured(
+            name,
+            share_of([holds(own[place].interval, truth) for own in found]),
+            len(found),
+            None,
+            0.94,
+        )
         for place, (name, truth) in enumerate(truths().items())
     ]
 

@@ -17,7 +17,6 @@ Argument = Callable[[Any], object]
 
 
 def option(*names: str, **settings: Any) -> Argument:
-    """Return an argument with the names and settings that argparse knows."""
     return lambda parser: parser.add_argument(*names, **settings)
 
 

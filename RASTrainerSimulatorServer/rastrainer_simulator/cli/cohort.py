@@ -10,10 +10,7 @@ from rastrainer.errors import InputError
 from rastrainer.number_text import significant
 from rastrainer.protocol import Mode
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.study.protocol.study_protocol import (
-    StudyProtocol,
-    mode_order,
-)
+from rastrainer.study.protocol.study_protocol import StudyProtocol, mode_order
 from rastrainer.trial.score_reference import score_reference
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli import arg
@@ -37,11 +34,6 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     if arguments.output is None:
         raise InputError("Name the folder of the study with -o.")
-    _play(protocol, arguments)
-    return 0
-
-
-def _play(protocol: StudyProtocol, arguments: argparse.Namespace) -> None:
     # Only here: the robot and the scenario take time to import.
     from rastrainer_simulator.virtual.cohort import simulate_cohort
     from rastrainer_simulator.virtual.play import PlaySettings
@@ -79,11 +71,11 @@ def _play(protocol: StudyProtocol, arguments: argparse.Namespace) -> None:
         f"{arguments.output}: {found}{result.played} trials in {result.seconds:.0f} s, "
         f"{faster:.0f} times faster than real time; {result.stuck} got stuck and are left out"
     )
+    return 0
 
 
 def _population(arguments: argparse.Namespace) -> Population:
-    bias_mm = tuple(arguments.hmd_bias)
-    effect = ModeEffect(arguments.hmd_speed, arguments.hmd_aim, bias_mm)
+    effect = ModeEffect(arguments.hmd_speed, arguments.hmd_aim, tuple(arguments.hmd_bias))
     return Population(
         skill=Skill(speed_mm_s=arguments.speed, aim_sd_mm=arguments.aim),
         speed_spread=arguments.spread,

@@ -22,7 +22,7 @@ from rastrainer.trial.touch_registration import GivenPoints
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli import arg
 from rastrainer_simulator.cli.options import Subcommand, json_text, text_table
-from rastrainer_simulator.report.charts import Series, grouped_bars
+from rastrainer_simulator.report.charts import grouped_bars
 from rastrainer_simulator.virtual.method_trials import (
     PUBLISHED_NOISE,
     MethodResult,
@@ -136,7 +136,6 @@ def compared(found: Found) -> dict[str, dict[str, Any]]:
 
 
 def comparison_text(methods: Mapping[str, Mapping[str, Any]]) -> str:
-    """Return the table for people."""
     rows = []
     for name, found in methods.items():
         low, high = found["interval_mm"]
@@ -180,7 +179,7 @@ def picture(found: Found) -> str:
         known = [one.true_mm for one in results if one.true_mm is not None]
         true.append(tuple(float(value) for of_trial in known for value in of_trial))
     series = [
-        Series(name, color, tuple(values))
+        (name, color, values)
         for (name, color), values in zip(COLORS.items(), (expected, true), strict=True)
     ]
     names = [method.value for method in found]

@@ -48,22 +48,18 @@ SLICER_TIMEOUT_S = 60.0
 
 
 def run(arguments: argparse.Namespace) -> int:
-    play_demo(arguments.output, arguments.seed, arguments.speed)
-    return 0
-
-
-def play_demo(output: Path, seed: int, speed: float) -> None:
-    """Play the trial run and Task 1, write the results into `output`, and print a summary.
-
-    An `output` that is not empty is renamed, never overwritten. The virtual trainee consents to
-    research, so that the study can be reported and exported.
-    """
-    check_slicers_side()
-    started = time.monotonic()
-    output = output.absolute()
+    """Play the trial run and Task 1, write the results into a folder, and print a summary."""
+    if importlib.util.find_spec("slicer") is None:
+        raise InputError(
+            "The demo needs slicer-core, which plays the part of 3D Slicer: install it by "
+            f'{sys.executable} -m pip install "rastrainer[slicer]"'
+        )
+    started, seed, speed = time.monotonic(), arguments.seed, arguments.speed
+    output = arguments.output.absolute()
     move_aside(output)
     output.mkdir(parents=True)
     with Study.open(output / STUDY_FILE) as study:
+        # With consent to research, the study can be reported and exported.
         study.create_trainee(TRAINEE, consent=True)
     scenario = load_scenario(asset_path(*DEFAULT_SCENARIO))
     with _simulator(output, seed, speed) as port, _slicer(output, port) as slicer:
@@ -78,29 +74,20 @@ def play_demo(output: Path, seed: int, speed: float) -> None:
             raise RASTrainerError(f"Slicer's side did not finish its work; see {log}.")
     lines = (output / "results.jsonl").read_text(encoding="utf-8").splitlines()
     trials = [json.loads(line) for line in lines]
-    _draw_robot(output / "robot.png", scenario, states[-1], trials[-1])
+    head_to_world = np.reshape(trials[-1]["truth"]["headToWorld"], (4, 4))
+    _draw_pictures(output, scenario, states[-1], record, head_to_world)
     task = scenario.task(record.task)
     fiducials = zip(task.labels, task.fiducials.tolist(), strict=True)
     touches = ((point.label, point.position_mm) for point in record.points)
     for name, points in ((TOUCHES, touches), (FIDUCIALS, fiducials)):
         rows = (",".join(map(str, (label, *place))) for label, place in points)
         write_text(output / name, "\n".join(["label,x,y,z", *rows, ""]))
-    head_to_world = np.reshape(trials[-1]["truth"]["headToWorld"], (4, 4))
-    _draw_procedure(output / "procedure.png", scenario, record, head_to_world)
     for trial in trials:
         print("\n" + trial_summary(trial, scenario.task(trial["record"]["task"]).title))
     print("\n" + procedure_summary(record, scenario, head_to_world))
     written = ", ".join(sorted(path.name for path in output.iterdir()))
     print(f"\nWritten to {output} in {time.monotonic() - started:.0f} s: {written}.")
-
-
-def check_slicers_side() -> None:
-    """Check that the package that replaces Slicer is installed."""
-    if importlib.util.find_spec("slicer") is None:
-        raise InputError(
-            "The demo needs slicer-core, which plays the part of 3D Slicer: install it by "
-            f'{sys.executable} -m pip install "rastrainer[slicer]"'
-        )
+    return 0
 
 
 def move_aside(folder: Path) -> None:
@@ -161,9 +148,6 @@ def _play(
     """Play the tasks; return the states at their last touches, and the record with a procedure."""
     from rastrainer_simulator.virtual.scripted_trial import play_procedure, play_trial, send_hello
 
-    def tell(done: str) -> None:
-        print(f"  {done}", flush=True)
-
     states, records = [], []
     with Client(DEFAULT_HOST, port) as client:
         send_hello(client, "scripted trainee")
@@ -180,7 +164,12 @@ def _play(
             states.append(trial.last_state)
             if procedure:
                 print(scenario.procedure(procedure).title, flush=True)
-                records.append(play_procedure(client, scenario, trial.trial_id, tell))
+                records.append(
+                    play_procedure(
+                        *(client, scenario, trial.trial_id),
+                        on_progress=lambda done: print(f"  {done}", flush=True),
+                    )
+                )
     return states, records[-1]
 
 
@@ -202,45 +191,42 @@ class _Bar:
             print(line, end="\r" if sys.stdout.isatty() else "\n", flush=True)
 
 
-def _draw_robot(
-    path: Path, scenario: Scenario, state: dict[str, Any], trial: dict[str, Any]
+def _draw_pictures(
+    output: Path,
+    scenario: Scenario,
+    state: dict[str, Any],
+    record: TrialRecord,
+    head_to_world: np.ndarray,
 ) -> None:
-    """Draw the arm and the head at the last touch."""
+    """Draw the arm and the head at the last touch, and the procedure's lines in the head."""
     from rastrainer_simulator.rendering.picture import SceneMoment, render_picture
+    from rastrainer_simulator.rendering.procedure_picture import draw_procedure, procedure_lines
     from rastrainer_simulator.robot.kinematics import make_kinematics
     from rastrainer_simulator.robot.model import load_robot
     from rastrainer_simulator.scene.scene_glb import scene_nodes
 
     robot = load_robot()
-    task = scenario.task(trial["record"]["task"])
+    task = scenario.task(record.task)
     head = read_head_mesh(scenario.head_mesh)
     moment = SceneMoment(
         link_to_world=make_kinematics(robot).links(state["q"]),
-        head_to_world=np.reshape(trial["truth"]["headToWorld"], (4, 4)),
+        head_to_world=head_to_world,
         head_base=head.base,
         touched=frozenset(task.labels),
         proximity=Proximity(state["proximity"]),
     )
     render_picture(
-        path,
+        output / "robot.png",
         scene_nodes(scenario, robot, head, task),
         robot,
         moment,
         scenario.cameras["far"],
         inset=scenario.cameras["close-up"],
     )
-
-
-def _draw_procedure(
-    path: Path, scenario: Scenario, record: TrialRecord, head_to_world: np.ndarray
-) -> None:
-    """Draw the planned, the registered and the placed lines in the head."""
-    from rastrainer_simulator.rendering.procedure_picture import draw_procedure, procedure_lines
-
     assert record.procedure is not None, "it was carried out"
     procedure = scenario.procedure(record.procedure.procedure)
     lines = procedure_lines(record.procedure, procedure, head_to_world)
-    draw_procedure(path, read_head_mesh(scenario.head_mesh), procedure, lines)
+    draw_procedure(output / "procedure.png", head, procedure, lines)
 
 
 def trial_summary(trial: Mapping[str, Any], title: str) -> str:

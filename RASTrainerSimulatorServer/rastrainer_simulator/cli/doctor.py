@@ -144,7 +144,15 @@ def _folders(names: str) -> list[Path]:
 
 
 def check_slicer(_arguments: argparse.Namespace) -> Answers:
-    slicers = list(_slicers())
+    named, on_path = os.environ.get("SLICER_HOME"), shutil.which("Slicer")
+    candidates = [Path(named)] if named else []
+    candidates += [Path(on_path).resolve().parent] if on_path else []
+    for place in _folders(PLACES.get(sys.platform, "~")):
+        for pattern in ("Slicer*", "slicer.org/Slicer*", "NA-MIC/Slicer*"):
+            candidates += sorted(place.glob(pattern))
+    program = {"win32": "Slicer.exe", "darwin": "MacOS/Slicer"}.get(sys.platform, "Slicer")
+    folders = [one / "Contents" if one.suffix == ".app" else one for one in candidates]
+    slicers = [folder for folder in dict.fromkeys(folders) if (folder / program).is_file()]
     if not slicers:
         yield WARNING, "3D Slicer is not found; nothing is wrong where it runs elsewhere."
         return
@@ -162,21 +170,6 @@ def check_slicer(_arguments: argparse.Namespace) -> Answers:
         yield OK, f"{EXTENSION} is in {found[0]}."
     else:
         yield WARNING, f"{EXTENSION} is missing: install it in Slicer's Extensions Manager."
-
-
-def _slicers() -> Iterator[Path]:
-    """Yield the folder of each Slicer once."""
-    named, on_path = os.environ.get("SLICER_HOME"), shutil.which("Slicer")
-    candidates = [Path(named)] if named else []
-    candidates += [Path(on_path).resolve().parent] if on_path else []
-    for place in _folders(PLACES.get(sys.platform, "~")):
-        for pattern in ("Slicer*", "slicer.org/Slicer*", "NA-MIC/Slicer*"):
-            candidates += sorted(place.glob(pattern))
-    program = {"win32": "Slicer.exe", "darwin": "MacOS/Slicer"}.get(sys.platform, "Slicer")
-    for candidate in dict.fromkeys(candidates):
-        folder = candidate / "Contents" if candidate.suffix == ".app" else candidate
-        if (folder / program).is_file():
-            yield folder
 
 
 PROBLEM_MB, WARNING_MB = 100.0, 1000.0

@@ -26,10 +26,10 @@ from rastrainer.study.tidy_csv import (
     trials_csv,
 )
 from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import Subcommand, read_known_study
+from rastrainer_simulator.cli.options import Subcommand, json_text, read_known_study
 from rastrainer_simulator.export.grades import PLATFORMS, RULES, grade, grades_csv
 from rastrainer_simulator.export.trial_files import write_motion_bids, write_slicer_files
-from rastrainer_simulator.export.xapi import HOME_PAGE, statements_text
+from rastrainer_simulator.export.xapi import HOME_PAGE, statements
 from rastrainer_simulator.report.published_tables import with_ctps
 
 FORMATS = ("csv", "bids", "xapi", "slicer")
@@ -92,7 +92,8 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
         for table, text in tables.items():
             write_text(folder / f"{table}.csv", text)
     elif name == "xapi":
-        write_text(folder / "statements.json", statements_text(data, arguments.home_page))
+        found = statements(data, arguments.home_page)
+        write_text(folder / "statements.json", json_text(found) + "\n")
     else:
         for trial, stored in _stored(data, arguments.study):
             write_slicer_files(stored, folder / trial.trial_id)

@@ -56,21 +56,17 @@ def set_pin(arguments: argparse.Namespace) -> int:
         pin.set("")
         print("There is no PIN any more: no board can give orders, and nothing is locked.")
         return 0
-    chosen = _asked()
+    if sys.stdin.isatty():
+        chosen = getpass.getpass("PIN: ")
+        if getpass.getpass("PIN again: ") != chosen:
+            raise InputError("The two PINs differ.")
+    else:
+        chosen = sys.stdin.readline().strip()
     if not chosen:
         raise InputError(f"A PIN has {PIN_WORDS}; --remove removes it.")
     pin.set(chosen)
     print("The PIN is set; a simulator that is running asks for it from now on.")
     return 0
-
-
-def _asked() -> str:
-    if not sys.stdin.isatty():
-        return sys.stdin.readline().strip()
-    first = getpass.getpass("PIN: ")
-    if getpass.getpass("PIN again: ") != first:
-        raise InputError("The two PINs differ.")
-    return first
 
 
 COMMANDS = (

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rastrainer.errors import InputError
-from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
+from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer_simulator.cli import arg
 from rastrainer_simulator.cli.options import Subcommand, json_text, text_table
 
@@ -26,26 +26,22 @@ def verify(arguments: argparse.Namespace) -> int:
 
 
 def _verify(path: Path, study: Study | None = None) -> int:
+    problem = ""
     try:
         reading = read_journal(path)
-        problem = "" if study is None else _differs(reading, study)
+        if study is not None:
+            sealed = [entry["sha256"] for entry in reading.of_kind("registered")]
+            try:
+                record = study.trial(str(reading.header.get("trialId"))).record
+                if record.journal_sha256 not in sealed:
+                    problem = "; the trial in the study is not from this journal"
+            except InputError:
+                problem = "; the study has no such finished trial"
     except InputError as error:
         print(f"rastrainer verify: {error}", file=sys.stderr)
         return 2
     print(f"{path}: {reading.sentence}{problem}")
     return 0 if reading.integrity is Integrity.INTACT and not problem else 1
-
-
-def _differs(reading: JournalReading, study: Study) -> str:
-    """Return how a journal differs from the journal of a study's trial; "" if it does not."""
-    try:
-        record = study.trial(str(reading.header.get("trialId"))).record
-    except InputError:
-        return "; the study has no such finished trial"
-    sealed = [entry["sha256"] for entry in reading.of_kind("registered")]
-    if record.journal_sha256 in sealed:
-        return ""
-    return "; the trial in the study is not from this journal"
 
 
 def measure(arguments: argparse.Namespace) -> int:

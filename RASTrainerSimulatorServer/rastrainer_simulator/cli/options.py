@@ -16,12 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Subcommand:
-    """A command of `rastrainer`, or an action of one.
-
-    Attributes:
-        run: Returns the exit status; None if one of the `actions` is run.
-        description: Above the arguments in the command's own help.
-    """
+    """A command of `rastrainer`, or an action of one; `run` returns the exit status."""
 
     name: str
     help: str
@@ -59,15 +54,15 @@ def announce(program: str, what: str) -> None:
 
 def json_text(value: Any) -> str:
     """Return a value as JSON, arrays and dataclasses, too; `ValueError` for an infinite number."""
-    return json.dumps(value, allow_nan=False, indent=1, default=_plain)
-
-
-def _plain(value: Any) -> Any:
-    return value.tolist() if hasattr(value, "tolist") else asdict(value)
+    return json.dumps(
+        value,
+        allow_nan=False,
+        indent=1,
+        default=lambda one: one.tolist() if hasattr(one, "tolist") else asdict(one),
+    )
 
 
 def picked(value: object, *names: str) -> dict[str, Any]:
-    """Return attributes of a value by their names."""
     return {name: getattr(value, name) for name in names}
 
 

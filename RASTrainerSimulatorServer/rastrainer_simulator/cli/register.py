@@ -15,7 +15,6 @@ from rastrainer.files.point_list import PointList, pair
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.registration.fits import KINDS, RIGID
 from rastrainer.registration.localization_error import (
-    LocalizationError,
     degrees_of_freedom,
     expected_fre,
     misfit_probability,
@@ -43,24 +42,11 @@ RESIDUAL_NOTE = (
 
 @dataclass(frozen=True)
 class StatedErrors:
-    """The localization errors of the points, as stated by the user.
-
-    Attributes:
-        fle_mm: (n,) float, RMS length of each point's error.
-        localization: The same as covariances.
-        misfit_probability: Probability of residuals as large as the present ones.
-    """
+    """The RMS lengths of the points' errors, (n,) float, as the user states them."""
 
     fle_mm: np.ndarray
-    localization: LocalizationError
     expected_fre_mm: float
     misfit_probability: float
-
-    @classmethod
-    def of(cls, registration: Registration, fle_mm: np.ndarray) -> StatedErrors:
-        error = stated_error(fle_mm)
-        misfit = misfit_probability(registration, fle_mm)
-        return cls(fle_mm, error, expected_fre(registration, error), misfit)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -92,10 +78,25 @@ def register_files(
 ) -> tuple[Registration, TargetError | None, StatedErrors | None]:
     """Return the registration of a command's files, the error to expect, and the stated errors."""
     labels, moving, fixed = pair(read(arguments.moving), read(arguments.fixed))
-    fle_mm, weights = _weighting(arguments, labels)
+    fle_mm = weights = stated = localization = None
+    if arguments.fle is not None:
+        fle_mm = read_point_numbers(arguments.fle, "fle", labels, *FLE_RANGE_MM)
+        weights = 1.0 / fle_mm**2
+    elif arguments.weights is not None:
+        weights = read_point_numbers(arguments.weights, "weight", labels, *WEIGHT_RANGE)
     registration = register(moving, fixed, arguments.type, labels, weights)
-    stated = None if fle_mm is None else StatedErrors.of(registration, fle_mm)
-    return registration, _target_error(registration, arguments.target, stated), stated
+    if fle_mm is not None:
+        localization = stated_error(fle_mm)
+        expected_mm = expected_fre(registration, localization)
+        stated = StatedErrors(fle_mm, expected_mm, misfit_probability(registration, fle_mm))
+    target = arguments.target
+    if target is None:
+        try:
+            degrees_of_freedom(registration)
+        except InputError:
+            return registration, None, stated
+        target = registration.fixed_mm.mean(axis=0)
+    return registration, target_error(registration, np.array(target), localization), stated
 
 
 def registration_json(
@@ -117,7 +118,6 @@ def registration_json(
 def registration_text(
     registration: Registration, error: TargetError | None, stated: StatedErrors | None = None
 ) -> str:
-    """Return a registration as text for people, with units and warnings."""
     count = len(registration.labels)
     weighted = "" if registration.weights is None else ", weighted"
     lines = [
@@ -168,31 +168,6 @@ def _matrix_lines(matrix: np.ndarray) -> list[str]:
     return ["  ".join(f"{value:12.6f}" for value in row) for row in matrix]
 
 
-def _weighting(
-    arguments: argparse.Namespace, labels: tuple[str, ...]
-) -> tuple[np.ndarray | None, np.ndarray | None]:
-    """Return the stated FLE in mm and the weights; each is None if not given."""
-    if arguments.fle is not None:
-        fle_mm = read_point_numbers(arguments.fle, "fle", labels, *FLE_RANGE_MM)
-        return fle_mm, 1.0 / fle_mm**2
-    if arguments.weights is not None:
-        return None, read_point_numbers(arguments.weights, "weight", labels, *WEIGHT_RANGE)
-    return None, None
-
-
-def _target_error(
-    registration: Registration, target: list[float] | None, stated: StatedErrors | None
-) -> TargetError | None:
-    localization = None if stated is None else stated.localization
-    if target is not None:
-        return target_error(registration, np.array(target), localization)
-    try:
-        degrees_of_freedom(registration)
-    except InputError:
-        return None
-    return target_error(registration, registration.fixed_mm.mean(axis=0), localization)
-
-
 def match_files(
     arguments: argparse.Namespace, read: Callable[[str], PointList]
 ) -> tuple[SurfaceMatch, TargetError]:
@@ -214,7 +189,6 @@ def match_files(
 
 
 def match_json(match: SurfaceMatch, error: TargetError) -> dict[str, Any]:
-    """Return a match as a JSON object."""
     names = ("rms_mm", "inlier_share", "converged", "starts", "best_starts", "spread_mm")
     return {
         "type": "surface",
@@ -227,7 +201,6 @@ def match_json(match: SurfaceMatch, error: TargetError) -> dict[str, Any]:
 
 
 def match_text(match: SurfaceMatch, error: TargetError) -> str:
-    """Return a match as text for people, with units and warnings."""
     slide = match.slide
     lines = [
         f"Surface registration of {len(match.residuals_mm)} points",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import replace
-from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.trial.ctps import (
@@ -29,34 +28,28 @@ from rastrainer_simulator.cli.options import (
 def score(arguments: argparse.Namespace) -> int:
     modes = trials_by_mode(read_trials(arguments.trials))
     notes = read_notes(arguments.trials.with_suffix(".json"))
-    means = {
-        **(notes.mean_ct_s if notes else {}),
-        **_mean_times(arguments.mean_ct, list(modes)),
-    }
+    means = {**(notes.mean_ct_s if notes else {}), **_mean_times(arguments.mean_ct, list(modes))}
     scores = {mode: score_cohort(trials, means.get(mode)) for mode, trials in modes.items()}
     if arguments.json:
-        objects = {mode: _scores_json(score) for mode, score in scores.items()}
+        names = ("overall", "equation_3_overall", "tasks", "subjects", "sd_population", "sd_sample")
+        objects = {
+            mode: {
+                **picked(own, *names, "pearson_r", "r_squared"),
+                "mean_ct": own.reference.mean_ct_s,
+                "best_rmse": own.reference.best_rmse_mm,
+                "trials": len(own.trials),
+                "warning": CTPS_WARNING,
+            }
+            for mode, own in scores.items()
+        }
         print(json_text(objects))
     else:
-        print("\n\n".join(_scores_text(mode, score) for mode, score in scores.items()))
+        print("\n\n".join(_scores_text(mode, own) for mode, own in scores.items()))
         print(f"\nWarning: {CTPS_WARNING}")
     return 0
 
 
-def _scores_json(scores: CohortScores) -> dict[str, Any]:
-    """Return the scores of one mode as a JSON object; undefined values are None."""
-    names = ("overall", "equation_3_overall", "tasks", "subjects", "sd_population", "sd_sample")
-    return {
-        **picked(scores, *names, "pearson_r", "r_squared"),
-        "mean_ct": scores.reference.mean_ct_s,
-        "best_rmse": scores.reference.best_rmse_mm,
-        "trials": len(scores.trials),
-        "warning": CTPS_WARNING,
-    }
-
-
 def _scores_text(mode: str, scores: CohortScores) -> str:
-    """Return the scores of one mode as text for people."""
     reference = scores.reference
     rows = [[f"Task {name}", f"{mean:.2f}"] for name, mean in scores.tasks.items()]
     rows += [[f"Subject {name}", f"{mean:.2f}"] for name, mean in scores.subjects.items()]
@@ -93,11 +86,7 @@ def report(arguments: argparse.Namespace) -> int:
 
 
 def _mean_times(given: list[str], modes: list[str]) -> dict[str, float]:
-    """Return the mean completion time in s of each mode that was given one.
-
-    Args:
-        given: `MODE=SECONDS`, or `SECONDS` for all modes; the later one counts.
-    """
+    """Return mean times in s by mode, of `MODE=SECONDS` or `SECONDS` for all; the later counts."""
     means: dict[str, float] = {}
     for text in given:
         mode, separator, number = text.rpartition("=")

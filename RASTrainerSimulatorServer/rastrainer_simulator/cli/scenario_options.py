@@ -25,9 +25,7 @@ LONGEST_TITLE, LONGEST_NAME, LONGEST_TEXT = 80, 60, 4000
 
 HEAD_OPTIONS = (
     arg.option(
-        "--threshold",
-        type=float,
-        help="value that separates air from skin (default: estimated)",
+        "--threshold", type=float, help="value that separates air from skin (default: estimated)"
     ),
     arg.option("--cut", type=float, metavar="S", help="height of the flat base, mm superior"),
     arg.option(
@@ -115,7 +113,6 @@ def title_of(arguments: argparse.Namespace) -> str:
 
 
 def targets_of(arguments: argparse.Namespace) -> tuple[PlannedTarget, ...]:
-    """Return the planned targets; raise `InputError` if one cannot be used."""
     return tuple(
         PlannedTarget(_text("--target", name, LONGEST_NAME), _numbers("--target", numbers))
         for name, *numbers in arguments.target
@@ -123,7 +120,6 @@ def targets_of(arguments: argparse.Namespace) -> tuple[PlannedTarget, ...]:
 
 
 def trajectory_of(arguments: argparse.Namespace) -> PlannedTrajectory | None:
-    """Return the planned trajectory; raise `InputError` if it cannot be used."""
     if not arguments.trajectory:
         return None
     name, *numbers = arguments.trajectory

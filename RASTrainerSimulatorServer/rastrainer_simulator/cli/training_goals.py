@@ -22,10 +22,9 @@ from rastrainer.study.curriculum.standing import (
 )
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import StudyProtocol, protocol_text
-from rastrainer.trial.trial_feedback import PastTrial
 from rastrainer_simulator.cli import arg
 from rastrainer_simulator.cli.options import Subcommand, aligned
-from rastrainer_simulator.statistics.pass_marks import PassMark, pass_mark
+from rastrainer_simulator.statistics.pass_marks import pass_mark
 
 HEADER = ("assignment", "trial", "so far", "goal", "after", "trials", "mean")
 
@@ -75,21 +74,21 @@ def compute_pass_mark(arguments: argparse.Namespace) -> int:
     if both:
         raise InputError(f"{both[0]} is named in both groups; name each person once, in one group.")
     with Study.open_for_reading(arguments.study) as opened:
-        counted = [
-            [_last_trials(opened, pseudonym) for pseudonym in dict.fromkeys(group)]
-            for group in (arguments.novices, arguments.experts)
-        ]
+        novices, experts, method = _mean_scores(opened, arguments.novices, arguments.experts)
         aborted = sum(
             attempt.is_aborted
             for pseudonym in {*arguments.novices, *arguments.experts}
             for attempt in opened.attempts(pseudonym)
         )
-    method = _method(counted)
-    novices, experts = (
-        [fmean(trial.score for trial in trials) for trials in group] for group in counted
-    )
     mark = pass_mark(novices, experts)
-    print(_sentence(mark, novices, experts, method))
+    print(
+        f"Pass mark {mark.score:.1f} of 100 (trials by {method.value}), from {len(novices)} "
+        f"novices (mean {fmean(novices):.1f}) and {len(experts)} experts (mean "
+        f"{fmean(experts):.1f}).\n"
+        f"If both groups are normal, {percent(mark.passing_novices)} of novices would pass and "
+        f"{percent(mark.failing_experts)} of experts fail; here it is "
+        f"{percent(mark.observed_passing_novices)} and {percent(mark.observed_failing_experts)}."
+    )
     if aborted:
         print(
             f"They aborted {aborted} trials after a touch; these have no score, so that people who "
@@ -109,37 +108,30 @@ def compute_pass_mark(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _last_trials(opened: Study, pseudonym: str) -> tuple[PastTrial, ...]:
-    trials = opened.past_trials(pseudonym)[-LAST_TRIALS:]
-    if len(trials) < LAST_TRIALS:
-        raise InputError(
-            f"{pseudonym} has {len(trials)} scored trials, and {LAST_TRIALS} are needed of each."
-        )
-    return trials
-
-
-def _method(groups: Sequence[Sequence[Sequence[PastTrial]]]) -> RegistrationMethod:
-    methods = {trial.method for group in groups for own in group for trial in own}
+def _mean_scores(
+    opened: Study, novices: Sequence[str], experts: Sequence[str]
+) -> tuple[list[float], list[float], RegistrationMethod]:
+    """Return the mean score of each person's last trials, by group, and the trials' method."""
+    methods: set[RegistrationMethod] = set()
+    means: list[list[float]] = []
+    for group in (novices, experts):
+        means.append([])
+        for pseudonym in dict.fromkeys(group):
+            trials = opened.past_trials(pseudonym)[-LAST_TRIALS:]
+            if len(trials) < LAST_TRIALS:
+                raise InputError(
+                    f"{pseudonym} has {len(trials)} scored trials, and {LAST_TRIALS} are needed of "
+                    "each."
+                )
+            methods |= {trial.method for trial in trials}
+            means[-1].append(fmean(trial.score for trial in trials))
     if len(methods) > 1:
         names = " and ".join(sorted(method.value for method in methods))
         raise InputError(
             f"The last {LAST_TRIALS} trials of these people were registered by {names}, whose "
             "scores cannot be compared: no mark can be computed from them."
         )
-    return methods.pop()
-
-
-def _sentence(
-    mark: PassMark, novices: Sequence[float], experts: Sequence[float], method: RegistrationMethod
-) -> str:
-    return (
-        f"Pass mark {mark.score:.1f} of 100 (trials by {method.value}), from {len(novices)} "
-        f"novices (mean {fmean(novices):.1f}) and {len(experts)} experts (mean "
-        f"{fmean(experts):.1f}).\n"
-        f"If both groups are normal, {percent(mark.passing_novices)} of novices would pass and "
-        f"{percent(mark.failing_experts)} of experts fail; here it is "
-        f"{percent(mark.observed_passing_novices)} and {percent(mark.observed_failing_experts)}."
-    )
+    return means[0], means[1], methods.pop()
 
 
 COMMANDS = (

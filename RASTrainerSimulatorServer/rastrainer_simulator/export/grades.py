@@ -26,12 +26,8 @@ def grade(
     """Return the score of the trial that counts, 0 to 100; None without an acceptable one.
 
     A trial that is not acceptable gives no grade: its registration would have misled an
-    instrument.
-
-    Args:
-        trials: scored ones of one trainee, in order of starting.
-        task, mode: of the trials that count; None for any.
-        method: of their registration: scores of different methods are not compared.
+    instrument. The trials are scored ones of one trainee, in order of starting; those of `task`,
+    `mode` (None for any) and `method` count, as scores of different methods are not compared.
     """
     scores = [
         trial.score

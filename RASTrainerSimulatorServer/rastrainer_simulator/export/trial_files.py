@@ -40,14 +40,11 @@ CHANNELS = (
 )
 
 FindTrajectory = Callable[[str], Trajectory | None]
+"""Returns the trajectory of a trial's UUID."""
 
 
 def write_motion_bids(data: StudyData, folder: Path, find_trajectory: FindTrajectory) -> int:
-    """Write the dataset and return the number of trials in it.
-
-    Args:
-        find_trajectory: Returns the trajectory of a trial's UUID, or None.
-    """
+    """Write the dataset and return the number of trials in it."""
     make_empty_folder(folder)
     labels = participant_labels(data.trainees)
     runs: dict[tuple[str, str, str], int] = defaultdict(int)
@@ -83,7 +80,7 @@ def _write_trial(
 ) -> None:
     place = folder / f"sub-{label}" / "motion"
     place.mkdir(parents=True, exist_ok=True)
-    task = _task_label(trial.task)
+    task = re.sub(r"[^A-Za-z0-9]", "", trial.task) or "task"
     start, end = f"sub-{label}_task-{task}", f"acq-{trial.mode}_run-{run:02d}"
     whole = f"{start}_tracksys-{TRACKING}_{end}"
     values = resample(
@@ -91,20 +88,27 @@ def _write_trial(
     )
     lines = ["\t".join(f"{value:.4f}" for value in row) for row in values]
     write_text(place / f"{whole}_motion.tsv", "\n".join(lines) + "\n")
-    write_json(place / f"{whole}_motion.json", _motion_json(trial, trajectory))
+    write_json(place / f"{whole}_motion.json", _motion_json(task, trajectory))
     rows = [("name", "component", "type", "tracked_point", "units"), *CHANNELS]
     write_text(place / f"{whole}_channels.tsv", _tsv(rows))
-    write_text(place / f"{start}_{end}_events.tsv", _tsv(_events(trajectory)))
+    found = [
+        *((touch.time_s, 0.0, "touch", touch.label) for touch in trajectory.touches),
+        *((touch.time_s, 0.0, "refused_touch", touch.label) for touch in trajectory.refused),
+        *((c.start_s, c.duration_s, "contact", "n/a") for c in trajectory.contacts),
+    ]
+    zero = float(trajectory.times_s[0])
+    events = [
+        (f"{onset - zero:.4f}", f"{duration:.4f}", kind, label)
+        for onset, duration, kind, label in sorted(found)
+    ]
+    events.insert(0, ("onset", "duration", "trial_type", "fiducial"))
+    write_text(place / f"{start}_{end}_events.tsv", _tsv(events))
     write_json(place / f"{start}_{end}_events.json", _EVENTS_JSON)
 
 
-def _task_label(task: str) -> str:
-    return re.sub(r"[^A-Za-z0-9]", "", task) or "task"
-
-
-def _motion_json(trial: TrialRow, trajectory: Trajectory) -> dict[str, Any]:
+def _motion_json(task: str, trajectory: Trajectory) -> dict[str, Any]:
     return {
-        "TaskName": _task_label(trial.task),
+        "TaskName": task,
         "TaskDescription": "Fifteen numbered fiducials on a virtual head are touched in order with "
         "the tip of a teleoperated robot.",
         "TrackingSystemName": TRACKING,
@@ -129,20 +133,6 @@ def _motion_json(trial: TrialRow, trajectory: Trajectory) -> dict[str, Any]:
         "SoftwareVersions": rastrainer.__version__,
         "InstitutionName": "n/a",
     }
-
-
-def _events(trajectory: Trajectory) -> list[tuple[str, ...]]:
-    zero = float(trajectory.times_s[0])
-    found = [
-        *((touch.time_s, 0.0, "touch", touch.label) for touch in trajectory.touches),
-        *((touch.time_s, 0.0, "refused_touch", touch.label) for touch in trajectory.refused),
-        *((c.start_s, c.duration_s, "contact", "n/a") for c in trajectory.contacts),
-    ]
-    rows = [
-        (f"{onset - zero:.4f}", f"{duration:.4f}", kind, label)
-        for onset, duration, kind, label in sorted(found)
-    ]
-    return [("onset", "duration", "trial_type", "fiducial"), *rows]
 
 
 _EVENTS_JSON = {
@@ -207,19 +197,18 @@ def write_slicer_files(trial: StoredTrial, folder: Path) -> list[Path]:
     record, rigid = trial.record, trial.registrations.get(RIGID)
     world = folder / "touched-world.mrk.json"
     write_markups(world, PointList(record.labels, record.positions_mm))
-    if rigid is None:
-        return [world, *_write_trace(trial, folder, None), *_write_lines(trial, folder)]
-    matrix = np.reshape(rigid.matrix, (4, 4))
-    ras, transform, table = (
-        folder / name for name in ("touched-ras.mrk.json", "WorldToRas.tfm", "residuals.csv")
-    )
-    moved = transforms.apply(matrix, record.positions_mm)
-    write_markups(ras, PointList(record.labels, moved))
-    write_text(transform, transform_text(matrix))
-    residuals = zip(rigid.labels, rigid.residuals_mm, strict=True)
-    write_text(table, csv_text(["fiducial", "residual_mm"], residuals))
-    traced = _write_trace(trial, folder, matrix)
-    return [world, ras, transform, table, *traced, *_write_lines(trial, folder)]
+    written, matrix = [world], None
+    if rigid is not None:
+        matrix = np.reshape(rigid.matrix, (4, 4))
+        names = ("touched-ras.mrk.json", "WorldToRas.tfm", "residuals.csv")
+        ras, transform, table = (folder / name for name in names)
+        moved = transforms.apply(matrix, record.positions_mm)
+        write_markups(ras, PointList(record.labels, moved))
+        write_text(transform, transform_text(matrix))
+        residuals = zip(rigid.labels, rigid.residuals_mm, strict=True)
+        write_text(table, csv_text(["fiducial", "residual_mm"], residuals))
+        written += [ras, transform, table]
+    return [*written, *_write_trace(trial, folder, matrix), *_write_lines(trial, folder)]
 
 
 def _write_trace(trial: StoredTrial, folder: Path, matrix: np.ndarray | None) -> list[Path]:
@@ -241,7 +230,6 @@ def _write_trace(trial: StoredTrial, folder: Path, matrix: np.ndarray | None) ->
 
 
 def _write_lines(trial: StoredTrial, folder: Path) -> list[Path]:
-    """Write the lines of the trial's procedure, if it has one."""
     procedure, written = trial.record.procedure, []
     truth = np.eye(4) if trial.truth is None else trial.truth.matrix
     lines = () if procedure is None else true_lines(procedure, truth)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import uuid
 from typing import Any
 
@@ -30,9 +29,8 @@ NAMESPACE = uuid.UUID("6f0f2f3e-6f53-5d8f-9a1a-7f7a52415354")
 def statements(data: StudyData, home_page: str = HOME_PAGE) -> list[dict[str, Any]]:
     """Return a statement for each finished or aborted trial and each answered questionnaire.
 
-    Args:
-        data: The study; statements have the trials' UUIDs, so duplicates are recognized.
-        home_page: IRL of the lab's system, which makes pseudonyms unique.
+    They have the trials' UUIDs, so duplicates are recognized; `home_page` is of the lab's system
+    and makes pseudonyms unique.
     """
     trials = [
         _trial(trial, pass_mark_of(data.protocol, trial.method), home_page)
@@ -41,11 +39,6 @@ def statements(data: StudyData, home_page: str = HOME_PAGE) -> list[dict[str, An
     ]
     trials += [_aborted(stored.record, home_page) for stored in data.aborted]
     return trials + [_answers(answered, home_page) for answered in data.answers]
-
-
-def statements_text(data: StudyData, home_page: str = HOME_PAGE) -> str:
-    """Return the statements as a JSON array for a learning record store."""
-    return json.dumps(statements(data, home_page), indent=1, allow_nan=False) + "\n"
 
 
 def _trial(trial: TrialRow, mark: float | None, home_page: str) -> dict[str, Any]:
@@ -77,7 +70,6 @@ def _trial(trial: TrialRow, mark: float | None, home_page: str) -> dict[str, Any
 
 
 def _aborted(record: AbortedTrial, home_page: str) -> dict[str, Any]:
-    """Return the statement of an aborted trial."""
     result: dict[str, Any] = {
         "completion": False,
         "duration": f"PT{record.elapsed_s:.2f}S",

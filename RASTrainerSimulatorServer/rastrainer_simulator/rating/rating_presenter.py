@@ -15,10 +15,7 @@ from rastrainer_simulator.input.gamepads import w3c_gamepad_inputs
 from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_of
 from rastrainer_simulator.presentation.messages import InstructorOrder
-from rastrainer_simulator.presentation.presenter import (
-    Presenter,
-    ViewUpdate,
-)
+from rastrainer_simulator.presentation.presenter import Presenter, ViewUpdate
 from rastrainer_simulator.presentation.screen import Fact, Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.rating.rating_work import RatingWork
 from rastrainer_simulator.replay.playback import Playback, ShownPlayback
@@ -33,11 +30,7 @@ _IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlNam
 
 
 class RatingPresenter(Presenter):
-    """The presenter for one rater: replays under numbers, and the pages of the forms over them.
-
-    Attributes:
-        pages: which are open; none while a replay is watched.
-    """
+    """The presenter for one rater: replays under numbers, and the pages of the forms over them."""
 
     def __init__(
         self,
@@ -47,12 +40,7 @@ class RatingPresenter(Presenter):
         language: str,
         end: Callable[[], None],
     ) -> None:
-        """Begin with a replay.
-
-        Args:
-            load: begins to load the playback of a trial, by its UUID.
-            end: called when the rater leaves.
-        """
+        """Begin with a replay; `load` begins to load another, by its trial's UUID."""
         super().__init__()
         self.work = work
         self.texts = Texts(LANGUAGES[language])
@@ -71,7 +59,7 @@ class RatingPresenter(Presenter):
             self.rate()
 
     def advance(self, dt: float) -> None:
-        """Advance by `dt` seconds: show what is loaded."""
+        """Show what is loaded."""
         self.pages.advance(dt)
         loading = self._loading
         if loading is None or not loading.done():
@@ -89,7 +77,9 @@ class RatingPresenter(Presenter):
         self.shown.playback.pause(False)
         self._refresh()
 
-    def load(self) -> None:
+    def load(self, go: Callable[[], object]) -> None:
+        """Go to another replay and load it."""
+        go()
         self._loading = self._load(self.work.trial_id)
         self.pages.show(LoadingPage(self, self._loading))
         self._refresh()
@@ -104,14 +94,6 @@ class RatingPresenter(Presenter):
     def undo(self) -> None:
         self.work.undo()
         self.rate()
-
-    def go_back(self) -> None:
-        self.work.go_back()
-        self.load()
-
-    def go_on(self) -> None:
-        self.work.go_to_next()
-        self.load()
 
     def pictures(self, now: SimulationState) -> Pictures:
         return self._replay.pictures(now)
@@ -229,23 +211,21 @@ class RatingPresenter(Presenter):
         self._refresh()
 
     def _refresh(self) -> None:
-        menu = self.pages.menu()
+        menu, say = self.pages.menu(), self.texts.say
         problem = (ScreenMessage(self._problem, Tone.ERROR),) if self._problem else ()
-        screen = self._replay.screen if menu is None else self._menu_screen()
+        screen = self._replay.screen
+        if menu is not None:
+            up, down, enter, escape = (
+                input_label(self.texts, InputDevice.KEYBOARD.value, code)
+                for code in ("ArrowUp", "ArrowDown", "Enter", "Escape")
+            )
+            choose = Hint(pair_label(up, down), say("hint.choose"))
+            hints = (choose, Hint(enter, say("hint.accept")), Hint(escape, say("hint.back")))
+            screen = Screen(menu=menu, hints=hints, language=self._language)
         screen = dataclasses.replace(screen, warnings=(*screen.warnings, *problem))
         if screen != self.screen:
             self.screen = screen
             self.updates.publish(screen)
-
-    def _menu_screen(self) -> Screen:
-        def label(code: str) -> str:
-            return input_label(self.texts, InputDevice.KEYBOARD.value, code)
-
-        say = self.texts.say
-        choose = Hint(pair_label(label("ArrowUp"), label("ArrowDown")), say("hint.choose"))
-        accept = Hint(label("Enter"), say("hint.accept"))
-        hints = (choose, accept, Hint(label("Escape"), say("hint.back")))
-        return Screen(menu=self.pages.menu(), hints=hints, language=self._language)
 
     def _happened(self, what: FeedbackEvent) -> None:
         self._count += 1
@@ -279,8 +259,8 @@ class RatingPage(Page):
         actions = self.actions
         acts = {
             "undo": actions.undo,
-            "next": actions.go_on,
-            "previous": actions.go_back,
+            "next": lambda: actions.load(actions.work.go_to_next),
+            "previous": lambda: actions.load(actions.work.go_back),
             "leave": actions.leave,
         }
         return tuple(
@@ -288,7 +268,6 @@ class RatingPage(Page):
         )
 
     def back(self) -> None:
-        """Watch the replay again."""
         self.actions.watch()
 
 

@@ -79,11 +79,7 @@ def mode_color(mode: str, index: int = 0) -> str:
 
 @dataclass
 class Chart:
-    """A drawing under way.
-
-    Attributes:
-        titles: What shows under the mouse: name of a group of dots → a text for each.
-    """
+    """A drawing under way; by groups of dots, the `titles` that show under the mouse."""
 
     figure: Figure
     axes: Axes
@@ -195,15 +191,8 @@ def drawn(
         yield Chart(figure, axes, description or title)
 
 
-@dataclass(frozen=True)
-class Series:
-    """One color: name and values of each group."""
-
-    name: str
-    color: str
-    values: tuple[tuple[float, ...], ...]
-
-
+Series = tuple[str, str, Sequence[Sequence[float]]]
+"""Name, color, and the values of each group."""
 MAX_DOTS = 40
 """A bar with more trials shows as many quantiles of them."""
 
@@ -215,31 +204,25 @@ def grouped_bars(
     with drawn(WIDTH, 232, (48, 672, 50, 188), heading, f"{heading} by {by}") as chart:
         axes = chart.axes
         width = min(46.0 * len(groups) / (672 - 48), 0.72 / len(series))
-        for index, one in enumerate(series):
+        for index, (name, color, values) in enumerate(series):
             places = np.arange(len(groups)) + (index - (len(series) - 1) / 2) * width
-            means = [float(np.mean(own)) if own else np.nan for own in one.values]
-            bar: dict[str, Any] = {"color": one.color, "alpha": 0.32, "label": one.name}
-            axes.bar(places, means, 0.88 * width, **bar)
-            for place, mean, own in zip(places, means, one.values, strict=True):
-                if own:
-                    _spread(chart, place, mean, own, one.color, width)
+            means = [float(np.mean(own)) if own else np.nan for own in values]
+            axes.bar(places, means, 0.88 * width, color=color, alpha=0.32, label=name)
+            for place, mean, own in zip(places, means, values, strict=True):
+                if not own:
+                    continue
+                axes.hlines(mean, place - 0.44 * width, place + 0.44 * width, color, linewidth=2.2)
+                if len(own) > 1:
+                    sd = float(np.std(own, ddof=1))
+                    axes.vlines(place, mean - sd, mean + sd, color, linewidth=1.2)
+                shown = _thinned(own, MAX_DOTS)
+                chart.dots(place + 0.48 * width * _scattered(len(shown)), shown, color, 2.4, 0.9)
         axes.set_xlim(-0.5, len(groups) - 0.5)
         axes.set_xticks(range(len(groups)), groups, fontsize=11, color=INK)
         chart.legend(48 / WIDTH)
         note = "bar: mean; whisker: ± 1 SD; dot: one trial"
         chart.figure.text(48 / WIDTH, 6 / 232, note, fontsize=9.5, color=FAINT)
         return chart.svg()
-
-
-def _spread(
-    chart: Chart, x: float, mean: float, values: Sequence[float], color: str, width: float
-) -> None:
-    chart.axes.hlines(mean, x - 0.44 * width, x + 0.44 * width, color, linewidth=2.2)
-    if len(values) > 1:
-        sd = float(np.std(values, ddof=1))
-        chart.axes.vlines(x, mean - sd, mean + sd, color, linewidth=1.2)
-    shown = _thinned(values, MAX_DOTS)
-    chart.dots(x + 0.48 * width * _scattered(len(shown)), shown, color, 2.4, 0.9)
 
 
 def _thinned(values: Sequence[float] | np.ndarray, most: int) -> np.ndarray:
@@ -365,14 +348,8 @@ def _difference(chart: Chart, difference: float, interval: tuple[float, float]) 
     right.yaxis.tick_right()
     right.axhline(0.0, color="#9aa5b1", linewidth=1)
     reach = [[difference - low], [high - difference]]
-    style: dict[str, Any] = {
-        "color": INK,
-        "markersize": 9,
-        "elinewidth": 2,
-        "capsize": 6,
-        "capthick": 2,
-    }
-    right.errorbar([0.0], [difference], reach, fmt="o", **style)
+    bar: dict[str, Any] = {"fmt": "o", "color": INK, "markersize": 9, "capsize": 6}
+    right.errorbar([0.0], [difference], reach, elinewidth=2, capthick=2, **bar)
     right.update_datalim([(0.0, value) for value in (0.0, 1.1 * low, 1.1 * high)])
     right.autoscale_view()
     right.set_xlim(-1.0, 1.0)
@@ -469,13 +446,8 @@ def calibration_chart(
             ends = np.array([point.interval_mm for point in own])
             middles = ends.mean(axis=1)
             reach = np.abs(ends.T - middles)
-            bars: dict[str, Any] = {
-                "fmt": "none",
-                "ecolor": color,
-                "alpha": opacity,
-                "elinewidth": 1.6,
-            }
-            chart.axes.errorbar(expected, middles, reach, capsize=2.5, **bars)
+            bars: dict[str, Any] = {"fmt": "none", "ecolor": color, "alpha": opacity}
+            chart.axes.errorbar(expected, middles, reach, elinewidth=1.6, capsize=2.5, **bars)
             off = np.array([not point.is_inside for point in own])
             radius = 3.6 if few else 2.4
             chart.dots(expected[off], true[off], OFF, radius + 2.4)
@@ -493,9 +465,7 @@ def calibration_chart(
         return chart.svg()
 
 
-def split_chart(
-    kinds: Mapping[tuple[str, str], tuple[np.ndarray, np.ndarray]],
-) -> Markup:
+def split_chart(kinds: Mapping[tuple[str, str], tuple[np.ndarray, np.ndarray]]) -> Markup:
     """Return both parts of the target point errors: name and color → by registration, by hand."""
     largest = max(float(values.max()) for both in kinds.values() for values in both)
     few = sum(len(both[0]) for both in kinds.values()) <= 150

@@ -40,8 +40,7 @@ class ModeComparison:
     """One outcome in two modes.
 
     Attributes:
-        first: Mode that is subtracted.
-        second: Mode that it is subtracted from.
+        first: Mode that is subtracted from the second.
         order: By how many periods each trainee did the second mode later than the first, (n,)
             float; None if unknown.
         adjusted_p: p of the t-test, adjusted by Holm's method; None if only described.
@@ -103,10 +102,8 @@ def with_adjusted_p(
         for index, comparison in enumerate(found)
         if comparison.result is not None and comparison.outcome.name in confirmatory
     }
-    adjusted = holm(np.array([*p_values.values()]))
-    for index, p in zip(p_values, adjusted, strict=True):
-        found[index] = replace(found[index], adjusted_p=float(p))
-    return tuple(found)
+    adjusted = dict(zip(p_values, holm(np.array([*p_values.values()])).tolist(), strict=True))
+    return tuple(replace(one, adjusted_p=adjusted.get(at)) for at, one in enumerate(found))
 
 
 def tested(comparisons: Sequence[ModeComparison]) -> list[tuple[ModeComparison, PairedComparison]]:

@@ -11,12 +11,11 @@ from rastrainer.study.outcomes import MAIN_OUTCOMES, Outcome, short_mode_title
 from rastrainer.study.study_data import StudyData, values_of
 from rastrainer_simulator.report import charts
 from rastrainer_simulator.report.page import render
+from rastrainer_simulator.statistics.intervals import ALPHA
 from rastrainer_simulator.statistics.trend import (
-    ALPHA,
     MIN_FIT_TRIALS,
     STEADY,
     CohortTrend,
-    LearningCurve,
     TrendVerdict,
     cohort_trends,
     fit_learning_curve,
@@ -34,8 +33,11 @@ def learning(data: StudyData) -> Markup:
     pictures, rows, fits = [], [], []
     for (outcome, mode), own in _all_points(data).items():
         trend = trends.get((outcome, mode))
-        curve = _curve(trend, outcome)
-        fitted = []
+        curve, fitted = None, []
+        # Only of means that fall significantly.
+        if trend is not None and trend.is_shown and outcome.better <= 0:
+            has_enough = len(trend.means) >= MIN_FIT_TRIALS
+            curve = fit_learning_curve(trend.means) if has_enough else None
         if curve is not None:
             last = max(map(len, own.values()))
             fitted = [(x, curve.at(x)) for x in np.linspace(1, last, 60)]
@@ -78,25 +80,15 @@ def learning_trends(data: StudyData) -> dict[tuple[Outcome, str], CohortTrend | 
 
 
 def _all_points(data: StudyData) -> dict[tuple[Outcome, str], Points]:
-    shown = [outcome for outcome in MAIN_OUTCOMES if outcome.name in SHOWN]
-    found = {
-        (outcome, mode): _points(data, mode, outcome) for outcome in shown for mode in data.modes
-    }
-    return {key: points for key, points in found.items() if points}
-
-
-def _points(data: StudyData, mode: str, outcome: Outcome) -> Points:
-    points: Points = defaultdict(list)
     tasks = {task: number for number, task in enumerate(data.tasks, start=1)}
-    for trial in data.of_mode(mode):
-        if outcome.name in trial.values:
-            number = trial.number if data.has_order else tasks[trial.task]
-            points[trial.trainee].append((float(number), trial.values[outcome.name]))
-    return {trainee: sorted(own) for trainee, own in points.items()}
-
-
-def _curve(trend: CohortTrend | None, outcome: Outcome) -> LearningCurve | None:
-    """Return the curve of the means if they fall significantly."""
-    if trend is None or not trend.is_shown or outcome.better > 0:
-        return None
-    return fit_learning_curve(trend.means) if len(trend.means) >= MIN_FIT_TRIALS else None
+    found = {}
+    for outcome in (outcome for outcome in MAIN_OUTCOMES if outcome.name in SHOWN):
+        for mode in data.modes:
+            points: Points = defaultdict(list)
+            for trial in data.of_mode(mode):
+                if outcome.name in trial.values:
+                    number = trial.number if data.has_order else tasks[trial.task]
+                    points[trial.trainee].append((float(number), trial.values[outcome.name]))
+            if points:
+                found[outcome, mode] = {name: sorted(own) for name, own in points.items()}
+    return found

@@ -47,10 +47,10 @@ def method_comparison(data: StudyData) -> Markup:
     if len(methods) < 2:
         return Markup()
     series = [
-        charts.Series(
+        (
             outcome.title,
             color,
-            tuple(tuple(values_of(by_method.of_mode(name), outcome.name)) for name in methods),
+            [values_of(by_method.of_mode(name), outcome.name) for name in methods],
         )
         for outcome, color in COLORS.items()
     ]
@@ -90,12 +90,9 @@ def as_conditions(data: StudyData) -> StudyData:
 
 
 def compare_methods(by_method: StudyData) -> tuple[ModeComparison, ...]:
-    """Compare each two methods on residual, expected and true error.
+    """Compare each two methods of a study from `as_conditions` on residual and both errors.
 
     The p of the true errors are adjusted together (Holm); the others are only described.
-
-    Args:
-        by_method: As from `as_conditions`.
     """
     names = [name for name in TITLES if name in by_method.modes]
     found = [

@@ -11,7 +11,6 @@ from rastrainer.number_text import fixed
 from rastrainer.study.outcomes import (
     MAIN_OUTCOMES,
     MOTION_OUTCOMES,
-    Outcome,
     mode_title,
     short_mode_title,
     task_title,
@@ -28,22 +27,17 @@ def mode_comparison(data: StudyData) -> Markup:
     """Return one chart per outcome, with the modes side by side for every task."""
     found = {name for trial in data.trials for name in trial.values}
     outcomes = [each for each in MAIN_OUTCOMES if each.name in SHOWN and each.name in found]
-    return render("task_by_task", charts=[_chart(data, outcome) for outcome in outcomes])
-
-
-def _chart(data: StudyData, outcome: Outcome) -> Markup:
-    series = [
-        charts.Series(
-            mode_title(mode),
-            charts.mode_color(mode, index),
-            tuple(
-                tuple(values_of((t for t in data.of_mode(mode) if t.task == task), outcome.name))
+    titles, pictures = [task_title(task) for task in data.tasks], []
+    for outcome in outcomes:
+        series = []
+        for index, mode in enumerate(data.modes):
+            values = [
+                values_of((t for t in data.of_mode(mode) if t.task == task), outcome.name)
                 for task in data.tasks
-            ),
-        )
-        for index, mode in enumerate(data.modes)
-    ]
-    return charts.grouped_bars(outcome.heading, [task_title(task) for task in data.tasks], series)
+            ]
+            series.append((mode_title(mode), charts.mode_color(mode, index), values))
+        pictures.append(charts.grouped_bars(outcome.heading, titles, series))
+    return render("task_by_task", charts=pictures)
 
 
 def distributions(data: StudyData) -> Markup:

@@ -54,23 +54,17 @@ WRITERS = (
 """The functions that templates call."""
 
 
-def _templates() -> Environment:
-    made = Environment(
-        loader=FileSystemLoader(Path(__file__).with_name("templates")),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    writers = {each.__name__: each for each in WRITERS}
-    made.globals.update(writers)
-    made.filters.update(writers)
-    elements = made.get_template("elements.html").module
-    made.globals.update({name: getattr(elements, name) for name in ("table", "row", "figure")})
-    return made
-
-
-_TEMPLATES = _templates()
+_TEMPLATES = Environment(
+    loader=FileSystemLoader(Path(__file__).with_name("templates")),
+    autoescape=True,
+    undefined=StrictUndefined,
+    trim_blocks=True,
+    lstrip_blocks=True,
+)
+for _writer in WRITERS:
+    _TEMPLATES.globals[_writer.__name__] = _TEMPLATES.filters[_writer.__name__] = _writer
+_ELEMENTS = _TEMPLATES.get_template("elements.html").module
+_TEMPLATES.globals |= {name: getattr(_ELEMENTS, name) for name in ("table", "row", "figure")}
 
 
 def render(template: str, **values: Any) -> Markup:

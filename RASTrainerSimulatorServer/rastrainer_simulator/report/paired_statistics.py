@@ -26,7 +26,6 @@ MAX_PAIRED_CHARTS = 6
 
 
 def findings(comparisons: Sequence[ModeComparison]) -> list[str]:
-    """Return a sentence for each tested outcome."""
     return [
         what_it_shows(
             comparison.outcome.title,
@@ -52,12 +51,7 @@ def what_it_shows(
     digits: int = 2,
     several: str = "outcomes",
 ) -> str:
-    """Return a sentence that says what the comparison shows, never more.
-
-    Args:
-        comparison: Second minus first.
-        digits: After the point, of the difference and its interval.
-    """
+    """Return a sentence that says what the comparison, second minus first, shows, never more."""
     difference = comparison.mean_difference
     low, high = (signed(end, digits) for end in comparison.interval)
     span = f"from {low} to {high} {unit}".rstrip()

@@ -10,10 +10,10 @@ import numpy as np
 from markupsafe import Markup
 
 from rastrainer.protocol import TRIAL_RUN, RegistrationMethod
-from rastrainer.study.database.values import StoredAbortedTrial, moment
+from rastrainer.study.database.values import moment
 from rastrainer.study.outcomes import mode_title, short_mode_title, task_title
 from rastrainer.study.protocol.study_protocol import pass_mark_of
-from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.study.study_data import StudyData
 from rastrainer.study.tre_calibration import Proportion, proportion
 from rastrainer.trial import lc_cusum, scoring, trial_feedback
 from rastrainer_simulator.report import charts
@@ -28,23 +28,10 @@ def started_trials(data: StudyData) -> Markup:
     if not data.has_order:
         return Markup()
     scored = [stored for stored in data.aborted if stored.record.task != TRIAL_RUN]
-    return render(
-        "started_trials",
-        data=data,
-        scored=scored,
-        trial_runs=len(data.aborted) - len(scored),
-        rows=_started_rows(data, scored),
-        unscored=sorted(trial.trial_id for trial in data.trials if SCORE not in trial.values),
-        most_named=MAX_NAMED_TRIALS,
-        repeats=[stored for stored in scored if stored.repeat_reason],
-    )
-
-
-def _started_rows(data: StudyData, aborted: list[StoredAbortedTrial]) -> list[list[object]]:
     finished = Counter((trial.trainee, trial.mode, trial.task) for trial in data.trials)
     early: Counter[tuple[str, str, str]] = Counter()
     late: Counter[tuple[str, str, str]] = Counter()
-    for stored in aborted:
+    for stored in scored:
         record = stored.record
         counter = late if record.is_after_all_touches else early
         counter[record.trainee, record.mode, record.task] += 1
@@ -57,19 +44,21 @@ def _started_rows(data: StudyData, aborted: list[StoredAbortedTrial]) -> list[li
     ]
     whole = (len(data.trials), early.total(), late.total())
     counts.append((("all trials of the study", "", ""), whole))
-    return [[*names, sum(numbers), *numbers] for names, numbers in counts]
+    return render(
+        "started_trials",
+        data=data,
+        scored=scored,
+        trial_runs=len(data.aborted) - len(scored),
+        rows=[[*names, sum(numbers), *numbers] for names, numbers in counts],
+        unscored=sorted(trial.trial_id for trial in data.trials if SCORE not in trial.values),
+        most_named=MAX_NAMED_TRIALS,
+        repeats=[stored for stored in scored if stored.repeat_reason],
+    )
 
 
 @dataclass(frozen=True)
 class ModePassing:
-    """The trials and trainees of a mode that passed.
-
-    Attributes:
-        passed: Of all trials that count, those aborted after a touch included.
-        competence: LC-CUSUM of each trainee.
-        aborted: How many of the trials.
-        unscored: Likewise.
-    """
+    """The trials of a mode that passed, of all that count, also those aborted after a touch."""
 
     mode: str
     passed: Proportion
@@ -150,16 +139,13 @@ def _failures(data: StudyData, mode: str, mark: float) -> tuple[dict[str, list[b
         while own and own[0] <= moment(trial.started_utc):
             own.pop(0)
             failures[trial.trainee].append(True)
-        failures[trial.trainee].append(not _passes(trial, mark))
+        score = trial.values.get(SCORE)
+        has_passed = score is not None and scoring.passes(score, trial.acceptable, mark)
+        failures[trial.trainee].append(not has_passed)
     for trainee, own in aborted.items():
         if own:
             failures[trainee] += [True] * len(own)
     return failures, count
-
-
-def _passes(trial: TrialRow, mark: float) -> bool:
-    score = trial.values.get(SCORE)
-    return score is not None and scoring.passes(score, trial.acceptable, mark)
 
 
 def _chart(data: StudyData, found: ModePassing) -> Markup:

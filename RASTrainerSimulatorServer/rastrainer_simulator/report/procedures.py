@@ -16,7 +16,7 @@ from rastrainer.trial import procedure_outcome
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer_simulator.report import charts
 from rastrainer_simulator.report.page import render
-from rastrainer_simulator.statistics.intervals import mean
+from rastrainer_simulator.statistics.intervals import mean, rms
 
 KINDS = {
     "biopsy": ("Biopsy", "#1b6ca8"),
@@ -41,12 +41,7 @@ LEAST_TRAINEES = 3
 
 @dataclass(frozen=True)
 class ProcedureGroup:
-    """Procedures that are reported together.
-
-    Attributes:
-        done: Trials that continued with one.
-        lines: The errors of all their trajectories.
-    """
+    """Trials whose procedures are reported together, and the errors of all trajectories."""
 
     done: tuple[tuple[TrialRow, ProcedureOutcome], ...]
     lines: tuple[TrajectoryErrors, ...]
@@ -69,7 +64,7 @@ class ProcedureGroup:
         return np.array([getattr(getattr(line, error), part) for line in self.lines])
 
     def rms_text(self, error: str, part: str = WHOLE) -> str:
-        return fixed(_rms(self.lengths(error, part)), 2) if self.lines else "–"
+        return fixed(rms(self.lengths(error, part)), 2) if self.lines else "–"
 
     @property
     def target_errors(self) -> list[str]:
@@ -83,13 +78,14 @@ class ProcedureGroup:
         ]
 
     @property
-    def angles_rms(self) -> float:
-        """RMS of the angular deviations, degrees."""
-        return _rms(np.array([line.angular_deviation_deg for line in self.lines]))
-
-    @property
-    def deepest_plunge_mm(self) -> float:
-        return max((line.plunge_mm or 0.0 for line in self.lines), default=0.0)
+    def other_errors(self) -> list[str]:
+        """RMS at the entry, RMS angle, deepest plunge, least distance from no-go structures."""
+        angles = np.array([line.angular_deviation_deg for line in self.lines])
+        plunge_mm = max((line.plunge_mm or 0.0 for line in self.lines), default=0.0)
+        kept_mm = [distance for line in self.lines for distance in line.kept_mm.values()]
+        kept = f"{fixed(min(kept_mm), 1)} ({self.hits})" if kept_mm else "–"
+        entries = self.rms_text("entry_point_error")
+        return [entries, fixed(rms(angles), 2), fixed(plunge_mm, 1), kept]
 
     @property
     def acceptable(self) -> int:
@@ -101,13 +97,9 @@ class ProcedureGroup:
         return float(np.mean([found.score.score for _trial, found in self.done]))
 
     @property
-    def kept_mm(self) -> list[float]:
-        """Least distances of instruments from no-go structures; 0 or less is a hit."""
-        return [distance for line in self.lines for distance in line.kept_mm.values()]
-
-    @property
     def hits(self) -> int:
-        return sum(distance <= 0 for distance in self.kept_mm)
+        """How often an instrument hit a no-go structure."""
+        return sum(distance <= 0 for line in self.lines for distance in line.kept_mm.values())
 
     @property
     def trainees(self) -> dict[str, ProcedureGroup]:
@@ -116,18 +108,16 @@ class ProcedureGroup:
         return {name: ProcedureGroup.of(self.done, name=name) for name in names}
 
     @property
-    def mean_times_s(self) -> list[float]:
-        """Mean time of the whole trial, and of each of `PHASES`."""
+    def mean_times(self) -> list[str]:
+        """Mean time of the whole trial, and of each of `PHASES`, s; alignments of a line."""
         analyses = [found.analysis for _trial, found in self.done]
         whole = [analysis.duration_s for analysis in analyses]
         phases = [
             [analysis.phase_times_s.get(phase, 0.0) for analysis in analyses] for phase in PHASES
         ]
-        return [float(np.mean(times)) for times in (whole, *phases)]
-
-    @property
-    def alignments_a_line(self) -> float:
-        return sum(found.analysis.alignments for _trial, found in self.done) / len(self.lines)
+        alignments = sum(analysis.alignments for analysis in analyses) / len(self.lines)
+        times = [fixed(float(np.mean(each)), 0) for each in (whole, *phases)]
+        return [*times, fixed(alignments, 2)]
 
     def aligned_by(self, *, robot: bool) -> ProcedureGroup:
         """Return the same with only the lines on which the robot, or a hand, aligned the guide."""
@@ -169,7 +159,7 @@ def _over_trainees(group: ProcedureGroup) -> dict[str, Any] | None:
     if len(trainees) < LEAST_TRAINEES:
         return None
     whole, registration, hand = (
-        np.array([_rms(one.lengths(TARGET, part)) for one in trainees])
+        np.array([rms(one.lengths(TARGET, part)) for one in trainees])
         for part in (WHOLE, BY_REGISTRATION, BY_HAND)
     )
     return {
@@ -177,7 +167,3 @@ def _over_trainees(group: ProcedureGroup) -> dict[str, Any] | None:
         "spread": mean(whole),
         "difference": mean(registration - hand),
     }
-
-
-def _rms(values: np.ndarray) -> float:
-    return float(np.sqrt(np.mean(np.square(values))))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -60,11 +60,20 @@ def _of_form(form: RatingForm, marks: Marks, data: StudyData) -> dict[str, Any]:
             found["icc"], found["problem"] = intraclass_correlations(np.array(totals)), ""
         except InputError as error:
             found["icc"], found["problem"] = None, str(error)
-        found["domains"] = [
-            _domain(domain.title, domain.name, marks, pair, shared)
-            for domain in form.domains
-            for pair in itertools.combinations(names, 2)
-        ]
+        found["domains"] = []
+        for domain, pair in itertools.product(form.domains, itertools.combinations(names, 2)):
+            first, second = (
+                np.array([marks[name][trial].marks[domain.name] for trial in shared])
+                for name in pair
+            )
+            try:
+                kappa = agreement_text(quadratic_kappa(first, second, LOWEST, HIGHEST))
+            except InputError:
+                kappa = "–"
+            same = f"{fixed(100.0 * float(np.mean(first == second)), 0)} %"
+            means = f"{fixed(float(first.mean()), 1)} / {fixed(float(second.mean()), 1)}"
+            row = [domain.title, str(len(shared)), ", ".join(pair), kappa, same, means]
+            found["domains"].append(row)
     scores = {
         trial.trial_id: trial.values["score"] for trial in data.trials if "score" in trial.values
     }
@@ -76,21 +85,6 @@ def _of_form(form: RatingForm, marks: Marks, data: StudyData) -> dict[str, Any]:
     except InputError:
         return {**found, "scored": len(rated), "correlation": None}
     return {**found, "rank": float(scipy.stats.spearmanr(total, computed).statistic)}
-
-
-def _domain(
-    title: str, domain: str, marks: Marks, pair: tuple[str, str], shared: Sequence[str]
-) -> list[str]:
-    first, second = (
-        np.array([marks[name][trial].marks[domain] for trial in shared]) for name in pair
-    )
-    try:
-        kappa = agreement_text(quadratic_kappa(first, second, LOWEST, HIGHEST))
-    except InputError:
-        kappa = "–"
-    same = f"{fixed(100.0 * float(np.mean(first == second)), 0)} %"
-    means = f"{fixed(float(first.mean()), 1)} / {fixed(float(second.mean()), 1)}"
-    return [title, str(len(shared)), ", ".join(pair), kappa, same, means]
 
 
 def _in_words(agreement: Agreement) -> str:

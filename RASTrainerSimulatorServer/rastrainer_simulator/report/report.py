@@ -35,17 +35,8 @@ from rastrainer_simulator.report.method_comparison import (
 )
 from rastrainer_simulator.report.mode_comparison import distributions, mode_comparison, motion
 from rastrainer_simulator.report.page import render
-from rastrainer_simulator.report.paired_statistics import (
-    findings,
-    order_caveat,
-    paired_statistics,
-)
-from rastrainer_simulator.report.passing import (
-    ModePassing,
-    passing,
-    passing_of,
-    started_trials,
-)
+from rastrainer_simulator.report.paired_statistics import findings, order_caveat, paired_statistics
+from rastrainer_simulator.report.passing import ModePassing, passing, passing_of, started_trials
 from rastrainer_simulator.report.procedures import procedures
 from rastrainer_simulator.report.published_tables import paper_notes, published_tables, with_ctps
 from rastrainer_simulator.report.raters import raters
@@ -63,16 +54,9 @@ MAX_NAMED = 12
 
 
 def write_report(
-    data: StudyData,
-    folder: Path,
-    made_utc: str | None = None,
-    progress: Progress = no_progress,
+    data: StudyData, folder: Path, made_utc: str | None = None, progress: Progress = no_progress
 ) -> Path:
-    """Write the page of a study and its numbers into a folder, and return the page.
-
-    Args:
-        folder: Created if missing; files of an earlier report are replaced.
-    """
+    """Write the page of a study and its numbers into a folder, and return the page."""
     page_text = report_html(data, made_utc, progress)
     make_folder(folder)
     write_text(folder / PAGE, page_text)

@@ -30,7 +30,6 @@ FEW_SUBJECTS = 20
 
 
 def limits(data: StudyData, comparisons: Sequence[ModeComparison]) -> Markup:
-    """Return the section."""
     sentences = ["No trainee did two modes: nothing is said about their difference."]
     if comparisons:
         largest = max(comparisons, key=lambda one: (one.result is not None, len(one.trainees)))
@@ -40,11 +39,21 @@ def limits(data: StudyData, comparisons: Sequence[ModeComparison]) -> Markup:
     paused = sum(
         trial.values.get("pause_time_s", 0.0) > scoring.LONG_PAUSE_S for trial in data.trials
     )
+    # Means over different tasks cannot be compared.
+    lacking = []
+    for mode in data.modes:
+        own = data.of_mode(mode)
+        trainees = {trial.trainee for trial in own}
+        for task in data.tasks:
+            missing = len(trainees) - len({t.trainee for t in own if t.task == task})
+            if missing:
+                who = f"{missing} of {counted(len(trainees), 'trainee')}"
+                lacking.append(f"{task_title(task)}, {mode_title(mode)}, of {who}")
     return render(
         "limits",
         data=data,
         sentences=sentences,
-        lacking=_lacking(data),
+        lacking=lacking,
         paused=paused,
         long_pause_s=scoring.LONG_PAUSE_S,
     )
@@ -53,12 +62,7 @@ def limits(data: StudyData, comparisons: Sequence[ModeComparison]) -> Markup:
 def what_cannot_be_concluded(
     n: int, comparison: PairedComparison | None = None, order_known: bool = True
 ) -> list[str]:
-    """Return what a paired comparison of n subjects cannot show, in sentences.
-
-    Args:
-        comparison: Of theirs; None where none could be computed.
-        order_known: Whether it is known which condition each subject did first.
-    """
+    """Return what a paired comparison of n subjects cannot show, in sentences."""
     if n < 2:
         return ["One subject allows no comparison: nothing can be said of anyone else."]
     with_period = comparison is not None and comparison.sequences is not None
@@ -118,22 +122,7 @@ def _about_order(with_period: bool, order_known: bool) -> str:
     )
 
 
-def _lacking(data: StudyData) -> list[str]:
-    """Return the tasks some trainees lack: means over different tasks cannot be compared."""
-    lacking = []
-    for mode in data.modes:
-        own = data.of_mode(mode)
-        trainees = {trial.trainee for trial in own}
-        for task in data.tasks:
-            missing = len(trainees) - len({t.trainee for t in own if t.task == task})
-            if missing:
-                who = f"{missing} of {counted(len(trainees), 'trainee')}"
-                lacking.append(f"{task_title(task)}, {mode_title(mode)}, of {who}")
-    return lacking
-
-
 def methods(data: StudyData) -> Markup:
-    """Return the section."""
     return render(
         "methods",
         data=data,

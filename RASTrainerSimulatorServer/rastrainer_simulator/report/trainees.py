@@ -7,12 +7,7 @@ from collections import defaultdict
 import numpy as np
 from markupsafe import Markup
 
-from rastrainer.study.curriculum.standing import (
-    by_curriculum,
-    goal_of,
-    short_progress_of,
-    title_of,
-)
+from rastrainer.study.curriculum.standing import by_curriculum, goal_of, short_progress_of, title_of
 from rastrainer.study.outcomes import CLUSTER_METRICS, MAIN_OUTCOMES, MOTION_OUTCOMES, mode_title
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
 from rastrainer.study.study_data import StudyData
@@ -50,28 +45,22 @@ def questionnaires(data: StudyData) -> Markup:
 
 
 def groups(data: StudyData) -> Markup:
-    """Return the section."""
-    means = trainee_means(data)
-    metrics = [m for m in CLUSTER_METRICS if all(m in values for values in means.values())]
-    try:
-        found = cluster_trainees(means, metrics)
-    except NoClustersError as error:
-        return render("groups", found=None, reason=str(error))
-    outcomes = {outcome.name: outcome for outcome in (*MAIN_OUTCOMES, *MOTION_OUTCOMES)}
-    shown = [outcomes[metric] for metric in found.metrics]
-    return render("groups", found=found, outcomes=shown, most_named=MAX_NAMED)
-
-
-def trainee_means(data: StudyData) -> dict[str, dict[str, float]]:
-    """Return trainee → value → mean over all trials of the trainee."""
     values: dict[str, dict[str, list[float]]] = defaultdict(lambda: defaultdict(list))
     for trial in data.trials:
         for name, value in trial.values.items():
             values[trial.trainee][name].append(value)
-    return {
+    means = {
         trainee: {name: float(np.mean(found)) for name, found in own.items()}
         for trainee, own in values.items()
     }
+    metrics = [m for m in CLUSTER_METRICS if all(m in own for own in means.values())]
+    try:
+        clusters = cluster_trainees(means, metrics)
+    except NoClustersError as error:
+        return render("groups", found=None, reason=str(error))
+    outcomes = {outcome.name: outcome for outcome in (*MAIN_OUTCOMES, *MOTION_OUTCOMES)}
+    shown = [outcomes[metric] for metric in clusters.metrics]
+    return render("groups", found=clusters, outcomes=shown, most_named=MAX_NAMED)
 
 
 def curricula(data: StudyData) -> Markup:

@@ -27,11 +27,7 @@ TIME, ERROR, LAPSES = "completion_time_s", "rmse_mm", "undone_touches"
 
 @dataclass(frozen=True)
 class StudyVariation:
-    """Sources of variation of time and RMSE.
-
-    Attributes:
-        trade_off: k.
-    """
+    """Sources of variation of time and RMSE."""
 
     trainees: int
     trials: int
@@ -45,7 +41,18 @@ def study_variation(data: StudyData) -> StudyVariation | None:
     """Return the sources of variation; None as in `fit_variation`."""
     if not data.has_order:
         return None
-    rows = _rows(data)
+    of_trainee: dict[str, list[TrialRow]] = defaultdict(list)
+    for row in data.trials:
+        of_trainee[row.trainee].append(row)
+    # Trials of those who did every mode, numbered over all modes.
+    rows = [
+        (row, number)
+        for own in of_trainee.values()
+        if {row.mode for row in own} == set(data.modes)
+        for number, row in enumerate(own, start=1)
+        # A logarithm needs more than 0, as times and errors are.
+        if min(row.values.get(TIME, 0.0), row.values.get(ERROR, 0.0)) > 0
+    ]
     if not rows:
         return None
     names = sorted({row.trainee for row, _number in rows})
@@ -69,11 +76,7 @@ def study_variation(data: StudyData) -> StudyVariation | None:
 
 @dataclass(frozen=True)
 class ViewBias:
-    """The displacement of the target by a view that the residuals do not show.
-
-    Attributes:
-        squared: Of the displacement, mm²; below 0 by chance where it is about 0.
-    """
+    """The square of the displacement of the target by a view that residuals do not show, mm²."""
 
     trainees: int
     trials: int
@@ -98,21 +101,6 @@ def view_bias(data: StudyData, mode: str) -> ViewBias | None:
         return None
     means = np.array([np.mean(excess) for excess in own.values()])
     return ViewBias(len(own), sum(map(len, own.values())), mean(means))
-
-
-def _rows(data: StudyData) -> list[tuple[TrialRow, int]]:
-    """Return the trials of those who did every mode, numbered over all modes."""
-    of_trainee: dict[str, list[TrialRow]] = defaultdict(list)
-    for row in data.trials:
-        of_trainee[row.trainee].append(row)
-    return [
-        (row, number)
-        for own in of_trainee.values()
-        if {row.mode for row in own} == set(data.modes)
-        for number, row in enumerate(own, start=1)
-        # A logarithm needs more than 0, as times and errors are.
-        if min(row.values.get(TIME, 0.0), row.values.get(ERROR, 0.0)) > 0
-    ]
 
 
 def variation(data: StudyData) -> Markup:

@@ -21,18 +21,10 @@ _Number = TypeVar("_Number", float, np.ndarray)
 
 @dataclass(frozen=True)
 class Agreement:
-    """A coefficient: 1 if raters always agree, 0 if they agree by chance only.
-
-    Attributes:
-        value: At most 1.
-        interval: The 95 % interval; None if the data give none, as of raters who always agree.
-    """
+    """A coefficient, 1 if raters always agree, 0 if by chance only, and its 95 % interval."""
 
     value: float
     interval: tuple[float, float] | None
-
-    def holds(self, truth: float) -> bool:
-        return self.interval is not None and self.interval[0] <= truth <= self.interval[1]
 
 
 @dataclass(frozen=True)
@@ -73,9 +65,12 @@ def intraclass_correlations(ratings: np.ndarray) -> IntraclassCorrelations:
     if rows < least:
         raise InputError("On average, all objects were rated the same: agreement is undefined.")
     value = _single(n, k, rows, columns, error)
-    interval = _limits(n, k, rows, columns, error) if error >= least else None
-    single = Agreement(value, interval)
-    return IntraclassCorrelations(n, k, single, _of_mean(single, k))
+    interval = of_mean = None
+    if error >= least:
+        interval = low, high = _limits(n, k, rows, columns, error)
+        of_mean = _of_mean(low, k), _of_mean(high, k)
+    average = Agreement(_of_mean(value, k), of_mean)
+    return IntraclassCorrelations(n, k, Agreement(value, interval), average)
 
 
 def _limits(n: int, k: int, rows: float, columns: float, error: float) -> tuple[float, float]:
@@ -99,17 +94,11 @@ def _single(n: int, k: int, rows: _Number, columns: _Number, error: _Number) -> 
     return (rows - error) / (rows + (k - 1) * error + k * (columns - error) / n)
 
 
-def _of_mean(single: Agreement, k: int) -> Agreement:
-    """Return the agreement of the mean of k raters (Spearman and Brown)."""
-
-    def of_mean(value: float) -> float:
-        below = 1 + (k - 1) * value
-        # Below −1/(k − 1), the mean of the raters means nothing.
-        return k * value / below if below > 0 else -math.inf
-
-    limits = single.interval
-    interval = None if limits is None else (of_mean(limits[0]), of_mean(limits[1]))
-    return Agreement(of_mean(single.value), interval)
+def _of_mean(value: float, k: int) -> float:
+    """Return the agreement of the mean of k raters (Spearman and Brown) from that of one."""
+    below = 1 + (k - 1) * value
+    # Below −1/(k − 1), the mean of the raters means nothing.
+    return k * value / below if below > 0 else -math.inf
 
 
 def quadratic_kappa(first: np.ndarray, second: np.ndarray, lowest: int, highest: int) -> Agreement:
@@ -131,7 +120,11 @@ def quadratic_kappa(first: np.ndarray, second: np.ndarray, lowest: int, highest:
     without = []
     for own, other in zip(first - lowest, second - lowest, strict=True):
         table[own, other] -= 1.0
-        without.append(_kappa_or_one(table, weights))
+        try:
+            without.append(kappa_of_table(table, weights))
+        except InputError:
+            # Only one mark is left, which leaves no limits either.
+            without.append(1.0)
         table[own, other] += 1.0
     if max(value, *without) >= 1.0 - 1e-12:
         return Agreement(value, None)
@@ -156,11 +149,3 @@ def kappa_of_table(table: np.ndarray, weights: np.ndarray) -> float:
             "Both raters gave every object the same mark: agreement cannot be computed."
         )
     return (observed - by_chance) / (1 - by_chance)
-
-
-def _kappa_or_one(table: np.ndarray, weights: np.ndarray) -> float:
-    """Return a kappa; 1 where only one mark is left, which leaves no limits either."""
-    try:
-        return kappa_of_table(table, weights)
-    except InputError:
-        return 1.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import bisect
 import functools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -143,9 +144,6 @@ class Estimate:
         low, high = self.interval
         return Estimate(-self.value, (-high, -low))
 
-    def holds(self, truth: float) -> bool:
-        return self.interval[0] <= truth <= self.interval[1]
-
 
 @dataclass(frozen=True)
 class MeanSquare:
@@ -165,6 +163,10 @@ def mean(values: np.ndarray) -> Estimate:
     """Return the mean of (n,) float independent values, n ≥ 2."""
     error = float(values.std(ddof=1)) / math.sqrt(len(values))
     return coefficient(float(values.mean()), error, len(values) - 1)
+
+
+def rms(values: Sequence[float] | np.ndarray) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))
 
 
 def variance(square: MeanSquare) -> Estimate:
@@ -191,8 +193,7 @@ def difference(first: MeanSquare, second: MeanSquare) -> Estimate:
 def _factors(tail: float, dof: float, other_dof: float) -> np.ndarray:
     """Return the factors of both squares and of their product in the square of one reach.
 
-    Args:
-        tail: Probability above the quantile of the first mean square: small for the lower limit.
+    `tail`, the probability above the first mean square's quantile, is small for the lower limit.
     """
     own = 1 - 1 / chi2_ratio(1 - tail, dof)
     others = 1 - 1 / chi2_ratio(tail, other_dof)

@@ -31,12 +31,9 @@ MIN_SUBJECTS = 4
 
 @dataclass(frozen=True)
 class DifferenceFit:
-    """The mean of differences, and the effect of the period if separated.
+    """The mean of differences without the order's effect, and the period's if separated.
 
     Arrays have the shape of the data without its last axis.
-
-    Attributes:
-        mean: Difference for subjects unaffected by the order.
     """
 
     mean: np.ndarray
@@ -62,9 +59,7 @@ def is_separable(order: np.ndarray | None) -> bool:
 def fit_differences(differences: np.ndarray, order: np.ndarray | None = None) -> DifferenceFit:
     """Return the mean of (…, n) float differences, second condition minus first.
 
-    Args:
-        differences: A study in the last axis.
-        order: As for `is_separable`; where it is not separable, the plain mean is returned.
+    `order` is that of `is_separable`; where it is not separable, the plain mean is returned.
     """
     n = differences.shape[-1]
     means = differences.mean(axis=-1)
@@ -266,7 +261,8 @@ def signed_rank_test(differences: np.ndarray) -> RankTest:
         raise InputError(
             f"The signed-rank test needs 1 to {MAX_SIGNED} differences that are not 0."
         )
-    doubled = _doubled(scipy.stats.rankdata(np.abs(values)))
+    # Tied ranks are halves: whole numbers can be counted.
+    doubled = np.rint(2 * scipy.stats.rankdata(np.abs(values))).astype(int)
     chances = np.zeros(int(doubled.sum()) + 1)
     chances[0] = 1.0
     for rank in doubled:
@@ -292,18 +288,13 @@ def rank_sum_test(one: np.ndarray, other: np.ndarray) -> RankTest | None:
         return RankTest(
             float(scipy.stats.mannwhitneyu(one, other, method="asymptotic").pvalue), 0.0
         )
-    doubled = _doubled(ranks)
+    doubled = np.rint(2 * ranks).astype(int)
     counts = np.zeros((drawn + 1, int(doubled.sum()) + 1))
     counts[0, 0] = 1.0
     for rank in doubled:
         counts[1:, rank:] += counts[:-1, : counts.shape[1] - rank].copy()
     chances = counts[drawn] / math.comb(len(doubled), drawn)
     return _exact_test(chances, int(doubled[:drawn].sum()))
-
-
-def _doubled(ranks: np.ndarray) -> np.ndarray:
-    """Return twice the ranks, since tied ones are halves: whole numbers can be counted."""
-    return np.rint(2 * ranks).astype(int)
 
 
 def _exact_test(chances: np.ndarray, observed: int) -> RankTest:

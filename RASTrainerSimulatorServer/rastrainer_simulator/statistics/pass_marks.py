@@ -19,11 +19,7 @@ MIN_GROUP_SIZE = 5
 
 @dataclass(frozen=True)
 class PassMark:
-    """A pass mark, and its errors if the scores of both groups are normal.
-
-    Attributes:
-        score: Those at or above it pass.
-    """
+    """A score at or above which people pass, and its errors if both groups are normal."""
 
     score: float
     passing_novices: float
@@ -35,9 +31,7 @@ class PassMark:
 def pass_mark(novices: Sequence[float], experts: Sequence[float]) -> PassMark:
     """Return the score at which the normal curves of both groups cross between their means.
 
-    Args:
-        novices: One score a person, such as the mean of the last trials.
-        experts: The same; higher is better.
+    Each person has one score, such as the mean of the last trials; higher is better.
     """
     low, high = np.asarray(novices, dtype=float), np.asarray(experts, dtype=float)
     if min(len(low), len(high)) < MIN_GROUP_SIZE:
@@ -51,7 +45,13 @@ def pass_mark(novices: Sequence[float], experts: Sequence[float]) -> PassMark:
     above = NormalDist(float(high.mean()), float(high.std(ddof=1)))
     if not above.mean > below.mean:
         raise InputError("A pass mark needs experts who score higher than the novices.")
-    score = _crossing(below, above)
+    left, right = below.mean, above.mean
+    if below.pdf(left) < above.pdf(left) or above.pdf(right) < below.pdf(right):
+        # One curve covers the other's mean, so that they do not cross between the means: the
+        # point of equal errors.
+        score = (left * above.stdev + right * below.stdev) / (above.stdev + below.stdev)
+    else:
+        score = float(scipy.optimize.brentq(lambda x: below.pdf(x) - above.pdf(x), left, right))
     return PassMark(
         score=score,
         passing_novices=1 - below.cdf(score),
@@ -59,13 +59,3 @@ def pass_mark(novices: Sequence[float], experts: Sequence[float]) -> PassMark:
         observed_passing_novices=float(np.mean(low >= score)),
         observed_failing_experts=float(np.mean(high < score)),
     )
-
-
-def _crossing(below: NormalDist, above: NormalDist) -> float:
-    """Return where the densities cross between the means, or the point of equal errors."""
-    left, right = below.mean, above.mean
-    if below.pdf(left) < above.pdf(left) or above.pdf(right) < below.pdf(right):
-        # One curve covers the other's mean: they do not cross between the means.
-        return (left * above.stdev + right * below.stdev) / (above.stdev + below.stdev)
-    apart = scipy.optimize.brentq(lambda score: below.pdf(score) - above.pdf(score), left, right)
-    return float(apart)

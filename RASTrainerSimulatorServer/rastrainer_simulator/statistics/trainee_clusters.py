@@ -12,13 +12,13 @@ import scipy
 
 from rastrainer.errors import RASTrainerError
 from rastrainer.number_text import p_phrase
+from rastrainer_simulator.statistics.intervals import ALPHA
 
 MIN_TRAINEES = 12
 TRAINEES_A_CLUSTER = 5
 MAX_CLUSTERS = 5
 STABLE = 0.75
 """Hennig 2007: below it, a cluster should not be trusted."""
-ALPHA = 0.05
 STABILITY_ROUNDS = 100
 
 
@@ -54,13 +54,7 @@ def cluster_trainees(
     reported only if there is more than one peak: Hartigans' dip test on the first principal
     component, which is chosen without looking for groups, at 5 % for every population with a single
     peak. The number of clusters is the one with the best mean silhouette, and every cluster must
-    come back when trainees are resampled.
-
-    Args:
-        trainees: Pseudonym → metric → mean of the trainee.
-
-    Raises:
-        NoClustersError: too few trainees, metrics that do not vary, or no groups are shown.
+    come back when trainees are resampled. Otherwise, `NoClustersError` says why there are none.
     """
     names = sorted(name for name, values in trainees.items() if set(metrics) <= set(values))
     if len(names) < MIN_TRAINEES:

@@ -20,10 +20,9 @@ import numpy as np
 import scipy
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.statistics.intervals import mean
+from rastrainer_simulator.statistics.intervals import ALPHA, mean
 from rastrainer_simulator.statistics.paired import holm
 
-ALPHA = 0.05
 MIN_TRIALS = 4
 """Three trials have six orders: their smallest p is 1/6."""
 STEADY = 0.1
@@ -73,7 +72,12 @@ def falling_trend(values: Sequence[float] | np.ndarray) -> Trend:
     reach = float(scipy.stats.t.ppf(1 - ALPHA, len(y) - 2)) * error
     p = _permuted_p(y, weights)
     interval = (change - reach, change + reach)
-    return Trend(len(y), change, interval, p, _verdict(p, interval, float(np.abs(y).mean())))
+    verdict = TrendVerdict.UNDECIDED
+    if p <= ALPHA + 1e-12:
+        verdict = TrendVerdict.FALLS
+    elif max(-interval[0], interval[1]) < STEADY * float(np.abs(y).mean()):
+        verdict = TrendVerdict.STEADY
+    return Trend(len(y), change, interval, p, verdict)
 
 
 def change_weights(trials: int) -> np.ndarray:
@@ -101,13 +105,9 @@ def cohort_trend_p(rows: np.ndarray) -> float:
 
 def _permuted_p(y: np.ndarray, weights: np.ndarray) -> float:
     """Return the share of the orders of y whose change is as far below 0."""
-
-    def change(ordered: np.ndarray, axis: int = -1) -> np.ndarray:
-        return (np.moveaxis(ordered, axis, -1) * weights).sum(axis=-1)
-
     found = scipy.stats.permutation_test(
         (y,),
-        change,
+        lambda ordered, axis: (np.moveaxis(ordered, axis, -1) * weights).sum(axis=-1),
         permutation_type="pairings",
         alternative="less",
         vectorized=True,
@@ -115,14 +115,6 @@ def _permuted_p(y: np.ndarray, weights: np.ndarray) -> float:
         random_state=np.random.default_rng(0),
     )
     return float(found.pvalue)
-
-
-def _verdict(p: float, interval: tuple[float, float], mean: float) -> TrendVerdict:
-    if p <= ALPHA + 1e-12:
-        return TrendVerdict.FALLS
-    if max(-interval[0], interval[1]) < STEADY * mean:
-        return TrendVerdict.STEADY
-    return TrendVerdict.UNDECIDED
 
 
 @dataclass(frozen=True)
@@ -158,11 +150,8 @@ Series = Sequence[Sequence[float]]
 def cohort_trends(tested: Sequence[tuple[Series, int]]) -> list[CohortTrend | None]:
     """Return the trend of several trainees in each of some outcomes, with p adjusted (Holm).
 
-    There is none where no trainee has four trials.
-
-    Args:
-        tested: Of each outcome, the values of all trials of each trainee, in their order; and -1
-            where less is better, 1 where more is.
+    There is none where no trainee has four trials. Of each outcome, `tested` has the values of all
+    trials of each trainee, in their order; and -1 where less is better, 1 where more is.
     """
     found = [_cohort_trend(*each) for each in tested]
     p_values = {

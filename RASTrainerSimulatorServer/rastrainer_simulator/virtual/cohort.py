@@ -26,7 +26,7 @@ from rastrainer.study.protocol.study_protocol import StudyProtocol, protocol_tex
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.setup import DEFAULT_SCENARIO, scenario_sha256
 from rastrainer_simulator.virtual.play import PlaySettings, play_job
-from rastrainer_simulator.virtual.population import Population, TrialJob, trial_jobs
+from rastrainer_simulator.virtual.population import Population, trial_jobs
 from rastrainer_simulator.virtual.worker_pool import (
     ATTEMPTS,
     WorkerDiedError,
@@ -102,12 +102,7 @@ DATABASE, TRUTH, PROTOCOL, RECORDS = "study.db", "truth.json", "protocol.json", 
 
 @dataclass(frozen=True)
 class CohortRun:
-    """How a simulation went.
-
-    Attributes:
-        found: Trials that had been played before, if the cohort was resumed.
-        stuck: Trials played now in which the virtual trainee did not reach a fiducial.
-    """
+    """How many trials were found played, were played now, or got stuck, and how long it took."""
 
     found: int
     played: int
@@ -153,10 +148,6 @@ def simulate_cohort(
         "version of RASTrainer": rastrainer.__version__,
     }
     planned = trainees * len(protocol.modes) * len(protocol.tasks) * protocol.repetitions
-
-    def name_of(job: TrialJob) -> str:
-        return f"The trial of {job.trainee}, {job.task} ({job.mode}),"
-
     counts = dict.fromkeys(("found", "played", "stuck"), 0)
     simulated_s = 0.0
     with Study.open(folder / DATABASE) as study:
@@ -173,14 +164,18 @@ def simulate_cohort(
                 counts["found"] += 1
             else:
                 missing.append(job)
-        for trial in run_jobs(function, missing, engine, workers, address, name_of):
+        trials = run_jobs(
+            *(function, missing, engine, workers, address),
+            name_of=lambda job: f"The trial of {job.trainee}, {job.task} ({job.mode}),",
+        )
+        for trial in trials:
             if trial.analysis is None:
                 store.add_stuck(trial.job.trial_id)
                 counts["stuck"] += 1
             else:
                 store.add(trial.analysis)
                 counts["played"] += 1
-                simulated_s += trial.record.completion_time_s
+                simulated_s += trial.analysis.record.completion_time_s
             if on_trial is not None:
                 on_trial(sum(counts.values()))
         store.finish()

@@ -39,6 +39,7 @@ from rastrainer.scenario.scenario import Scenario, task_by_method
 from rastrainer.transforms import frame_along
 from rastrainer.trial.score_reference import region_of
 from rastrainer.trial.touch_registration import LEAST_ALONG_SURFACE, GivenPoints, normals_at
+from rastrainer_simulator.statistics.intervals import rms
 
 PUBLISHED_NOISE: Mapping[RegistrationMethod, float] = {
     RegistrationMethod.BONE_SCREWS: 0.5,
@@ -204,17 +205,13 @@ def mean_of(results: Sequence[MethodResult]) -> tuple[float, float, float | None
     The first three are root mean squares over trials and targets, mm; the last two are None if the
     truth is unknown.
     """
-    residual = _rms([one.residual_mm for one in results])
-    expected = _rms([error.expected_mm for one in results for error in one.errors])
+    residual = rms([one.residual_mm for one in results])
+    expected = rms([error.expected_mm for one in results for error in one.errors])
     true = [one.true_mm for one in results if one.true_mm is not None]
     if len(true) < len(results):
         return residual, expected, None, None
     held = np.concatenate([one.holds for one in results])
-    return residual, expected, _rms(np.concatenate(true)), float(held.mean())
-
-
-def _rms(values: Sequence[float] | np.ndarray) -> float:
-    return float(np.sqrt(np.mean(np.square(values))))
+    return residual, expected, rms(np.concatenate(true)), float(held.mean())
 
 
 TRACE_POINTS = 200

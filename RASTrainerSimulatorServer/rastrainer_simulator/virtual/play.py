@@ -57,15 +57,6 @@ class UnfinishedTrialError(RASTrainerError):
     """The scripted trainee did not touch all fiducials in half an hour of simulated time."""
 
 
-@dataclass(frozen=True)
-class VirtualTrial:
-    """The touches (15, 3) of a played trial, World, and the truth: RAS, and the head's pose; mm."""
-
-    touches_mm: np.ndarray
-    fiducials_mm: np.ndarray
-    head_to_world: np.ndarray
-
-
 def play_virtual_trial(
     simulation: Simulation,
     task_name: str,
@@ -76,14 +67,10 @@ def play_virtual_trial(
     trainee: str | None = None,
     mode: Mode = Mode.DESKTOP,
     trial_id: str | None = None,
-) -> VirtualTrial:
+) -> None:
     """Play one task to its registration; the simulation is left in the phase `registered`.
 
-    Args:
-        dt: the simulation's step in s.
-        trainee: pseudonym; by default derived from the seed.
-        mode: goes into the record; the hands do not see it.
-        trial_id: UUID; by default derived from the simulation's seed and the trial's number.
+    The mode goes into the record; the hands do not see it.
     """
     scenario = simulation.setup.scenario
     head_to_world = scenario.perturbed_head_to_world(seed)
@@ -127,11 +114,6 @@ def play_virtual_trial(
         state = result.state
         if action is not None and action[0] == CommandName.CAPTURE and not result.answers[0].ok:
             hands.touch_refused()
-    return VirtualTrial(
-        touches_mm=MM_PER_M * np.array([touch.position for touch in state.training.touches]),
-        fiducials_mm=scenario.task(task_name).fiducials,
-        head_to_world=head_to_world,
-    )
 
 
 STEP_S = 0.05
@@ -159,11 +141,6 @@ class PlayedTrial:
     job: TrialJob
     analysis: TrialAnalysis | None
 
-    @property
-    def record(self) -> TrialRecord:
-        assert self.analysis is not None, "The trainee got stuck."
-        return self.analysis.record
-
 
 def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
     """Play, register and score one trial; equal jobs give equal trials on any machine."""
@@ -185,7 +162,7 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
             registered.measured()
 
     try:
-        trial = play_virtual_trial(
+        play_virtual_trial(
             simulation,
             job.task,
             job.seed,
@@ -207,13 +184,14 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
     if settings.records is not None:
         _write_journal(settings.records, entries, job.started)
     scenario = simulation.setup.scenario
+    head_to_world = scenario.perturbed_head_to_world(job.seed)
     analysis = analyze_trial(record, scenario)
-    where = Truth(trial.head_to_world, scenario.target_position, {})
+    where = Truth(head_to_world, scenario.target_position, {})
     truth = RevealedTruth(
-        tuple(trial.head_to_world.ravel().tolist()), where.target_error_mm(analysis.rigid.matrix)
+        tuple(head_to_world.ravel().tolist()), where.target_error_mm(analysis.rigid.matrix)
     )
     if job.procedure:
-        done = _procedure(job, analysis, scenario, trial.head_to_world)
+        done = _procedure(job, analysis, scenario, head_to_world)
         analysis = replace(analysis, record=replace(record, procedure=done))
     return PlayedTrial(job, analysis.scored(scenario, truth, settings.references))
 

@@ -78,12 +78,7 @@ class ProcedureHands:
 
 @dataclass(frozen=True, eq=False)
 class VirtualProcedure:
-    """A procedure on a skull, whose SHA-256 is known, after a registration.
-
-    Attributes:
-        head_to_world: (4, 4) float, mm, the true pose.
-        touching_s: How long the touches took.
-    """
+    """A procedure on a skull of known SHA-256, after a registration; the true pose is in mm."""
 
     procedure: Procedure
     skull: HeadMesh

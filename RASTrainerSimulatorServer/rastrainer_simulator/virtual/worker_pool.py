@@ -29,10 +29,7 @@ class WorkerDiedError(InputError):
 
 
 def run_on_workers(
-    function: Callable[[Any], Any],
-    jobs: Iterable[Any],
-    workers: int,
-    name_of: Callable[[Any], str],
+    function: Callable[[Any], Any], jobs: Iterable[Any], workers: int, name_of: Callable[[Any], str]
 ) -> Iterator[Any]:
     """Yield the result of each job, in their order; the processes end with the iterator.
 
@@ -48,8 +45,6 @@ def run_on_workers(
 
 @dataclass
 class _Task:
-    """A job, its place in the order, and the number of attempts."""
-
     place: int
     job: Any
     attempts: int = 0
@@ -102,7 +97,11 @@ class _Pool:
                 if task is None:
                     break
                 given = max(given, task.place + 1)
-                self._idle_worker().send(task)
+                idle = next((worker for worker in self.workers if worker.task is None), None)
+                if idle is None:
+                    idle = _Worker(self._function)
+                    self.workers.append(idle)
+                idle.send(task)
                 count += 1
             busy = [(worker, task) for worker in self.workers if (task := worker.task) is not None]
             if not busy:
@@ -119,22 +118,12 @@ class _Pool:
                 yield result
                 turn += 1
 
-    def _idle_worker(self) -> _Worker:
-        for worker in self.workers:
-            if worker.task is None:
-                return worker
-        self.workers.append(_Worker(self._function))
-        return self.workers[-1]
-
     def _receive(self, worker: _Worker, task: _Task) -> None:
-        try:
+        """Take the result, or have another process repeat the job of one that died."""
+        with contextlib.suppress(EOFError, OSError):
             self._done[task.place] = worker.connection.recv()
             worker.task = None
-        except (EOFError, OSError):
-            self._replace(worker, task)
-
-    def _replace(self, worker: _Worker, task: _Task) -> None:
-        """Repeat the job of a process that died with another one."""
+            return
         self.workers.remove(worker)
         # It closed its end: it is dead or about to die.
         worker.process.join()

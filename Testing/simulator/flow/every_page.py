@@ -204,7 +204,7 @@ class _Desk:
     """A rater's desk, as far as pages show it."""
 
     work = _Rated()
-    undo = go_on = go_back = leave = None
+    undo = load = leave = None
 
     def __init__(self, texts):
         self.texts = texts

@@ -59,8 +59,9 @@ def played(setup):
     @functools.cache
     def play(beside):
         meanwhile = Meanwhile(*BESIDE[beside])
-        trial = play_virtual_trial(simulation, "task-1", 3, BRISK, DT, meanwhile)
-        truth = RevealedTruth(tuple(trial.head_to_world.ravel().tolist()), 0.0)
+        play_virtual_trial(simulation, "task-1", 3, BRISK, DT, meanwhile)
+        head_to_world = setup.scenario.perturbed_head_to_world(3)
+        truth = RevealedTruth(tuple(head_to_world.ravel().tolist()), 0.0)
         return analyze_trial(meanwhile.record, setup.scenario, truth=truth)
 
     return play

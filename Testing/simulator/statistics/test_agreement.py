@@ -10,6 +10,7 @@ from rastrainer_simulator.statistics.agreement import (
     kappa_of_table,
     quadratic_kappa,
 )
+from Testing.error_rates.measured import holds
 
 # Six targets by four judges: Shrout and Fleiss 1979, table 2.
 SHROUT_FLEISS = np.array(
@@ -114,8 +115,8 @@ def test_a_quadratic_kappa_is_that_of_the_python_package_statsmodels():
     # Their standard error is 0.0446; ours is of the jackknife, a little larger.
     low, high = found.interval
     assert 3.9 * 0.0446 < high - low < 6.0 * 0.0446
-    assert found.holds(0.8)
-    assert not found.holds(0.5)
+    assert holds(found.interval, 0.8)
+    assert not holds(found.interval, 0.5)
 
 
 def test_kappa_does_not_depend_on_the_order_of_raters_or_the_direction_of_the_scale():

@@ -12,6 +12,7 @@ from rastrainer_simulator.statistics.intervals import (
     mean,
     variance,
 )
+from Testing.error_rates.measured import holds
 
 
 def test_the_interval_of_a_mean_is_that_of_the_t_test():
@@ -46,7 +47,7 @@ def test_the_interval_of_a_difference_contains_it_in_95_of_100_cases(dof, other_
         strict=True,
     )
     held = [
-        difference(MeanSquare(one, dof), MeanSquare(other, other_dof)).holds(ratio - 1.0)
+        holds(difference(MeanSquare(one, dof), MeanSquare(other, other_dof)).interval, ratio - 1.0)
         for one, other in squares
     ]
     # Three standard errors of 2000 cases are 1.5 %.

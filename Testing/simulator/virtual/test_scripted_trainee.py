@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from rastrainer import transforms
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.virtual.play import play_virtual_trial
@@ -29,10 +30,13 @@ def test_all_fiducials_are_reached_and_the_tip_never_goes_under_the_head(head, t
         if result.state.training.touches:
             heights.append(MM_PER_M * result.state.tool_tip_to_world[2, 3])
 
-    trial = play_virtual_trial(Simulation(setup, 1), task, 1, Skill(), DT, note)
-    fiducials = trial.fiducials_mm @ trial.head_to_world[:3, :3].T + trial.head_to_world[:3, 3]
-    assert len(trial.touches_mm) == 15
-    assert np.linalg.norm(trial.touches_mm - fiducials, axis=1).max() < 6.0
+    simulation, scenario = Simulation(setup, 1), setup.scenario
+    play_virtual_trial(simulation, task, 1, Skill(), DT, note)
+    head_to_world = scenario.perturbed_head_to_world(1)
+    fiducials = transforms.apply(head_to_world, scenario.task(task).fiducials)
+    touches = MM_PER_M * np.array([one.position for one in simulation.state.training.touches])
+    assert len(touches) == 15
+    assert np.linalg.norm(touches - fiducials, axis=1).max() < 6.0
     assert min(heights) > fiducials[:, 2].min() - 2 * LIFT_MM
 
 
@@ -46,6 +50,7 @@ def test_slow_moving_hands_touch_only_once_they_have_arrived(setup):
             if command.name == "Capture" and not answer.ok:
                 refused.append(answer.message)
 
-    trial = play_virtual_trial(Simulation(setup, 1), "task-5", 1, skill, DT, note)
-    assert len(trial.touches_mm) == 15
+    simulation = Simulation(setup, 1)
+    play_virtual_trial(simulation, "task-5", 1, skill, DT, note)
+    assert len(simulation.state.training.touches) == 15
     assert refused == []
