@@ -66,22 +66,18 @@ def surface_distances(
     whole, target = trimesh.util.concatenate(one), trimesh.util.concatenate(other)
     points, faces = trimesh.sample.sample_surface(whole, samples, seed=seed)
     links = np.repeat(np.arange(len(one)), [len(mesh.faces) for mesh in one])[faces]
-    seen = _visible(whole, points, whole.face_normals[faces]) & (points[:, 2] > GROUND)
-    _, distances, _ = trimesh.proximity.closest_point(target, points[seen])
-    return distances * MM_PER_M, links[seen]
-
-
-def _visible(mesh: trimesh.Trimesh, points: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """Return which points (n, 3) see the outside in enough of the directions above them."""
-    above = np.zeros(len(points))
-    free = np.zeros(len(points))
+    # Seen are points that see the outside in enough of the directions above them.
+    normals = whole.face_normals[faces]
+    above, free = np.zeros(len(points)), np.zeros(len(points))
     for direction in sphere_directions(DIRECTIONS):
         facing = np.flatnonzero(normals @ direction > 0)
         starts = points[facing] + LIFT * normals[facing]
-        hit = mesh.ray.intersects_any(starts, np.tile(direction, (len(facing), 1)))
+        hit = whole.ray.intersects_any(starts, np.tile(direction, (len(facing), 1)))
         above[facing] += 1
         free[facing[~hit]] += 1
-    return free >= OPEN_FRACTION * above
+    seen = (free >= OPEN_FRACTION * above) & (points[:, 2] > GROUND)
+    _, distances, _ = trimesh.proximity.closest_point(target, points[seen])
+    return distances * MM_PER_M, links[seen]
 
 
 def _summary(distances: np.ndarray) -> str:

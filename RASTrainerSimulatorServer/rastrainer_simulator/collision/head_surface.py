@@ -24,7 +24,6 @@ class Nearest(NamedTuple):
         distance_m: signed clearance, m; below zero inside the head.
         point: on the surface, m.
         normal: unit vector away from the head, along which the clearance grows.
-        triangle: of the head's surface, by its number.
     """
 
     distance_m: float

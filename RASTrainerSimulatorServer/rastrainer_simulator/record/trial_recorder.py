@@ -136,7 +136,6 @@ class TrialRecorder:
         return self._submit(trial, is_awaited=False) if is_due and not trial.is_stuck else None
 
     def note_display(self, report: NotedReport, state: SimulationState) -> None:
-        """Record a report of a view if a trial is open."""
         if self._open is not None and self._open.registering is None:
             self._open.entries.add_display(report, state)
 

@@ -54,7 +54,24 @@ class Shadows(Enum):
 
 def light_room(renderer: vtkRenderer, shadows: Shadows = Shadows.FULL) -> None:
     """Give a renderer its surroundings, lamps and smooth edges, and shadows if wanted."""
-    renderer.SetEnvironmentTexture(_environment())
+    # The surroundings as light by direction: a pale room with bright panels.
+    width, height = 128, 64
+    elevation = np.linspace(-np.pi / 2, np.pi / 2, height)[:, None]
+    azimuth = np.linspace(-np.pi, np.pi, width)[None, :]
+    light = np.broadcast_to(SURROUNDINGS * (0.92 + 0.2 * np.sin(elevation)), (height, width)).copy()
+    for toward, above, wide, high, glow in PANELS:
+        across, upward = (azimuth - toward) / wide, (elevation - above) / high
+        light += glow * np.exp(-(across**4) - upward**4)
+    pixels = np.repeat(light.reshape(-1, 1), 3, axis=1).astype(np.float32)
+    image = vtkImageData()
+    image.SetDimensions(width, height, 1)
+    image.GetPointData().SetScalars(numpy_to_vtk(pixels, deep=True))
+    texture = vtkTexture()
+    texture.SetInputData(image)
+    texture.SetColorModeToDirectScalars()
+    texture.MipmapOn()
+    texture.InterpolateOn()
+    renderer.SetEnvironmentTexture(texture)
     renderer.SetEnvironmentUp(0.0, 0.0, 1.0)
     renderer.SetEnvironmentRight(1.0, 0.0, 0.0)
     renderer.UseImageBasedLightingOn()
@@ -72,28 +89,6 @@ def light_room(renderer: vtkRenderer, shadows: Shadows = Shadows.FULL) -> None:
         renderer.UseFXAAOn()
     else:
         renderer.SetPass(_passes(shadows))
-
-
-def _environment(width: int = 128) -> vtkTexture:
-    """Return the surroundings as light by direction: a pale room with bright panels."""
-    elevation = np.linspace(-np.pi / 2, np.pi / 2, width // 2)[:, None]
-    azimuth = np.linspace(-np.pi, np.pi, width)[None, :]
-    light = np.broadcast_to(
-        SURROUNDINGS * (0.92 + 0.2 * np.sin(elevation)), (width // 2, width)
-    ).copy()
-    for toward, above, wide, high, glow in PANELS:
-        across, upward = (azimuth - toward) / wide, (elevation - above) / high
-        light += glow * np.exp(-(across**4) - upward**4)
-    pixels = np.repeat(light.reshape(-1, 1), 3, axis=1).astype(np.float32)
-    image = vtkImageData()
-    image.SetDimensions(width, width // 2, 1)
-    image.GetPointData().SetScalars(numpy_to_vtk(pixels, deep=True))
-    texture = vtkTexture()
-    texture.SetInputData(image)
-    texture.SetColorModeToDirectScalars()
-    texture.MipmapOn()
-    texture.InterpolateOn()
-    return texture
 
 
 def _lamp(aside: float, above: float) -> vtkLight:

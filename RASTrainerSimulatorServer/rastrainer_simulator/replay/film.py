@@ -30,7 +30,6 @@ from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.viewpoint.best_view import TouchViews
 from rastrainer_simulator.viewpoint.view_control import (
     STILL,
-    CameraPose,
     ViewControl,
     camera_pose,
     orbit_to,
@@ -145,22 +144,19 @@ class _FilmedScene:
                 training.next_point,
                 state.proximity,
             )
-            self._move_parts(moment)
+            poses, looks = moment.poses(self._robot), moment.looks()
+            if looks != self._looks:
+                self._looks = looks
+                self.renderer.RemoveAllViewProps()
+                for node in self._nodes:
+                    self._actors[node.name] = node_actors([node], poses, looks)
+                    for actor in self._actors[node.name]:
+                        self.renderer.AddActor(actor)
+            for name, pose in poses.items():
+                for actor in self._actors.get(name, ()):
+                    actor.SetUserMatrix(vtk_matrix(pose))
             yield self._follow(training.next_point, state.q, 1.0 / RATE_HZ), SIZE
             yield self._scenario.cameras[FAR], (inset[0], inset[1])
-
-    def _move_parts(self, moment: SceneMoment) -> None:
-        poses, looks = moment.poses(self._robot), moment.looks()
-        if looks != self._looks:
-            self._looks = looks
-            self.renderer.RemoveAllViewProps()
-            for node in self._nodes:
-                self._actors[node.name] = node_actors([node], poses, looks)
-                for actor in self._actors[node.name]:
-                    self.renderer.AddActor(actor)
-        for name, pose in poses.items():
-            for actor in self._actors.get(name, ()):
-                actor.SetUserMatrix(vtk_matrix(pose))
 
     def _follow(self, next_point: str | None, q: tuple[float, ...], passed_s: float) -> Camera:
         """Return the camera on its way to the best view of the next fiducial."""
@@ -171,11 +167,8 @@ class _FilmedScene:
             if best is not None:
                 self._control.go(orbit_to(camera, best.eye, best.fiducial))
         self._control.advance(passed_s, camera, STILL, is_arm_still=True)
-        return _camera(camera_pose(camera, self._control.orbit))
-
-
-def _camera(pose: CameraPose) -> Camera:
-    position, focal_point = (
-        MM_PER_M * np.array(place) for place in (pose.position, pose.focal_point)
-    )
-    return Camera(position, focal_point, np.array(pose.view_up), pose.view_angle_deg)
+        pose = camera_pose(camera, self._control.orbit)
+        position, focal_point = (
+            MM_PER_M * np.array(place) for place in (pose.position, pose.focal_point)
+        )
+        return Camera(position, focal_point, np.array(pose.view_up), pose.view_angle_deg)

@@ -101,7 +101,6 @@ class TrialGhost:
             self._loading = JournalLoading(load)
 
     def close(self) -> None:
-        """Show no ghost."""
         if self._loading is not None:
             self._loading.cancel()
         self._loading = self._ghost = None

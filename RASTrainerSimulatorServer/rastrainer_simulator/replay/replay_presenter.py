@@ -65,7 +65,6 @@ class Player:
         self._end = end
 
     def do(self, action: PlayerAction) -> None:
-        """Carry out an action."""
         playback = self.playback
         if action is PlayerAction.PLAY:
             playback.pause(playback.is_playing)
@@ -207,7 +206,6 @@ class ReplayPresenter(Presenter):
         self._refresh()
 
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:  # noqa: ARG002
-        """Handle a gamepad's newly pressed buttons."""
         held = frozenset(number for number, value in enumerate(buttons) if value > 0.5)
         for number in held - self._held.get(view, frozenset()):
             self._do(_PAD.get(number))

@@ -40,7 +40,6 @@ class FabrikSettings:
     max_iterations: Annotated[int, whole_number(1, 10_000)] = 32
 
     def __post_init__(self) -> None:
-        """Raise InputError for settings that could never end or never succeed."""
         if not (self.tolerance_m > 0.0 and self.tolerance_rad > 0.0 and self.max_iterations >= 1):
             raise InputError("FABRIK needs tolerances above zero and at least one iteration.")
 
