@@ -177,10 +177,7 @@ class HeadSurface:
     """
 
     def __init__(self, vertices: np.ndarray, triangles: np.ndarray) -> None:
-        """Take (n, 3) float vertices and (m, 3) int triangles.
-
-        The last surface is cached.
-        """
+        """Take (n, 3) float vertices and (m, 3) int triangles; the last surface is cached."""
         self._surface, mesh = _shapes(_Numbers(vertices), _Numbers(triangles))
         vertices = self._surface.vertices
         base = vertices[vertices[:, 2] <= vertices[:, 2].min() + _BASE_THICKNESS]

@@ -45,7 +45,6 @@ class TrialRecords:
     """Makes the records of a trial from its state and from what is recorded with it.
 
     Attributes:
-        number: of the trial in its folder.
         dates: when a point was touched or traced, by its simulated time.
     """
 

@@ -23,7 +23,6 @@ class Playback:
 
     Attributes:
         speed: seconds of the trial per second.
-        latest: the shown state.
         changed: called whenever any of this has changed.
     """
 

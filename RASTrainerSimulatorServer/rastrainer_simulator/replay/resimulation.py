@@ -75,20 +75,14 @@ def replay(
         return _replay(reading, setup, watch)
 
 
-def tick_span(reading: JournalReading) -> tuple[int, int]:
-    """Return the tick before a trial and its last one."""
-    with refusing_malformed(f"{reading.path} cannot be replayed: its ticks are missing"):
-        first = record_from_json(StartingPoint, reading.header["before"]).tick
-        simulated = (entry for entry in reading.entries if entry["kind"] not in _NOT_SIMULATED)
-        return first, max((entry["tick"] for entry in simulated), default=first)
-
-
 def _replay(
     reading: JournalReading, setup: SimulationSetup, watch: Callable[[StepResult], None]
 ) -> ReplayReport:
     header = reading.header
     start = record_from_json(StartingPoint, header["before"])
-    _, last = tick_span(reading)
+    with refusing_malformed(f"{reading.path} cannot be replayed: its ticks are missing"):
+        simulated = (entry for entry in reading.entries if entry["kind"] not in _NOT_SIMULATED)
+        last = max((entry["tick"] for entry in simulated), default=start.tick)
     if not start.tick <= last <= start.tick + LONGEST_TRIAL_TICKS:
         raise InputError(f"{reading.path} has {last - start.tick} ticks: no trial is that long.")
     if not SHORTEST_TICK_S <= header["tickS"] <= LONGEST_TICK_S:

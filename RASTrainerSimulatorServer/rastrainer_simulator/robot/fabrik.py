@@ -89,9 +89,8 @@ class Fabrik:
     ) -> Solution:
         target = self._frame.position(position)
         if rotation is None:
-            goal = Goal(
-                target, None if direction is None else self._frame.direction(direction), None
-            )
+            tool = None if direction is None else self._frame.direction(direction)
+            goal = Goal(target, tool, None)
         elif direction is None:
             x, y, z = self._frame.rotation(rotation)
             goal = Goal(target, z, (x, y))
