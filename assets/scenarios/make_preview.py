@@ -31,7 +31,6 @@ BALL, WAY, TEXT = (0.1, 0.35, 0.9), (0.9, 0.45, 0.1), (0.05, 0.1, 0.35)
 
 
 def main() -> int:
-    """Write the pictures."""
     scenario = load_scenario(FOLDER)
     mesh = read_head_mesh(scenario.head_mesh)
     window = vtk.vtkRenderWindow()

@@ -102,13 +102,10 @@ def _array(image: vtkImageData) -> np.ndarray:
 
 LEAST_DEPTH_MM = 15.0
 """Least depth behind the shield (which replaces the face) that is removed, too."""
-
 BEHIND_FACE_MM = 4.0
 """Least depth behind the deepest point of the face, which may be behind the shield."""
-
 BEYOND_MM = 4.0
 """Margin around the radius of the face."""
-
 _SAMPLES = 6
 """Samples along each side of a triangle, about two millimeters long."""
 

@@ -304,7 +304,6 @@ def _event(event: RecordedEvent) -> Event:
 
 
 def _worst(track: ReplayTrack, setup: SimulationSetup) -> tuple[str, float, float] | None:
-    """Return the worst touch with its interval."""
     registered = next((e.entry for e in track.events if e.entry["kind"] == "registered"), None)
     if registered is None:
         return None

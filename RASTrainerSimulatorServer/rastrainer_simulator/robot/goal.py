@@ -132,7 +132,6 @@ class Goal(NamedTuple):
 
 
 def tool_axes(theta: Angles, links: Chain) -> tuple[Vector, Vector]:
-    """Return the tool's x and y axes."""
     (wx, wy, wz), (tx, ty, tz) = links[5], links[2]
     ax, ay, az = wy * tz - wz * ty, wz * tx - wx * tz, wx * ty - wy * tx
     c, s = cos(theta[6]), sin(theta[6])

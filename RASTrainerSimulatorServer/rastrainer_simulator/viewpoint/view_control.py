@@ -223,7 +223,6 @@ class ViewControl:
         return (self.orbit if travel is None else travel.goal) != FRONT
 
     def use(self, camera: str) -> None:
-        """Start from a camera of the scenario, unless it is already in use."""
         if camera != self.camera:
             self.camera = camera
             self.reset()
