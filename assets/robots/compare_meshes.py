@@ -27,7 +27,6 @@ GROUND = 0.001
 
 
 def main() -> None:
-    """Print the distances."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--official", type=Path, required=True)
     parser.add_argument("--samples", type=int, default=20_000)
@@ -35,7 +34,12 @@ def main() -> None:
     folder = arguments.official
     if (folder / "collision").is_dir():
         folder = folder / "collision"
-    ours = our_robot()
+    # Links 0 to 7 as they look, at q = 0, in the base frame, in meters.
+    parts, origins = visual_parts(), link_origins()
+    ours = [
+        trimesh.util.concatenate(list(parts[name].values())).apply_translation(origins[name])
+        for name in LINK_NAMES[:8]
+    ]
     official = [trimesh.load_mesh(folder / f"link_{number}.stl") for number in range(8)]
     for title, one, other in (
         ("ours to official", ours, official),
@@ -45,15 +49,6 @@ def main() -> None:
         print(f"{title}: {_summary(distances)}")
         for link, name in enumerate(LINK_NAMES[:8]):
             print(f"  {name}: {_summary(distances[links == link])}")
-
-
-def our_robot() -> list[trimesh.Trimesh]:
-    """Return links 0 to 7 as they look, at q = 0, in the base frame, in meters."""
-    parts, origins = visual_parts(), link_origins()
-    return [
-        trimesh.util.concatenate(list(parts[name].values())).apply_translation(origins[name])
-        for name in LINK_NAMES[:8]
-    ]
 
 
 def surface_distances(

@@ -79,8 +79,15 @@ def light_room(renderer: vtkRenderer, shadows: Shadows = Shadows.FULL) -> None:
     # These are the OpenGL renderer's; VTK's stubs promise its base class.
     renderer.GetEnvMapPrefiltered().SetPrefilterMaxSamples(32)  # type: ignore[attr-defined]
     renderer.GetEnvMapLookupTable().SetLUTSamples(16)  # type: ignore[attr-defined]
+    left, front, up = LAMP_PLACE
     for x, y in LAMP_CORNERS:
-        lamp = _lamp(x * LAMP_RADIUS, y * LAMP_RADIUS)
+        # Together they cast the soft shadows of one wide lamp.
+        lamp = vtkLight()
+        lamp.SetLightTypeToSceneLight()
+        lamp.PositionalOn()
+        lamp.SetPosition(left + x * LAMP_RADIUS, front, up + y * LAMP_RADIUS)
+        lamp.SetFocalPoint(*LAMP_AT)
+        lamp.SetColor(1.0, 0.97, 0.93)
         is_open = shadows is Shadows.NONE
         lamp.SetConeAngle(OPEN_CONE_DEG if is_open else LAMP_CONE_DEG)
         lamp.SetIntensity((OPEN_INTENSITY if is_open else LAMP_INTENSITY) / len(LAMP_CORNERS))
@@ -89,18 +96,6 @@ def light_room(renderer: vtkRenderer, shadows: Shadows = Shadows.FULL) -> None:
         renderer.UseFXAAOn()
     else:
         renderer.SetPass(_passes(shadows))
-
-
-def _lamp(aside: float, above: float) -> vtkLight:
-    """Return one of the lights that together cast the soft shadows of one wide lamp."""
-    x, y, z = LAMP_PLACE
-    lamp = vtkLight()
-    lamp.SetLightTypeToSceneLight()
-    lamp.PositionalOn()
-    lamp.SetPosition(x + aside, y, z + above)
-    lamp.SetFocalPoint(*LAMP_AT)
-    lamp.SetColor(1.0, 0.97, 0.93)
-    return lamp
 
 
 def _passes(shadows: Shadows) -> vtkRenderPass:
