@@ -137,7 +137,6 @@ class Answer:
 
 
 def answered(answer: Answer) -> Future[Answer]:
-    """Return the future of an answer that is known already."""
     done: Future[Answer] = Future()
     done.set_result(answer)
     return done
@@ -274,7 +273,6 @@ class SimulationState:
 
     @property
     def tool(self) -> Tool:
-        """What the robot holds."""
         procedure = self.training.procedure
         return Tool.POINTER if procedure is None else procedure.tool
 

@@ -143,7 +143,6 @@ class PlannedLine:
 
     @property
     def direction(self) -> Vector:
-        """The unit vector from entry to target."""
         return unit(subtract(self.target, self.entry))
 
 
@@ -177,7 +176,6 @@ class GuideAlignment:
 
     @classmethod
     def of(cls, guide: GuideAxis, line: PlannedLine) -> GuideAlignment:
-        """Return the position of a guide relative to a planned line."""
         to_entry = subtract(line.entry, guide.tip)
         return cls(
             length(reject(to_entry, guide.direction)),
@@ -238,7 +236,6 @@ class ProcedureState:
 
     @property
     def tool(self) -> Tool:
-        """What the robot holds."""
         return TOOL_OF_PHASE.get(self.stage, Tool.POINTER)
 
     @property

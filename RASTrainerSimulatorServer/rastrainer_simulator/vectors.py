@@ -23,12 +23,10 @@ def vector(values: Iterable[float]) -> Vector:
 
 
 def in_meters(position_mm: Iterable[float]) -> Vector:
-    """Return a position that is given in mm in m."""
     return vector(float(value) / MM_PER_M for value in position_mm)
 
 
 def in_millimeters(position: Iterable[float]) -> Vector:
-    """Return a position that is given in m in mm."""
     return vector(MM_PER_M * value for value in position)
 
 
@@ -45,7 +43,6 @@ def scale(a: Vector, factor: float) -> Vector:
 
 
 def dot(a: Vector, b: Vector) -> float:
-    """Return the scalar product."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 

@@ -27,7 +27,6 @@ GROUND = 0.001
 
 
 def main() -> None:
-    """Print the distances."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--official", type=Path, required=True)
     parser.add_argument("--samples", type=int, default=20_000)
@@ -35,7 +34,12 @@ def main() -> None:
     folder = arguments.official
     if (folder / "collision").is_dir():
         folder = folder / "collision"
-    ours = our_robot()
+    # Links 0 to 7 as they look, at q = 0, in the base frame, in meters.
+    parts, origins = visual_parts(), link_origins()
+    ours = [
+        trimesh.util.concatenate(list(parts[name].values())).apply_translation(origins[name])
+        for name in LINK_NAMES[:8]
+    ]
     official = [trimesh.load_mesh(folder / f"link_{number}.stl") for number in range(8)]
     for title, one, other in (
         ("ours to official", ours, official),
@@ -45,15 +49,6 @@ def main() -> None:
         print(f"{title}: {_summary(distances)}")
         for link, name in enumerate(LINK_NAMES[:8]):
             print(f"  {name}: {_summary(distances[links == link])}")
-
-
-def our_robot() -> list[trimesh.Trimesh]:
-    """Return links 0 to 7 as they look, at q = 0, in the base frame, in meters."""
-    parts, origins = visual_parts(), link_origins()
-    return [
-        trimesh.util.concatenate(list(parts[name].values())).apply_translation(origins[name])
-        for name in LINK_NAMES[:8]
-    ]
 
 
 def surface_distances(
@@ -66,22 +61,18 @@ def surface_distances(
     whole, target = trimesh.util.concatenate(one), trimesh.util.concatenate(other)
     points, faces = trimesh.sample.sample_surface(whole, samples, seed=seed)
     links = np.repeat(np.arange(len(one)), [len(mesh.faces) for mesh in one])[faces]
-    seen = _visible(whole, points, whole.face_normals[faces]) & (points[:, 2] > GROUND)
-    _, distances, _ = trimesh.proximity.closest_point(target, points[seen])
-    return distances * MM_PER_M, links[seen]
-
-
-def _visible(mesh: trimesh.Trimesh, points: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """Return which points (n, 3) see the outside in enough of the directions above them."""
-    above = np.zeros(len(points))
-    free = np.zeros(len(points))
+    # Seen are points that see the outside in enough of the directions above them.
+    normals = whole.face_normals[faces]
+    above, free = np.zeros(len(points)), np.zeros(len(points))
     for direction in sphere_directions(DIRECTIONS):
         facing = np.flatnonzero(normals @ direction > 0)
         starts = points[facing] + LIFT * normals[facing]
-        hit = mesh.ray.intersects_any(starts, np.tile(direction, (len(facing), 1)))
+        hit = whole.ray.intersects_any(starts, np.tile(direction, (len(facing), 1)))
         above[facing] += 1
         free[facing[~hit]] += 1
-    return free >= OPEN_FRACTION * above
+    seen = (free >= OPEN_FRACTION * above) & (points[:, 2] > GROUND)
+    _, distances, _ = trimesh.proximity.closest_point(target, points[seen])
+    return distances * MM_PER_M, links[seen]
 
 
 def _summary(distances: np.ndarray) -> str:

@@ -27,10 +27,15 @@ def base(segments: int) -> dict[str, trimesh.Trimesh]:
         [moved(part, turn_z_deg=angle) for angle in LUG_ANGLES] for part in (pocket, bolt)
     )
     recess = _plate(PANEL_X - 1.0, PANEL_X + 1.5, 0.0)
+    # The panel's connectors: three large and two small round ones, and a flat one.
+    places = [(y, 38.0, 11.0) for y in (-27.0, 0.0, 27.0)] + [
+        (y, 112.0, 8.0) for y in (-17.0, 17.0)
+    ]
+    flat = box((PANEL_X - 2.0, -22.0, 66.0), (PANEL_X + 2.0, 22.0, 88.0))
     return {
         "gray": difference(body, *lugs, recess),
         "dark": trimesh.util.concatenate([*bolts, _plate(PANEL_X + 0.4, PANEL_X + 2.5, 0.6)]),
-        "metal": _sockets(),
+        "metal": trimesh.util.concatenate([flat, *(_socket(*place) for place in places)]),
     }
 
 
@@ -47,15 +52,6 @@ def _connector_box() -> trimesh.Trimesh:
     back = np.column_stack([np.full(len(outline), PANEL_X), outline])
     front = np.column_stack([np.full(len(outline), -50.0), outline * (1.04, 1.0)])
     return convex_hull(np.vstack([back, front]))
-
-
-def _sockets() -> trimesh.Trimesh:
-    """Return the panel's connectors: three large and two small round ones, and a flat one."""
-    places = [(y, 38.0, 11.0) for y in (-27.0, 0.0, 27.0)] + [
-        (y, 112.0, 8.0) for y in (-17.0, 17.0)
-    ]
-    flat = box((PANEL_X - 2.0, -22.0, 66.0), (PANEL_X + 2.0, 22.0, 88.0))
-    return trimesh.util.concatenate([flat, *(_socket(*place) for place in places)])
 
 
 def _plate(low: float, high: float, inset: float) -> trimesh.Trimesh:

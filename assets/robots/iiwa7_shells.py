@@ -34,7 +34,20 @@ def shells(rings: int, segments: int) -> dict[int, Parts]:
         link: {color: _placed(part, link) for color, part in colored.items()}
         for link, colored in parts.items()
     }
-    return {**placed, 7: {"metal": _flange(segments)}}
+    # Link 7 is the media flange with windows, bolt slots and bore.
+    body = revolve(FLANGE_PROFILE, segments)
+    windows = [
+        moved(box((43.4, -6.0, 10.5), (60.0, 6.0, 20.5)), turn_z_deg=angle)
+        for angle in (-45, 0, 45, 135, 180, 225)
+    ]
+    slots = [
+        moved(box((43.2, -2.8, 10.5), (60.0, 2.8, 24.5)), turn_z_deg=angle)
+        for angle in (-67.5, -22.5, 22.5, 67.5, 112.5, 157.5, 202.5, 247.5)
+    ]
+    return {
+        **placed,
+        7: {"metal": difference(body, cylinder(15.5, 29.0, 40.0, 24), *windows, *slots)},
+    }
 
 
 def plain_shells(rings: int, segments: int) -> dict[int, trimesh.Trimesh]:
@@ -89,17 +102,3 @@ def _covered(
     spokes = across - across.mean(axis=0)
     shrink = SEAM_DEPTH / np.linalg.norm(spokes, axis=1, keepdims=True)
     return {"gray": behind, "orange": before, "dark": convex_hull(slab - spokes * shrink)}
-
-
-def _flange(segments: int) -> trimesh.Trimesh:
-    """Return link 7: the media flange with windows, bolt slots and bore."""
-    body = revolve(FLANGE_PROFILE, segments)
-    windows = [
-        moved(box((43.4, -6.0, 10.5), (60.0, 6.0, 20.5)), turn_z_deg=angle)
-        for angle in (-45, 0, 45, 135, 180, 225)
-    ]
-    slots = [
-        moved(box((43.2, -2.8, 10.5), (60.0, 2.8, 24.5)), turn_z_deg=angle)
-        for angle in (-67.5, -22.5, 22.5, 67.5, 112.5, 157.5, 202.5, 247.5)
-    ]
-    return difference(body, cylinder(15.5, 29.0, 40.0, 24), *windows, *slots)

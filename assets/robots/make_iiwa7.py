@@ -29,13 +29,10 @@ MESH_DECIMALS = 6
 
 
 def main() -> None:
+    """Write `iiwa7.urdf` and `meshes` into a folder, in place of older ones."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--output", type=Path, default=Path(__file__).parent / "iiwa7")
-    write_robot(parser.parse_args().output)
-
-
-def write_robot(folder: Path) -> None:
-    """Write `iiwa7.urdf` and `meshes` into `folder`, in place of older ones."""
+    folder = parser.parse_args().output
     for old in (folder / "meshes").rglob("*.stl"):
         old.unlink()
     visuals, solids = visual_parts(), plain_parts(RINGS, SEGMENTS)
@@ -48,7 +45,13 @@ def write_robot(folder: Path) -> None:
             for color, part in visuals[link].items()
         ]
         collision = _write(collisions[link], folder, f"collision/{short}.stl")
-        bodies[link] = _body(files, collision, MASSES[link], solids[link])
+        # The link's mass is spread evenly over its solid.
+        mass, solid = MASSES[link], solids[link].copy()
+        solid.density = mass / solid.volume
+        inertia = solid.moment_inertia[np.triu_indices(3)]
+        bodies[link] = LinkBody(
+            files, collision, mass, _rounded(solid.center_mass, 4), _rounded(inertia, 6)
+        )
     tip_file = _write(visuals[TOOL_TIP_LINK]["blue"], folder, "visual/tool_tip_blue.stl")
     text = urdf_text(bodies, (tip_file, "blue"))
     urdf = folder / "iiwa7.urdf"
@@ -99,16 +102,6 @@ def _write(part: trimesh.Trimesh, folder: Path, name: str) -> str:
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(trimesh.exchange.stl.export_stl(part))
     return f"meshes/{name}"
-
-
-def _body(
-    visuals: list[tuple[str, str]], collision: str, mass: float, solid: trimesh.Trimesh
-) -> LinkBody:
-    """Spread a link's mass evenly over its solid."""
-    solid = solid.copy()
-    solid.density = mass / solid.volume
-    inertia = solid.moment_inertia[np.triu_indices(3)]
-    return LinkBody(visuals, collision, mass, _rounded(solid.center_mass, 4), _rounded(inertia, 6))
 
 
 def _rounded(values: np.ndarray, decimals: int) -> tuple[float, ...]:

@@ -28,7 +28,6 @@ HEAD, SKULL, VOLUME = FOLDER / "head.ply", FOLDER / "skull.ply", FOLDER / "volum
 
 
 def main() -> int:
-    """Write head, skull and volume, or compare them with the committed ones."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("mri", nargs="?", type=Path, default=MRI, help="ch2.nii.gz")
     parser.add_argument("--check", action="store_true", help="compare, write nothing")

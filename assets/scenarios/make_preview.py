@@ -31,7 +31,6 @@ BALL, WAY, TEXT = (0.1, 0.35, 0.9), (0.9, 0.45, 0.1), (0.05, 0.1, 0.35)
 
 
 def main() -> int:
-    """Write the pictures."""
     scenario = load_scenario(FOLDER)
     mesh = read_head_mesh(scenario.head_mesh)
     window = vtk.vtkRenderWindow()
@@ -46,7 +45,11 @@ def main() -> int:
     for column, task in enumerate(scenario.tasks):
         for row, (view, direction) in enumerate(VIEWS.items()):
             renderer = _renderer(mesh, task, np.array(direction), skin)
-            renderer.AddViewProp(_caption(f"{task.title}, {view}"))
+            caption = vtk.vtkTextActor()
+            caption.SetInput(f"{task.title}, {view}")
+            caption.SetPosition(8, 8)
+            _style(caption.GetTextProperty(), 13)
+            renderer.AddViewProp(caption)
             left, top = column / len(scenario.tasks), 1 - row / len(VIEWS)
             renderer.SetViewport(left, top - 1 / len(VIEWS), left + 1 / len(scenario.tasks), top)
             window.AddRenderer(renderer)
@@ -71,10 +74,25 @@ def _renderer(
     renderer = vtk.vtkRenderer()
     renderer.SetBackground(BACKGROUND)
     renderer.AddActor(_actor(skin, SKIN))
-    renderer.AddActor(_actor(_tube(_way(mesh, task)), WAY))
+    line, points, tube = vtk.vtkLineSource(), vtk.vtkPoints(), vtk.vtkTubeFilter()
+    points.SetData(numpy_to_vtk(_way(mesh, task), deep=True))
+    line.SetPoints(points)
+    tube.SetInputConnection(line.GetOutputPort())
+    tube.SetRadius(0.8)
+    renderer.AddActor(_actor(tube, WAY))
     for label, point in zip(task.labels, task.fiducials, strict=True):
-        renderer.AddActor(_actor(_ball(point), BALL))
-        renderer.AddActor(_number(label, point + 9.0 * (eye - point) / np.linalg.norm(eye - point)))
+        ball = vtk.vtkSphereSource()
+        ball.SetCenter(point)
+        ball.SetRadius(2.6)
+        ball.SetThetaResolution(16)
+        ball.SetPhiResolution(16)
+        renderer.AddActor(_actor(ball, BALL))
+        number = vtk.vtkBillboardTextActor3D()
+        number.SetInput(label)
+        number.SetPosition(point + 9.0 * (eye - point) / np.linalg.norm(eye - point))
+        number.SetDisplayOffset(4, 3)
+        _style(number.GetTextProperty(), 15)
+        renderer.AddActor(number)
     camera = renderer.GetActiveCamera()
     camera.SetPosition(eye)
     camera.SetFocalPoint(center)
@@ -103,47 +121,12 @@ def _way(mesh: HeadMesh, task: Task) -> np.ndarray:
     return np.concatenate(way)
 
 
-def _ball(point: np.ndarray) -> vtk.vtkSphereSource:
-    ball = vtk.vtkSphereSource()
-    ball.SetCenter(point)
-    ball.SetRadius(2.6)
-    ball.SetThetaResolution(16)
-    ball.SetPhiResolution(16)
-    return ball
-
-
-def _tube(way: np.ndarray) -> vtk.vtkTubeFilter:
-    line, points, tube = vtk.vtkLineSource(), vtk.vtkPoints(), vtk.vtkTubeFilter()
-    points.SetData(numpy_to_vtk(way, deep=True))
-    line.SetPoints(points)
-    tube.SetInputConnection(line.GetOutputPort())
-    tube.SetRadius(0.8)
-    return tube
-
-
 def _actor(source: vtk.vtkPolyDataAlgorithm, color: tuple[float, float, float]) -> vtk.vtkActor:
     actor, mapper = vtk.vtkActor(), vtk.vtkPolyDataMapper()
     mapper.SetInputConnection(source.GetOutputPort())
     actor.SetMapper(mapper)
     actor.GetProperty().SetColor(color)
     return actor
-
-
-def _number(label: str, position: np.ndarray) -> vtk.vtkBillboardTextActor3D:
-    number = vtk.vtkBillboardTextActor3D()
-    number.SetInput(label)
-    number.SetPosition(position)
-    number.SetDisplayOffset(4, 3)
-    _style(number.GetTextProperty(), 15)
-    return number
-
-
-def _caption(text: str) -> vtk.vtkTextActor:
-    caption = vtk.vtkTextActor()
-    caption.SetInput(text)
-    caption.SetPosition(8, 8)
-    _style(caption.GetTextProperty(), 13)
-    return caption
 
 
 def _style(text: vtk.vtkTextProperty, size: int) -> None:

@@ -296,7 +296,6 @@ PLANS = (
 
 
 def main() -> int:
-    """Write the procedures into the scenario."""
     planner = Planner()
     procedures, meshes = planned(planner)
     (FOLDER / "no-go").mkdir(exist_ok=True)

@@ -76,17 +76,6 @@ class Workbench:
 def main() -> int:
     """Write the scenario's files; the exit status is 1 where a fiducial cannot be touched."""
     bench = Workbench()
-    proposals = proposed(bench)
-    for proposal in proposals:
-        write_markups(FOLDER / _file(proposal), PointList(LABELS, proposal.fiducials))
-    content = scenario_json(bench.center, [entry(proposal, bench) for proposal in proposals])
-    write_json(FOLDER / FILE_NAME, content)
-    write_table(Path(__file__).name, table_of(proposals, bench.center))
-    return 0 if all(is_touchable(bench, proposal) for proposal in proposals) else 1
-
-
-def proposed(bench: Workbench) -> list[Proposal]:
-    """Return the six tasks."""
     vertices = smooth_places(bench.mesh, PLACE_SPACING_MM)
     positions = bench.mesh.vertices[vertices].round(4)
     normals = bench.mesh.vertex_normals[vertices]
@@ -94,7 +83,13 @@ def proposed(bench: Workbench) -> list[Proposal]:
     print(f"{can_be.sum()} of {len(can_be)} smooth places can be touched in every pose.")
     places = places_seen_from(bench.mesh, positions[can_be], normals[can_be], bench.eye)
     proposer = TaskProposer(bench.mesh, places, bench.eye, bench.center)
-    return proposer.propose_rising(PLANS, SEED)
+    proposals = proposer.propose_rising(PLANS, SEED)
+    for proposal in proposals:
+        write_markups(FOLDER / _file(proposal), PointList(LABELS, proposal.fiducials))
+    content = scenario_json(bench.center, [entry(proposal, bench) for proposal in proposals])
+    write_json(FOLDER / FILE_NAME, content)
+    write_table(Path(__file__).name, table_of(proposals, bench.center))
+    return 0 if all(is_touchable(bench, proposal) for proposal in proposals) else 1
 
 
 def is_touchable(bench: Workbench, proposal: Proposal) -> bool:

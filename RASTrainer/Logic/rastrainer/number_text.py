@@ -50,6 +50,12 @@ def percent(share: float) -> str:
     return f"{100 * share:.0f} %"
 
 
+def clock(seconds: float) -> str:
+    """Return a duration as minutes and seconds: `02:05`."""
+    minutes, rest = divmod(int(seconds), 60)
+    return f"{minutes:02d}:{rest:02d}"
+
+
 def counted(count: int, what: str) -> str:
     """Return a count with its noun: `1 trial`, `2 trials`."""
     return f"{count} {what}{'' if count == 1 else 's'}"

@@ -102,13 +102,10 @@ def _array(image: vtkImageData) -> np.ndarray:
 
 LEAST_DEPTH_MM = 15.0
 """Least depth behind the shield (which replaces the face) that is removed, too."""
-
 BEHIND_FACE_MM = 4.0
 """Least depth behind the deepest point of the face, which may be behind the shield."""
-
 BEYOND_MM = 4.0
 """Margin around the radius of the face."""
-
 _SAMPLES = 6
 """Samples along each side of a triangle, about two millimeters long."""
 
@@ -127,7 +124,11 @@ def without_face_in(volume: HeadVolume, head: HeadMesh) -> HeadVolume:
     part = grid.part(around)
     is_near = np.linalg.norm(part.places() - tip, axis=-1) < RADIUS_MM + BEYOND_MM
     is_face = face_vertices(head)
-    to_shield = part.distances(part.at(_samples(shield, is_face)))
+    # Points all over the triangles of the shield that have a corner in the face.
+    corners = shield.vertices[shield.triangles[is_face[shield.triangles].any(axis=1)]]
+    steps = np.arange(_SAMPLES + 1) / _SAMPLES
+    weights = np.array([(a, b, 1.0 - a - b) for a in steps for b in steps if a + b < 1.0 + 1e-9])
+    to_shield = part.distances(part.at(np.einsum("wc,tcx->wtx", weights, corners).reshape(-1, 3)))
     # The depth behind the shield that contains the whole face.
     signed = vtkImplicitPolyDataDistance()
     signed.SetInput(surface(shield.vertices, shield.triangles))
@@ -139,14 +140,6 @@ def without_face_in(volume: HeadVolume, head: HeadMesh) -> HeadVolume:
     return replace(volume, values=values)
 
 
-def _samples(mesh: HeadMesh, is_wanted: np.ndarray) -> np.ndarray:
-    """Return points (n, 3), RAS mm, all over the triangles that have a wanted corner."""
-    corners = mesh.vertices[mesh.triangles[is_wanted[mesh.triangles].any(axis=1)]]
-    steps = np.arange(_SAMPLES + 1) / _SAMPLES
-    weights = np.array([(a, b, 1.0 - a - b) for a in steps for b in steps if a + b < 1.0 + 1e-9])
-    return np.einsum("wc,tcx->wtx", weights, corners).reshape(-1, 3)
-
-
 VIEWS = np.array([[0.3, 1.0, 0.1], [1.0, 0.0, 0.0], [0.0, -1.0, 0.1]])
 """Where the eye is: in front, at the right and behind, as A and R of RAS say."""
 
@@ -155,39 +148,6 @@ SIDE = 300
 
 _DISTANCE, _ANGLE_DEG = 5.2, 26.0
 _SKIN, _AROUND = (0.85, 0.66, 0.55), (1.0, 1.0, 1.0)
-
-
-def draw_removal(
-    path: Path,
-    heads: tuple[HeadMesh, HeadMesh],
-    volumes: tuple[HeadVolume, HeadVolume] | None,
-) -> None:
-    """Draw a head from three sides, and its images in the middle: before above, after below."""
-    rows = []
-    for index, head in enumerate(heads):
-        parts = _views(head, heads[0])
-        if volumes is not None:
-            parts.append(_middle(volumes[index], heads[0]))
-        rows.append(np.concatenate(parts, axis=1))
-    write_png(np.concatenate(rows), path)
-
-
-def _views(head: HeadMesh, before: HeadMesh) -> list[np.ndarray]:
-    """Return a head as seen from three sides, (SIDE, SIDE, 3) uint8, from where `before` fits."""
-    mapper, actor, renderer = vtkPolyDataMapper(), vtkActor(), vtkRenderer()
-    # A renderer's camera is in meters.
-    mapper.SetInputData(surface(head.vertices / 1000.0, head.triangles, head.vertex_normals))
-    actor.SetMapper(mapper)
-    actor.GetProperty().SetColor(*_SKIN)
-    renderer.AddActor(actor)
-    renderer.SetBackground(*_AROUND)
-    reach = _DISTANCE * float(before.size.max()) / 2.0
-    up = np.array([0.0, 0.0, 1.0])
-    cameras = (
-        Camera(before.middle + reach * view / np.linalg.norm(view), before.middle, up, _ANGLE_DEG)
-        for view in VIEWS
-    )
-    return list(frames(renderer, ((camera, (SIDE, SIDE)) for camera in cameras)))
 
 
 def _middle(volume: HeadVolume, head: HeadMesh) -> np.ndarray:
@@ -211,14 +171,36 @@ NO_SOURCE = "Removed before the scenario was shared."
 
 
 def draw_face_removal(folder: Path, picture: Path) -> str:
-    """Draw a scenario's head before and after its face is removed, and return a sentence on it."""
+    """Draw a scenario's head before and after its face is removed, and return a sentence on it.
+
+    Each is drawn from three sides, and its images in the middle.
+    """
     scenario = checked_scenario(folder)
     head = read_head_mesh(scenario.head_mesh)
     warning = check_front(head)
     volume = read_head_volume(scenario.volume) if scenario.volume else None
     _, shield = _faceless(scenario, head)
-    volumes = (volume, without_face_in(volume, head)) if volume else None
-    draw_removal(picture, (head, shield), volumes)
+    after = without_face_in(volume, head) if volume else None
+    reach = _DISTANCE * float(head.size.max()) / 2.0
+    up = np.array([0.0, 0.0, 1.0])
+    cameras = [
+        Camera(head.middle + reach * view / np.linalg.norm(view), head.middle, up, _ANGLE_DEG)
+        for view in VIEWS
+    ]
+    rows = []
+    for shown, images in ((head, volume), (shield, after)):
+        mapper, actor, renderer = vtkPolyDataMapper(), vtkActor(), vtkRenderer()
+        # A renderer's camera is in meters.
+        mapper.SetInputData(surface(shown.vertices / 1000.0, shown.triangles, shown.vertex_normals))
+        actor.SetMapper(mapper)
+        actor.GetProperty().SetColor(*_SKIN)
+        renderer.AddActor(actor)
+        renderer.SetBackground(*_AROUND)
+        parts = list(frames(renderer, ((camera, (SIDE, SIDE)) for camera in cameras)))
+        if images is not None:
+            parts.append(_middle(images, head))
+        rows.append(np.concatenate(parts, axis=1))
+    write_png(np.concatenate(rows), picture)
     return f"The picture shows the head before (above) and after. {warning}".rstrip()
 
 

@@ -107,7 +107,16 @@ def _whole(reference: HeadMesh, mesh: HeadMesh) -> np.ndarray:
     others = _thinned(np.arange(len(mesh.vertices)), OTHER_POINTS)
     places, normals = mesh.vertices[others].astype(float), mesh.vertex_normals[others]
     is_skin = _is_skin(mesh)[others]
-    scales, pose = _beginning(reference, mesh)
+    # At first scaled and shifted to the same top, width and length.
+    own, other = (
+        np.array([each.vertices.min(axis=0), each.vertices.max(axis=0)])
+        for each in (reference, mesh)
+    )
+    across = (other[1] - other[0]) / (own[1] - own[0])
+    scales = np.clip(np.array([across[0], across[1], across[:2].mean()]), *SCALES)
+    pose = np.eye(4)
+    pose[:2, 3] = (other.mean(axis=0) - scales * own.mean(axis=0))[:2]
+    pose[2, 3] = other[1, 2] - scales[2] * own[1, 2]
     for _ in range(ROUNDS):
         moved = transforms.apply(pose, points * scales)
         nearest = _nearest(moved, places)
@@ -140,20 +149,6 @@ def _is_skin(mesh: HeadMesh) -> np.ndarray:
 
 def _thinned(indices: np.ndarray, count: int) -> np.ndarray:
     return indices[:: max(len(indices) // count, 1)]
-
-
-def _beginning(reference: HeadMesh, mesh: HeadMesh) -> tuple[np.ndarray, np.ndarray]:
-    """Return scales (3,) and a shift (4, 4): same top, width and length."""
-    own, other = (
-        np.array([each.vertices.min(axis=0), each.vertices.max(axis=0)])
-        for each in (reference, mesh)
-    )
-    across = (other[1] - other[0]) / (own[1] - own[0])
-    scales = np.clip(np.array([across[0], across[1], across[:2].mean()]), *SCALES)
-    shift = np.eye(4)
-    shift[:2, 3] = (other.mean(axis=0) - scales * own.mean(axis=0))[:2]
-    shift[2, 3] = other[1, 2] - scales[2] * own[1, 2]
-    return scales, shift
 
 
 def _local(reference: HeadMesh, place: np.ndarray, onto: np.ndarray, mesh: HeadMesh) -> np.ndarray:

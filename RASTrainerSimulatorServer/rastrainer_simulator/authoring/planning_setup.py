@@ -73,13 +73,11 @@ class PlanningSetup:
 
     @cached_property
     def reach(self) -> PlanReach:
-        """Judges plans on the head as it is posed."""
         robot = self.setup.robot
         return PlanReach(robot, make_kinematics(robot), self.collision)
 
     @cached_property
     def graph(self) -> SurfaceGraph:
-        """The paths over the head."""
         return SurfaceGraph(self.mesh)
 
     @cached_property
@@ -90,7 +88,6 @@ class PlanningSetup:
 
     @cached_property
     def views(self) -> TouchViews:
-        """Finds the viewpoints from which touches are seen best."""
         return TouchViews(self.setup, self.mesh)
 
     def poses(self, seeds: range, wider: float = 1.0) -> list[np.ndarray]:

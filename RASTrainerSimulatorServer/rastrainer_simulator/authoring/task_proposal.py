@@ -173,21 +173,7 @@ class TaskProposer:
         return Proposal(plan, fiducials, demands) if demands.index >= least else None
 
     def _draw(self, plan: TaskPlan, seed: int) -> _Draw:
-        chosen = self._chosen(plan, np.random.default_rng(seed))
-        positions, normals = self._places.positions[chosen], self._places.normals[chosen]
-        transitions = transitions_between(positions, normals, arc_lengths(positions, normals))
-        if plan.crossings == 0:
-            order = easiest_order(transitions, list(range(len(positions))))
-        else:
-            by_side = np.argsort(-positions[:, 0], kind="stable").tolist()
-            half = (len(positions) + 1) // 2
-            sides = [by_side[:half], by_side[half:]]
-            order = crossing_order(transitions, sides, plan.crossings)
-        return positions[order], float(transitions.costs([order])[0]) + plan.hidden
-
-    def _chosen(self, plan: TaskPlan, random: np.random.Generator) -> list[int]:
-        """Return the rows of the draw, of several, that locates the target best."""
-        places = self._places
+        places, random = self._places, np.random.default_rng(seed)
         shown = np.flatnonzero(~places.hidden & (places.off_axis_deg <= plan.off_axis_deg))
         hidden = np.flatnonzero(places.hidden)
         draws = []
@@ -201,7 +187,18 @@ class TaskProposer:
                 f"The head has no room for the fiducials of {plan.title}: too few places are "
                 "smooth, within the robot's reach and far enough from each other."
             )
-        return min(draws, key=lambda chosen: target_spread(places.positions[chosen], self._target))
+        # The one that locates the target best.
+        best = min(draws, key=lambda draw: target_spread(places.positions[draw], self._target))
+        positions, normals = places.positions[best], places.normals[best]
+        transitions = transitions_between(positions, normals, arc_lengths(positions, normals))
+        if plan.crossings == 0:
+            order = easiest_order(transitions, list(range(len(positions))))
+        else:
+            by_side = np.argsort(-positions[:, 0], kind="stable").tolist()
+            half = (len(positions) + 1) // 2
+            sides = [by_side[:half], by_side[half:]]
+            order = crossing_order(transitions, sides, plan.crossings)
+        return positions[order], float(transitions.costs([order])[0]) + plan.hidden
 
     def _spread(
         self, chosen: list[int], among: np.ndarray, count: int, random: np.random.Generator

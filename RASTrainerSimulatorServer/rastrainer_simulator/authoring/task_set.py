@@ -16,7 +16,6 @@ from rastrainer_simulator.authoring.planning_setup import WIDER, PlanningSetup
 from rastrainer_simulator.authoring.task_proposal import (
     PLANS,
     CandidatePlaces,
-    Proposal,
     TaskProposer,
     places_seen_from,
 )
@@ -85,6 +84,8 @@ class TaskSetProposer:
         self._planning = planning
         self._progress = progress
         self._skin = Skin(planning.mesh)
+        # In these, besides the nominal one, every fiducial must be touchable.
+        self._poses = [*planning.poses(WIDE_SEEDS, WIDER)[1:], *planning.poses(TRIAL_SEEDS)[1:]]
         self._found: dict[tuple[float, ...], bool] = {}
         self._share = 0.0
 
@@ -116,12 +117,21 @@ class TaskSetProposer:
             except InputError as error:
                 problem = str(error)
                 continue
-            return tuple(_task(proposal, planning) for proposal in proposals)
+            return tuple(
+                Task(
+                    one.plan.name,
+                    one.plan.title,
+                    LABELS,
+                    one.fiducials,
+                    round(one.complexity.index, 2),
+                    round(shortest_path_mm(one.fiducials, planning.mesh, planning.graph), 1),
+                )
+                for one in proposals
+            )
         raise InputError(problem)
 
     @cached_property
     def _places(self) -> CandidatePlaces:
-        """The candidates for fiducials."""
         planning = self._planning
         self._report("Finding smooth skin", 0.0)
         vertices = smooth_places(planning.mesh, PLACE_SPACING_MM)
@@ -142,12 +152,6 @@ class TaskSetProposer:
         self._report("Finding what the view shows", 0.2)
         return places_seen_from(planning.mesh, positions, normals, planning.eye)
 
-    @cached_property
-    def _poses(self) -> list[np.ndarray]:
-        """The poses in which every fiducial must be touchable, besides the nominal one."""
-        planning = self._planning
-        return [*planning.poses(WIDE_SEEDS, WIDER)[1:], *planning.poses(TRIAL_SEEDS)[1:]]
-
     def _are_touchable(self, positions: np.ndarray) -> np.ndarray:
         """Return which points (n,) bool can be touched in every pose of a trial."""
         places = [tuple(position) for position in positions.tolist()]
@@ -162,15 +166,3 @@ class TaskSetProposer:
     def _report(self, step: str, share: float) -> None:
         self._share = max(self._share, min(share, MAX_SHARE))
         self._progress(step, self._share)
-
-
-def _task(proposal: Proposal, planning: PlanningSetup) -> Task:
-    plan, fiducials = proposal.plan, proposal.fiducials
-    return Task(
-        plan.name,
-        plan.title,
-        LABELS,
-        fiducials,
-        round(proposal.complexity.index, 2),
-        round(shortest_path_mm(fiducials, planning.mesh, planning.graph), 1),
-    )

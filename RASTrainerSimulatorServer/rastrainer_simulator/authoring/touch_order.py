@@ -236,7 +236,6 @@ class SurfaceGraph:
         return self._known[key]
 
     def _leaving(self, point: NearestPoint) -> dict[int, float]:
-        """Return the distances of the corners around a point."""
         corners = self._mesh.triangles[point.triangle].tolist()
         lengths = np.linalg.norm(self._mesh.vertices[corners] - point.position, axis=1)
         return dict(zip(corners, lengths.tolist(), strict=True))

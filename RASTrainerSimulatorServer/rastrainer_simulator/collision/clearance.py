@@ -249,10 +249,16 @@ class HeadClearance:
         return found
 
     def _in_world(self, nearest: Nearest) -> Nearest:
+        x, y, z = nearest.normal
+        a, b, c = self._head_to_world_rows
         return Nearest(
             nearest.distance_m,
             _moved(self._head_to_world_rows, nearest.point),
-            _turned(self._head_to_world_rows, nearest.normal),
+            (
+                a[0] * x + a[1] * y + a[2] * z,
+                b[0] * x + b[1] * y + b[2] * z,
+                c[0] * x + c[1] * y + c[2] * z,
+            ),
             nearest.triangle,
         )
 
@@ -265,14 +271,4 @@ def _moved(rows: list[list[float]], point: Vector) -> Vector:
         a[0] * x + a[1] * y + a[2] * z + a[3],
         b[0] * x + b[1] * y + b[2] * z + b[3],
         c[0] * x + c[1] * y + c[2] * z + c[3],
-    )
-
-
-def _turned(rows: list[list[float]], direction: Vector) -> Vector:
-    x, y, z = direction
-    a, b, c = rows
-    return (
-        a[0] * x + a[1] * y + a[2] * z,
-        b[0] * x + b[1] * y + b[2] * z,
-        c[0] * x + c[1] * y + c[2] * z,
     )

@@ -102,7 +102,12 @@ class Contact:
             broken = _broken(start.clearance, end.clearance)
             if broken not in ("tip", "shaft"):
                 break
-            corrected = _pushed_back(path, start, end, broken)
+            nearest = end.clearance.tip if broken == "tip" else end.clearance.shaft
+            assert nearest is not None, "what is broken was measured"
+            gap = min(REST, getattr(start.clearance, f"{broken}_m") + RECOVERY) - nearest.distance_m
+            planes = (*path.half_spaces, _shifted(nearest.normal, gap, path.position))
+            position = nearest_inside(path.position, planes)
+            corrected = None if position is None else Slide(position, planes)
             if corrected is None:
                 break
             path = corrected
@@ -150,16 +155,6 @@ def _broken(start: Clearance, end: Clearance) -> str:
     if end.table_m < 0.0 and end.table_m < start.table_m:
         return "table"
     return ""
-
-
-def _pushed_back(path: Slide, start: Moved, end: Moved, broken: str) -> Slide | None:
-    """Return the path with the overlap at its end undone, None if that is impossible."""
-    nearest = end.clearance.tip if broken == "tip" else end.clearance.shaft
-    assert nearest is not None, "what is broken was measured"
-    gap = min(REST, getattr(start.clearance, f"{broken}_m") + RECOVERY) - nearest.distance_m
-    planes = (*path.half_spaces, _shifted(nearest.normal, gap, path.position))
-    position = nearest_inside(path.position, planes)
-    return None if position is None else Slide(position, planes)
 
 
 def _shifted(normal: Vector, gap: float, position: Vector) -> HalfSpace:

@@ -24,7 +24,6 @@ class Nearest(NamedTuple):
         distance_m: signed clearance, m; below zero inside the head.
         point: on the surface, m.
         normal: unit vector away from the head, along which the clearance grows.
-        triangle: of the head's surface, by its number.
     """
 
     distance_m: float
@@ -178,10 +177,7 @@ class HeadSurface:
     """
 
     def __init__(self, vertices: np.ndarray, triangles: np.ndarray) -> None:
-        """Take (n, 3) float vertices and (m, 3) int triangles.
-
-        The last surface is cached.
-        """
+        """Take (n, 3) float vertices and (m, 3) int triangles; the last surface is cached."""
         self._surface, mesh = _shapes(_Numbers(vertices), _Numbers(triangles))
         vertices = self._surface.vertices
         base = vertices[vertices[:, 2] <= vertices[:, 2].min() + _BASE_THICKNESS]

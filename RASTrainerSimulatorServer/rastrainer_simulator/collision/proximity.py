@@ -70,7 +70,6 @@ class Pressing:
         self._is_in_contact = False
 
     def end(self) -> None:
-        """Note that the tool is not in contact."""
         self.depth = 0.0
         self._is_in_contact = False
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from functools import partial
 
 from rastrainer.commands import CommandName
+from rastrainer.number_text import clock
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.arm_screen import ArmScreen
@@ -102,7 +103,7 @@ class ProcedureScreen(ArmScreen):
             last = procedure.checkpoints[-1]
             error_mm = MM_PER_M * last.error
             facts.append(say("status.checkpoint", name=last.name, error=error_mm))
-        took = session.duration(session.state.procedure_time or 0.0)
+        took = clock(session.state.procedure_time or 0.0)
         facts.append(say("status.procedure time", time=took))
         return (*facts, *self._figures())
 

@@ -12,6 +12,7 @@ from functools import partial
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import RASTrainerError
+from rastrainer.number_text import clock
 from rastrainer.protocol import (
     FIDUCIAL_COUNT,
     MAX_TRACE_POINTS,
@@ -198,12 +199,12 @@ class TrialScreen(ArmScreen):
         if training.is_tracing and trace is not None:
             limits = {"least": MIN_TRACE_POINTS, "most": MAX_TRACE_POINTS}
             done = say("status.traced", traced=len(trace.points), **limits)
-        clock = session.duration(session.state.completion_time)
+        passed = clock(session.state.completion_time)
         if training.task == TRIAL_RUN:
             # Rounding first: an error in a float's last digit must not add a second.
             left = math.ceil(max(0.0, round(self._practice_s - session.state.elapsed, 6)))
-            clock = say("status.left", time=session.duration(left))
-        facts = [session.task_title(training.task), done, clock]
+            passed = say("status.left", time=clock(left))
+        facts = [session.task_title(training.task), done, passed]
         target = self._points.get(training.next_point or "")
         name = say("status.point", point=training.next_point)
         if training.is_tracing:

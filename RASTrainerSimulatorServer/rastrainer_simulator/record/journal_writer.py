@@ -108,7 +108,6 @@ class Journal:
         self._unwritten.clear()
 
     def append(self, entry: Mapping[str, Any]) -> None:
-        """Write an entry to the disk, and close the file."""
         try:
             self.write([entry], sync=True)
         finally:
@@ -182,7 +181,6 @@ class RecordsFolder:
     """Locks the folder until it is closed or the process ends."""
 
     def __init__(self, folder: Path) -> None:
-        """Create the folder if it is missing, and lock it."""
         self._folder = folder
         self._holder = FolderHolder(
             os.getpid(),
@@ -218,7 +216,6 @@ class RecordsFolder:
             write_holder(self._descriptor, self._holder)
 
     def close(self) -> None:
-        """Leave the folder to others."""
         os.close(self._descriptor)
 
     def _lock(self, elsewhere: str) -> None:

@@ -81,11 +81,6 @@ class ArchivedTrial:
         touches = zip(self.record.labels, self.record.positions_mm, strict=True)
         return self.truth.revealed(matrix, touches)
 
-    @property
-    def is_settled(self) -> bool:
-        """Whether nothing more is expected."""
-        return self.acknowledged and self.scored is not None
-
     def after(self, command: str, arguments: Mapping[str, Any]) -> tuple[str, ArchivedTrial]:
         """Return the trial after a command, and the kind of its entry; "" if nothing changes.
 
@@ -112,11 +107,6 @@ class ArchivedAttempt:
     record: AbortedTrial
     acknowledged: bool = False
 
-    @property
-    def is_settled(self) -> bool:
-        """Whether nothing more is expected."""
-        return self.acknowledged
-
     def summary(self) -> dict[str, Any]:
         """Return the data of GetTrial; the head's pose in an aborted trial is never revealed."""
         return {
@@ -128,17 +118,7 @@ class ArchivedAttempt:
 
 
 def attempt_entry(record: AbortedTrial, times: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the entry that holds the record of an aborted trial."""
     return {"kind": "attempt", **times, "record": record_to_json(record)}
-
-
-def archived_attempt(reading: JournalReading) -> ArchivedAttempt | None:
-    """Return the trial of a journal, None if it was not aborted."""
-    found = reading.of_kind("attempt")
-    if not found or reading.of_kind("registered"):
-        return None
-    record = record_from_json(AbortedTrial, found[-1].get("record"))
-    return ArchivedAttempt(record, bool(reading.of_kind("acknowledged")))
 
 
 def interrupted_attempt(reading: JournalReading) -> AbortedTrial | None:
@@ -232,7 +212,6 @@ class TrialArchive:
         return any(revealed in _end(path) for path in self._folder.glob(f"*{SUFFIX}"))
 
     def add(self, trial: ArchivedTrial | ArchivedAttempt, journal: Journal) -> None:
-        """Add a trial that has just been registered or aborted."""
         self._kept[trial.record.trial_id] = trial, journal
         self.arrivals += 1
 
@@ -281,7 +260,8 @@ class TrialArchive:
         elif command != CommandName.GET_TRIAL:
             raise InputError(f"The trial {trial_id} was aborted; it has no score.")
         # A trial is kept in memory until nothing more is expected.
-        if trial.is_settled:
+        is_scored = isinstance(trial, ArchivedAttempt) or trial.scored is not None
+        if trial.acknowledged and is_scored:
             del self._kept[trial_id]
         else:
             self._kept[trial_id] = trial, journal
@@ -318,7 +298,11 @@ class TrialArchive:
     def _load(self, path: Path) -> None:
         try:
             reading = read_journal(path)
-            trial = archived_trial(reading) or archived_attempt(reading)
+            trial: ArchivedTrial | ArchivedAttempt | None = archived_trial(reading)
+            aborted = reading.of_kind("attempt")
+            if trial is None and aborted:
+                record = record_from_json(AbortedTrial, aborted[-1].get("record"))
+                trial = ArchivedAttempt(record, bool(reading.of_kind("acknowledged")))
         except InputError as error:
             self.problems.append(str(error))
         else:

@@ -220,7 +220,6 @@ class TrialEntries:
         return UnmeasuredRecord(record, self._recording.trajectory(), registered)
 
     def add_display(self, report: NotedReport, state: SimulationState) -> None:
-        """Record a report of a view; the simulation does not depend on it."""
         self.records.display.add(report)
         self._append(report_entry(report) | stamp(state.tick, state.sim_time))
 

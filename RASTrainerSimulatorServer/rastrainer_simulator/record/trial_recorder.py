@@ -136,7 +136,6 @@ class TrialRecorder:
         return self._submit(trial, is_awaited=False) if is_due and not trial.is_stuck else None
 
     def note_display(self, report: NotedReport, state: SimulationState) -> None:
-        """Record a report of a view if a trial is open."""
         if self._open is not None and self._open.registering is None:
             self._open.entries.add_display(report, state)
 
@@ -162,7 +161,6 @@ class TrialRecorder:
         self._open = _OpenTrial(entries, Journal(self._folder / name, simulation.trial_seed))
 
     def _resume(self, simulation: Simulation, state: SimulationState) -> None:
-        """Append to the journal of an interrupted trial from now on."""
         assert self._waiting is not None
         (reading, since), self._waiting = self._waiting, None
         entries = TrialEntries.resumed(
@@ -242,7 +240,6 @@ class TrialRecorder:
         return written
 
     def _write_answer(self, operator_input: OperatorInput, result: StepResult) -> Written:
-        """Write the final registration or the score."""
         ending = [c for c in operator_input.commands if c.name in ENDING_A_TRIAL][-1]
         times = stamp(result.state.tick, result.state.sim_time) | {"sender": ending.sender}
         future = self._writer.submit(self._archive.answer, ending.name, ending.arguments, times)

@@ -45,7 +45,6 @@ class TrialRecords:
     """Makes the records of a trial from its state and from what is recorded with it.
 
     Attributes:
-        number: of the trial in its folder.
         dates: when a point was touched or traced, by its simulated time.
     """
 
@@ -62,7 +61,6 @@ class TrialRecords:
         self.dates: dict[float, str] = {}
 
     def aborted(self, before: SimulationState, reason: str, utc: str) -> AbortedTrial:
-        """Return the record of a trial that was aborted in a state, for a reason, at a time."""
         training = before.training
         stage = training.phase if training.procedure is None else training.procedure.stage
         return AbortedTrial(
@@ -96,7 +94,6 @@ class TrialRecords:
         )
 
     def _in_both(self, training: TrainingState) -> dict[str, Any]:
-        """Return the fields that aborted and finished trials have."""
         return {
             "trial_id": training.trial_id,
             "trainee": training.trainee,
@@ -190,9 +187,16 @@ class FeedRecording:
         self._feedings: dict[tuple[int, str], _Feeding] = defaultdict(_Feeding)
 
     def add(self, entry: Mapping[str, Any]) -> None:
-        """Add one entry."""
         if entry["kind"] == "sample" and "feedMm" in entry:
-            self._add_sample(entry["simTimeS"], entry["feedMm"])
+            sim_time, depth_mm = entry["simTimeS"], entry["feedMm"]
+            feeding = self._feedings[self._trajectory, self._tool]
+            if self._last is None:
+                # Another hole begins, or the same one after a pause: that is no reversal.
+                feeding.way = 0.0
+            else:
+                time, depth = self._last
+                feeding.move(depth_mm, depth_mm - depth, sim_time - time)
+            self._last = sim_time, depth_mm
         elif entry["kind"] == "phase" and "procedure" in entry:
             self._trajectory = entry["procedure"]["trajectory"]
             self._tool = _NAMES.get(entry["procedure"]["stage"], "")
@@ -210,16 +214,6 @@ class FeedRecording:
             found[f"{tool}_fastest_mm_s"] = feeding.fastest_mm_s
             found[f"{tool}_reversals"] = feeding.reversals
         return found
-
-    def _add_sample(self, sim_time: float, depth_mm: float) -> None:
-        feeding = self._feedings[self._trajectory, self._tool]
-        if self._last is None:
-            # Another hole begins, or the same one after a pause: that is no reversal.
-            feeding.way = 0.0
-        else:
-            time, depth = self._last
-            feeding.move(depth_mm, depth_mm - depth, sim_time - time)
-        self._last = sim_time, depth_mm
 
 
 def procedure_record(
@@ -305,7 +299,12 @@ def procedure_after(
     if "procedure" not in entry:
         return before
     if "registration" in entry:
-        before = _registered(before, entry["registration"], plan)
+        registration = UsedRegistration.from_arguments(entry["registration"])
+        registered = RegisteredPlan.of(registration.matrix)
+        if registered is None:
+            raise ValueError("its registration is not rigid")
+        lines = tuple(TrajectoryState(registered.line(each)) for each in plan.trajectories)
+        before = replace(before, registration=registration, trajectories=lines)
     stage, number = Phase(entry["procedure"]["stage"]), entry["procedure"]["trajectory"]
     if before.stage is Phase.INSERTING and stage is not Phase.INSERTING:
         here, depth = before.trajectories[before.trajectory], entry.get("feedMm", 0.0) / MM_PER_M
@@ -319,14 +318,3 @@ def procedure_after(
         locked = replace(here, alignments=here.alignments + 1, guide=guide)
         return after.with_present(locked)
     return after
-
-
-def _registered(
-    before: ProcedureState, arguments: Mapping[str, Any], plan: Procedure
-) -> ProcedureState:
-    registration = UsedRegistration.from_arguments(arguments)
-    registered = RegisteredPlan.of(registration.matrix)
-    if registered is None:
-        raise ValueError("its registration is not rigid")
-    lines = tuple(TrajectoryState(registered.line(each)) for each in plan.trajectories)
-    return replace(before, registration=registration, trajectories=lines)

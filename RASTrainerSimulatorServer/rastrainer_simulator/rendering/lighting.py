@@ -54,7 +54,24 @@ class Shadows(Enum):
 
 def light_room(renderer: vtkRenderer, shadows: Shadows = Shadows.FULL) -> None:
     """Give a renderer its surroundings, lamps and smooth edges, and shadows if wanted."""
-    renderer.SetEnvironmentTexture(_environment())
+    # The surroundings as light by direction: a pale room with bright panels.
+    width, height = 128, 64
+    elevation = np.linspace(-np.pi / 2, np.pi / 2, height)[:, None]
+    azimuth = np.linspace(-np.pi, np.pi, width)[None, :]
+    light = np.broadcast_to(SURROUNDINGS * (0.92 + 0.2 * np.sin(elevation)), (height, width)).copy()
+    for toward, above, wide, high, glow in PANELS:
+        across, upward = (azimuth - toward) / wide, (elevation - above) / high
+        light += glow * np.exp(-(across**4) - upward**4)
+    pixels = np.repeat(light.reshape(-1, 1), 3, axis=1).astype(np.float32)
+    image = vtkImageData()
+    image.SetDimensions(width, height, 1)
+    image.GetPointData().SetScalars(numpy_to_vtk(pixels, deep=True))
+    texture = vtkTexture()
+    texture.SetInputData(image)
+    texture.SetColorModeToDirectScalars()
+    texture.MipmapOn()
+    texture.InterpolateOn()
+    renderer.SetEnvironmentTexture(texture)
     renderer.SetEnvironmentUp(0.0, 0.0, 1.0)
     renderer.SetEnvironmentRight(1.0, 0.0, 0.0)
     renderer.UseImageBasedLightingOn()
@@ -62,8 +79,15 @@ def light_room(renderer: vtkRenderer, shadows: Shadows = Shadows.FULL) -> None:
     # These are the OpenGL renderer's; VTK's stubs promise its base class.
     renderer.GetEnvMapPrefiltered().SetPrefilterMaxSamples(32)  # type: ignore[attr-defined]
     renderer.GetEnvMapLookupTable().SetLUTSamples(16)  # type: ignore[attr-defined]
+    left, front, up = LAMP_PLACE
     for x, y in LAMP_CORNERS:
-        lamp = _lamp(x * LAMP_RADIUS, y * LAMP_RADIUS)
+        # Together they cast the soft shadows of one wide lamp.
+        lamp = vtkLight()
+        lamp.SetLightTypeToSceneLight()
+        lamp.PositionalOn()
+        lamp.SetPosition(left + x * LAMP_RADIUS, front, up + y * LAMP_RADIUS)
+        lamp.SetFocalPoint(*LAMP_AT)
+        lamp.SetColor(1.0, 0.97, 0.93)
         is_open = shadows is Shadows.NONE
         lamp.SetConeAngle(OPEN_CONE_DEG if is_open else LAMP_CONE_DEG)
         lamp.SetIntensity((OPEN_INTENSITY if is_open else LAMP_INTENSITY) / len(LAMP_CORNERS))
@@ -72,40 +96,6 @@ def light_room(renderer: vtkRenderer, shadows: Shadows = Shadows.FULL) -> None:
         renderer.UseFXAAOn()
     else:
         renderer.SetPass(_passes(shadows))
-
-
-def _environment(width: int = 128) -> vtkTexture:
-    """Return the surroundings as light by direction: a pale room with bright panels."""
-    elevation = np.linspace(-np.pi / 2, np.pi / 2, width // 2)[:, None]
-    azimuth = np.linspace(-np.pi, np.pi, width)[None, :]
-    light = np.broadcast_to(
-        SURROUNDINGS * (0.92 + 0.2 * np.sin(elevation)), (width // 2, width)
-    ).copy()
-    for toward, above, wide, high, glow in PANELS:
-        across, upward = (azimuth - toward) / wide, (elevation - above) / high
-        light += glow * np.exp(-(across**4) - upward**4)
-    pixels = np.repeat(light.reshape(-1, 1), 3, axis=1).astype(np.float32)
-    image = vtkImageData()
-    image.SetDimensions(width, width // 2, 1)
-    image.GetPointData().SetScalars(numpy_to_vtk(pixels, deep=True))
-    texture = vtkTexture()
-    texture.SetInputData(image)
-    texture.SetColorModeToDirectScalars()
-    texture.MipmapOn()
-    texture.InterpolateOn()
-    return texture
-
-
-def _lamp(aside: float, above: float) -> vtkLight:
-    """Return one of the lights that together cast the soft shadows of one wide lamp."""
-    x, y, z = LAMP_PLACE
-    lamp = vtkLight()
-    lamp.SetLightTypeToSceneLight()
-    lamp.PositionalOn()
-    lamp.SetPosition(x + aside, y, z + above)
-    lamp.SetFocalPoint(*LAMP_AT)
-    lamp.SetColor(1.0, 0.97, 0.93)
-    return lamp
 
 
 def _passes(shadows: Shadows) -> vtkRenderPass:

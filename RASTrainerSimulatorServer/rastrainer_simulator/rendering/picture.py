@@ -106,8 +106,6 @@ class SceneMoment:
         link_to_world: a (4, 4) float pose in m for every link, as `Kinematics.links` gives them.
         head_to_world: (4, 4) float, mm, from the MRI's RAS to World.
         head_base: (3,) float, RAS mm, the center of the head's base, on the stand.
-        touched: labels of the fiducials that are done.
-        next_point: label of the one to touch now.
         proximity: the tip is blue while free, and light blue near and on the head.
     """
 
@@ -132,7 +130,6 @@ class SceneMoment:
         return {**first, TOOL: tool, "head": head, "stand": stand}
 
     def looks(self) -> dict[str, Material]:
-        """Return the materials of the nodes whose color depends on the state."""
         colors = {f"fiducial_{label}": TOUCHED for label in self.touched}
         if self.next_point is not None:
             colors[f"fiducial_{self.next_point}"] = NEXT

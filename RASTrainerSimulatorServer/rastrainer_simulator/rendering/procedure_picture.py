@@ -162,7 +162,6 @@ def _picture(
 
 
 def _line_nodes(lines: Sequence[tuple[Line, Line, Line]], thickness: float) -> list[Node]:
-    """Return all lines, thickened by a factor."""
     return [
         _line_node(f"{material.name}_{number}", line, material, thickness)
         for number, three in enumerate(lines)

@@ -10,6 +10,7 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
+from rastrainer.number_text import clock
 from rastrainer.scenario.scenario import Camera, task_by_method
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import SimulationSetup
@@ -30,7 +31,6 @@ from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.viewpoint.best_view import TouchViews
 from rastrainer_simulator.viewpoint.view_control import (
     STILL,
-    CameraPose,
     ViewControl,
     camera_pose,
     orbit_to,
@@ -95,7 +95,7 @@ def filmed(
         for state in states:
             pixels = next(shown)
             lay_in_corner(pixels, next(shown))
-            text = f"{len(state.training.touches)}/{scene.count}   {_clock(state.completion_time)}"
+            text = f"{len(state.training.touches)}/{scene.count}   {clock(state.completion_time)}"
             for color, width in (((20, 20, 20), 6), ((255, 255, 255), 2)):
                 cv2.putText(
                     pixels, text, (32, 58), cv2.FONT_HERSHEY_DUPLEX, 1.2, color, width, cv2.LINE_AA
@@ -103,10 +103,6 @@ def filmed(
             yield pixels
     finally:
         shown.close()
-
-
-def _clock(seconds: float) -> str:
-    return f"{int(seconds) // 60:02d}:{int(seconds) % 60:02d}"
 
 
 class _FilmedScene:
@@ -145,37 +141,28 @@ class _FilmedScene:
                 training.next_point,
                 state.proximity,
             )
-            self._move_parts(moment)
-            yield self._follow(training.next_point, state.q, 1.0 / RATE_HZ), SIZE
+            poses, looks = moment.poses(self._robot), moment.looks()
+            if looks != self._looks:
+                self._looks = looks
+                self.renderer.RemoveAllViewProps()
+                for node in self._nodes:
+                    self._actors[node.name] = node_actors([node], poses, looks)
+                    for actor in self._actors[node.name]:
+                        self.renderer.AddActor(actor)
+            for name, pose in poses.items():
+                for actor in self._actors.get(name, ()):
+                    actor.SetUserMatrix(vtk_matrix(pose))
+            # The camera is on its way to the best view of the next fiducial.
+            camera, next_point = self._scenario.cameras[CLOSE_UP], training.next_point
+            if next_point is not None and next_point != self._next_point:
+                self._next_point = next_point
+                best = self._views.best(next_point, state.q)
+                if best is not None:
+                    self._control.go(orbit_to(camera, best.eye, best.fiducial))
+            self._control.advance(1.0 / RATE_HZ, camera, STILL, is_arm_still=True)
+            view = camera_pose(camera, self._control.orbit)
+            position, focal_point = (
+                MM_PER_M * np.array(place) for place in (view.position, view.focal_point)
+            )
+            yield Camera(position, focal_point, np.array(view.view_up), view.view_angle_deg), SIZE
             yield self._scenario.cameras[FAR], (inset[0], inset[1])
-
-    def _move_parts(self, moment: SceneMoment) -> None:
-        poses, looks = moment.poses(self._robot), moment.looks()
-        if looks != self._looks:
-            self._looks = looks
-            self.renderer.RemoveAllViewProps()
-            for node in self._nodes:
-                self._actors[node.name] = node_actors([node], poses, looks)
-                for actor in self._actors[node.name]:
-                    self.renderer.AddActor(actor)
-        for name, pose in poses.items():
-            for actor in self._actors.get(name, ()):
-                actor.SetUserMatrix(vtk_matrix(pose))
-
-    def _follow(self, next_point: str | None, q: tuple[float, ...], passed_s: float) -> Camera:
-        """Return the camera on its way to the best view of the next fiducial."""
-        camera = self._scenario.cameras[CLOSE_UP]
-        if next_point is not None and next_point != self._next_point:
-            self._next_point = next_point
-            best = self._views.best(next_point, q)
-            if best is not None:
-                self._control.go(orbit_to(camera, best.eye, best.fiducial))
-        self._control.advance(passed_s, camera, STILL, is_arm_still=True)
-        return _camera(camera_pose(camera, self._control.orbit))
-
-
-def _camera(pose: CameraPose) -> Camera:
-    position, focal_point = (
-        MM_PER_M * np.array(place) for place in (pose.position, pose.focal_point)
-    )
-    return Camera(position, focal_point, np.array(pose.view_up), pose.view_angle_deg)

@@ -30,9 +30,6 @@ class Ghost:
     The head stands differently in each trial, and what counts is the path of the tip on the head:
     all poses are moved as the head is. The base of the arm does not move with the head, so the
     links before the last are left out.
-
-    Attributes:
-        duration_s: the trial's time at which it ends.
     """
 
     def __init__(self, track: ReplayTrack, setup: SimulationSetup, head_to_world: np.ndarray):
@@ -101,7 +98,6 @@ class TrialGhost:
             self._loading = JournalLoading(load)
 
     def close(self) -> None:
-        """Show no ghost."""
         if self._loading is not None:
             self._loading.cancel()
         self._loading = self._ghost = None

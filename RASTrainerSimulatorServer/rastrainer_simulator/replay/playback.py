@@ -23,7 +23,6 @@ class Playback:
 
     Attributes:
         speed: seconds of the trial per second.
-        latest: the shown state.
         changed: called whenever any of this has changed.
     """
 
@@ -60,7 +59,6 @@ class Playback:
         self.changed()
 
     def use_camera(self, camera: str) -> None:
-        """Use another camera than the trainee did, from now on."""
         self._camera = camera
         self._show(is_jump=True)
 
@@ -116,7 +114,6 @@ class PlaybackSwitch:
 
     @property
     def latest(self) -> SimulationState:
-        """The state that is shown."""
         if self._playback is not None:
             return self._playback.latest
         alter, now = self.alter, self._control_loop.latest
@@ -124,12 +121,10 @@ class PlaybackSwitch:
 
     @property
     def setup(self) -> SimulationSetup:
-        """What the present simulation was made from."""
         return self._control_loop.setup
 
     @property
     def statistics(self) -> LoopStatistics:
-        """How punctual the control loop has been."""
         return self._control_loop.statistics
 
     def show(self, playback: Playback | None) -> None:
@@ -142,7 +137,6 @@ class PlaybackSwitch:
             self._end_playback = playback.subscribe(self._subscribers.publish)
 
     def close(self) -> None:
-        """Unsubscribe from the control loop."""
         self.show(None)
         self._unsubscribe()
 
@@ -173,7 +167,6 @@ class ShownPlayback:
         return self.playback.setup
 
     def show(self, playback: Playback) -> None:
-        """Show another trial."""
         self._end()
         self.playback = playback
         self._end = playback.subscribe(self._subscribers.publish)

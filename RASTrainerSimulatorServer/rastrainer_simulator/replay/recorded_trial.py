@@ -73,49 +73,45 @@ class RecordedTrial:
     def __init__(self, track: ReplayTrack, setup: SimulationSetup) -> None:
         """Prepare a trial; `setup` has the scenario and the robot that it was recorded with."""
         with refusing_malformed("The trial cannot be shown again: an entry is not as it should be"):
-            self._prepare(track, setup)
-
-    def _prepare(self, track: ReplayTrack, setup: SimulationSetup) -> None:
-        header, scenario = track.header, setup.scenario
-        recorded = record_from_json(RecordedSetup, header, "The journal's header")
-        other = setup.difference(recorded)
-        if other:
-            words = {"procedure": "another procedure", "landmarks": "other landmarks"}
-            raise InputError(
-                f"The trial was recorded with {words.get(other, 'another scenario or robot')}."
+            header, scenario = track.header, setup.scenario
+            recorded = record_from_json(RecordedSetup, header, "The journal's header")
+            other = setup.difference(recorded)
+            if other:
+                words = {"procedure": "another procedure", "landmarks": "other landmarks"}
+                raise InputError(
+                    f"The trial was recorded with {words.get(other, 'another scenario or robot')}."
+                )
+            if not track.events:
+                raise InputError("The trial cannot be shown again: its journal holds no event.")
+            self.trainee, self.task = str(header["trainee"]), str(header["task"])
+            self._track = track
+            self._kinematics = make_kinematics(setup.robot)
+            self._links, self._tip = moving_links(setup.robot), setup.robot.tip.name
+            self._head_to_world = scenario.perturbed_head_to_world(seed_of(header))
+            self._head_to_world[:3, 3] /= MM_PER_M
+            base = read_head_mesh(scenario.head_mesh).base / MM_PER_M
+            self._stand_to_world = stand_pose(self._head_to_world, base)
+            self._event_times = [event.time_s for event in track.events]
+            self.duration_s = max(float(track.trajectory.times_s[-1]), self._event_times[-1])
+            settings = setup.settings
+            method = method_of(recorded.method.name if recorded.method else None)
+            task = task_by_method(scenario, self.task, method)
+            self._situations = _situations(
+                track,
+                task.labels,
+                header["before"]["camera"] or settings.camera,
+                scenario.procedure(recorded.procedure.name) if recorded.procedure else None,
+                method,
             )
-        if not track.events:
-            raise InputError("The trial cannot be shown again: its journal holds no event.")
-        self.trainee, self.task = str(header["trainee"]), str(header["task"])
-        self._track = track
-        self._kinematics = make_kinematics(setup.robot)
-        self._links, self._tip = moving_links(setup.robot), setup.robot.tip.name
-        self._head_to_world = scenario.perturbed_head_to_world(seed_of(header))
-        self._head_to_world[:3, 3] /= MM_PER_M
-        base = read_head_mesh(scenario.head_mesh).base / MM_PER_M
-        self._stand_to_world = stand_pose(self._head_to_world, base)
-        self._event_times = [event.time_s for event in track.events]
-        self.duration_s = max(float(track.trajectory.times_s[-1]), self._event_times[-1])
-        settings = setup.settings
-        method = method_of(recorded.method.name if recorded.method else None)
-        task = task_by_method(scenario, self.task, method)
-        self._situations = _situations(
-            track,
-            task.labels,
-            header["before"]["camera"] or settings.camera,
-            scenario.procedure(recorded.procedure.name) if recorded.procedure else None,
-            method,
-        )
-        places = self._head_to_world[:3, :3] @ (task.fiducials / MM_PER_M).T
-        places = (places + self._head_to_world[:3, 3:]).T
-        self._goals = dict(zip(task.labels, map(tuple, places.tolist()), strict=True))
-        self._training_settings = settings.training
-        self._start_tick, self._tick_s = int(header["before"]["tick"]), float(header["tickS"])
-        self._start_s = float(header["simTimeS"]) - self._tick_s
-        self.worst = _worst(track, setup)
+            places = self._head_to_world[:3, :3] @ (task.fiducials / MM_PER_M).T
+            places = (places + self._head_to_world[:3, 3:]).T
+            self._goals = dict(zip(task.labels, map(tuple, places.tolist()), strict=True))
+            self._training_settings = settings.training
+            self._start_tick, self._tick_s = int(header["before"]["tick"]), float(header["tickS"])
+            self._start_s = float(header["simTimeS"]) - self._tick_s
+            self.worst = _worst(track, setup)
 
     def state_at(self, time_s: float) -> SimulationState:
-        """Return the state at a time."""
         track, trajectory = self._track, self._track.trajectory
         q = tuple(track.at(time_s, track.q).tolist())
         poses = self._kinematics.links(q)
@@ -185,7 +181,6 @@ class JournalLoading(Generic[T]):
         threading.Thread(target=self._load, args=(load,), name="loading", daemon=True).start()
 
     def cancel(self) -> None:
-        """Stop loading, unless it is done."""
         self._is_canceled = True
 
     def _load(self, load: Callable[[Callable[[], None]], T]) -> None:
@@ -309,7 +304,6 @@ def _event(event: RecordedEvent) -> Event:
 
 
 def _worst(track: ReplayTrack, setup: SimulationSetup) -> tuple[str, float, float] | None:
-    """Return the worst touch with its interval."""
     registered = next((e.entry for e in track.events if e.entry["kind"] == "registered"), None)
     if registered is None:
         return None

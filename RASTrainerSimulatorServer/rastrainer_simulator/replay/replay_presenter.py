@@ -7,6 +7,7 @@ from concurrent.futures import Future
 from enum import Enum
 from functools import reduce
 
+from rastrainer.number_text import clock
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.presentation.feedback_event import feedback_event, feedback_of
@@ -65,7 +66,6 @@ class Player:
         self._end = end
 
     def do(self, action: PlayerAction) -> None:
-        """Carry out an action."""
         playback = self.playback
         if action is PlayerAction.PLAY:
             playback.pause(playback.is_playing)
@@ -95,7 +95,7 @@ class Player:
             instruction = say("replay.worst", point=trial.worst[0])
         kept = len(playback.latest.training.touches)
         status = [
-            f"{_clock(playback.time_s)} / {_clock(trial.duration_s)}",
+            f"{clock(playback.time_s)} / {clock(trial.duration_s)}",
             say("status.points", kept=kept, count=len(task.labels)),
         ]
         if not playback.is_playing:
@@ -107,11 +107,6 @@ class Player:
             language=language,
             sticks_navigate=True,
         )
-
-
-def _clock(seconds: float) -> str:
-    minutes, rest = divmod(int(seconds), 60)
-    return f"{minutes:02d}:{rest:02d}"
 
 
 _KEYS = {
@@ -207,7 +202,6 @@ class ReplayPresenter(Presenter):
         self._refresh()
 
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:  # noqa: ARG002
-        """Handle a gamepad's newly pressed buttons."""
         held = frozenset(number for number, value in enumerate(buttons) if value > 0.5)
         for number in held - self._held.get(view, frozenset()):
             self._do(_PAD.get(number))

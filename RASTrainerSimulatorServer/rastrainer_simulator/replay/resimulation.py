@@ -75,20 +75,14 @@ def replay(
         return _replay(reading, setup, watch)
 
 
-def tick_span(reading: JournalReading) -> tuple[int, int]:
-    """Return the tick before a trial and its last one."""
-    with refusing_malformed(f"{reading.path} cannot be replayed: its ticks are missing"):
-        first = record_from_json(StartingPoint, reading.header["before"]).tick
-        simulated = (entry for entry in reading.entries if entry["kind"] not in _NOT_SIMULATED)
-        return first, max((entry["tick"] for entry in simulated), default=first)
-
-
 def _replay(
     reading: JournalReading, setup: SimulationSetup, watch: Callable[[StepResult], None]
 ) -> ReplayReport:
     header = reading.header
     start = record_from_json(StartingPoint, header["before"])
-    _, last = tick_span(reading)
+    with refusing_malformed(f"{reading.path} cannot be replayed: its ticks are missing"):
+        simulated = (entry for entry in reading.entries if entry["kind"] not in _NOT_SIMULATED)
+        last = max((entry["tick"] for entry in simulated), default=start.tick)
     if not start.tick <= last <= start.tick + LONGEST_TRIAL_TICKS:
         raise InputError(f"{reading.path} has {last - start.tick} ticks: no trial is that long.")
     if not SHORTEST_TICK_S <= header["tickS"] <= LONGEST_TICK_S:
@@ -112,12 +106,17 @@ def _replay(
         difference = _first_difference(part, again)
         if difference is not None:
             break
+    recorded = header["versions"]
     return ReplayReport(
         trial_id=header["trialId"],
         ticks=simulation.state.tick - start.tick,
         compared=dict(compared),
         difference=difference,
-        changed_versions=_changed(header["versions"], player.versions),
+        changed_versions={
+            name: (recorded.get(name, "absent"), player.versions.get(name, "absent"))
+            for name in sorted(recorded.keys() | player.versions.keys())
+            if recorded.get(name) != player.versions.get(name)
+        },
         motion=player.motion,
     )
 
@@ -143,9 +142,18 @@ class _Player:
         self, earlier: Sequence[Mapping[str, Any]], part: Sequence[Mapping[str, Any]]
     ) -> list[dict[str, Any]]:
         """Return the computed entries of one part, without the header."""
-        if earlier:
-            self._resume(earlier, part[0])
         simulation, dt = self._simulation, self._dt
+        if earlier:
+            # As the server did that found the earlier parts.
+            continued, interrupted = part[0], InterruptedTrial.of(earlier)
+            if interrupted is None:
+                raise InputError("The journal resumes a trial that was not open.")
+            point = StartingPoint(
+                continued["tick"], continued["simTimeS"], camera=continued["camera"]
+            )
+            simulation.resume_trial(interrupted, point)
+            since = interrupted.point.sim_time_s
+            self._entries = TrialEntries.resumed(simulation, simulation.state, earlier, since, dt)
         first = simulation.state.tick
         last = max((entry["tick"] for entry in part), default=first)
         for operator_input in _inputs(part, first, last, self._seed):
@@ -163,18 +171,6 @@ class _Player:
         if self._simulation.state.training.phase not in FINISHED_PHASES:
             self.motion = self._entries.motion()
         return self._entries.taken()[0 if earlier else 1 :]
-
-    def _resume(self, earlier: Sequence[Mapping[str, Any]], continued: Mapping[str, Any]) -> None:
-        """Resume the trial as the server did that found the earlier parts."""
-        interrupted = InterruptedTrial.of(earlier)
-        if interrupted is None:
-            raise InputError("The journal resumes a trial that was not open.")
-        point = StartingPoint(continued["tick"], continued["simTimeS"], camera=continued["camera"])
-        self._simulation.resume_trial(interrupted, point)
-        since = interrupted.point.sim_time_s
-        self._entries = TrialEntries.resumed(
-            self._simulation, self._simulation.state, earlier, since, self._dt
-        )
 
 
 def _inputs(
@@ -214,11 +210,3 @@ def _first_difference(
 
 def _comparable(entry: Mapping[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in entry.items() if key not in _OF_THE_CLOCK}
-
-
-def _changed(recorded: Mapping[str, str], present: Mapping[str, str]) -> dict[str, tuple[str, str]]:
-    return {
-        name: (recorded.get(name, "absent"), present.get(name, "absent"))
-        for name in sorted(recorded.keys() | present.keys())
-        if recorded.get(name) != present.get(name)
-    }

@@ -37,7 +37,6 @@ class ElbowCircle(NamedTuple):
     axis: Vector
 
     def at(self, angle: float) -> Vector:
-        """Return the elbow at φ = `angle`."""
         (cx, cy, cz), (x, y, z), (sx, sy, sz) = (
             self.center,
             self.start,

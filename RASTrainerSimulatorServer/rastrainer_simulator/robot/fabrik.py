@@ -87,7 +87,15 @@ class Fabrik:
         rotation: Sequence[Sequence[float]] | None,
         q_start: Sequence[float],
     ) -> Solution:
-        goal = self._goal(position, direction, rotation)
+        target = self._frame.position(position)
+        if rotation is None:
+            tool = None if direction is None else self._frame.direction(direction)
+            goal = Goal(target, tool, None)
+        elif direction is None:
+            x, y, z = self._frame.rotation(rotation)
+            goal = Goal(target, z, (x, y))
+        else:
+            raise InputError("Give the tool a direction or a rotation, not both.")
         aim = goal.within_lengths(self._arm)
         start: Angles = self._frame.theta(q_start)
         links = chain(start)
@@ -102,21 +110,6 @@ class Fabrik:
                     return self._solution(goal, followed, 1)
             reached = self._reach(goal, aim, start, links, _JUMP)
         return self._solution(goal, *reached)
-
-    def _goal(
-        self,
-        position: Sequence[float],
-        direction: Sequence[float] | None,
-        rotation: Sequence[Sequence[float]] | None,
-    ) -> Goal:
-        target = self._frame.position(position)
-        if rotation is None:
-            tool = None if direction is None else self._frame.direction(direction)
-            return Goal(target, tool, None)
-        if direction is not None:
-            raise InputError("Give the tool a direction or a rotation, not both.")
-        x, y, z = self._frame.rotation(rotation)
-        return Goal(target, z, (x, y))
 
     def _solution(self, goal: Goal, theta: Angles, passes: int, blocked: bool = False) -> Solution:
         off, turned = goal.errors(self._arm, theta, chain(theta))

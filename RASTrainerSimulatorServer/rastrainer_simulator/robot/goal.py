@@ -40,7 +40,6 @@ class FabrikSettings:
     max_iterations: Annotated[int, whole_number(1, 10_000)] = 32
 
     def __post_init__(self) -> None:
-        """Raise InputError for settings that could never end or never succeed."""
         if not (self.tolerance_m > 0.0 and self.tolerance_rad > 0.0 and self.max_iterations >= 1):
             raise InputError("FABRIK needs tolerances above zero and at least one iteration.")
 
@@ -133,7 +132,6 @@ class Goal(NamedTuple):
 
 
 def tool_axes(theta: Angles, links: Chain) -> tuple[Vector, Vector]:
-    """Return the tool's x and y axes."""
     (wx, wy, wz), (tx, ty, tz) = links[5], links[2]
     ax, ay, az = wy * tz - wz * ty, wz * tx - wx * tz, wx * ty - wy * tx
     c, s = cos(theta[6]), sin(theta[6])

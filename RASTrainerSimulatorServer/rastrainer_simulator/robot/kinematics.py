@@ -79,11 +79,9 @@ class NumpyKinematics:
         self._frames = np.tile(np.eye(4), (8, 1, 1))
 
     def tip(self, q: Sequence[float]) -> np.ndarray:
-        """Return ToolTipToWorld, (4, 4) float."""
         return self._move(q)[7] @ self.model.tip.offset
 
     def links(self, q: Sequence[float]) -> dict[str, np.ndarray]:
-        """Return LinkToWorld, (4, 4) float, of every link by its name."""
         poses = self._move(q)[self._joint_of_link] @ self._offsets
         return dict(zip(self._names, poses, strict=True))
 
@@ -129,12 +127,10 @@ class PinocchioKinematics:
         self._data = self._model.createData()
 
     def tip(self, q: Sequence[float]) -> np.ndarray:
-        """Return ToolTipToWorld, (4, 4) float."""
         self._pin.forwardKinematics(self._model, self._data, np.asarray(q, dtype=float))
         return self._pin.updateFramePlacement(self._model, self._data, self._tip).homogeneous
 
     def links(self, q: Sequence[float]) -> dict[str, np.ndarray]:
-        """Return LinkToWorld, (4, 4) float, of every link by its name."""
         self._pin.framesForwardKinematics(self._model, self._data, np.asarray(q, dtype=float))
         # Individually they take ten times as long.
         placements = self._data.oMf.tolist()

@@ -64,13 +64,6 @@ def _load(part: MeshPart) -> trimesh.Trimesh:
         raise InputError(
             f"{part.path} cannot be read as a {kind.upper()} mesh ({type(error).__name__})."
         ) from error
-    _check_shape(part, vertices, faces)
-    mesh = trimesh.Trimesh(vertices * part.scale, faces, process=False)
-    mesh.merge_vertices()
-    return mesh.apply_transform(part.origin)
-
-
-def _check_shape(part: MeshPart, vertices: np.ndarray, faces: np.ndarray) -> None:
     if len(faces) == 0:
         raise InputError(f"{part.path} holds no triangles; it should hold a surface mesh.")
     if len(faces) > MAX_TRIANGLES:
@@ -83,6 +76,9 @@ def _check_shape(part: MeshPart, vertices: np.ndarray, faces: np.ndarray) -> Non
             f"{part.path} has vertices that are not finite or beyond {FARTHEST:g} m; robot meshes "
             "should be in meters."
         )
+    mesh = trimesh.Trimesh(vertices * part.scale, faces, process=False)
+    mesh.merge_vertices()
+    return mesh.apply_transform(part.origin)
 
 
 def _lie_in_base_frame(model: RobotModel, meshes: Iterable[tuple[str, trimesh.Trimesh]]) -> bool:
@@ -133,23 +129,19 @@ def checked_content(data: bytes, kind: str, what: str) -> bytes:
             raise _too_much(what)
         return text.encode()
     if kind == "glb":
-        _check_glb(data, what)
+        try:
+            magic, version, _size = _HEADER.unpack_from(data)
+            size, _kind = _CHUNK.unpack_from(data, _HEADER.size)
+            begin = _HEADER.size + _CHUNK.size
+            tree = decode_finite_json(data[begin : begin + size].decode("utf-8"))
+            if (magic, version) != (b"glTF", 2):
+                raise ValueError
+            numbers = _numbers_shown(tree)
+        except (ValueError, TypeError, KeyError, IndexError, AttributeError, struct.error):
+            raise InputError(f"{what} is not a GLB file (glTF 2.0).") from None
+        if numbers > MAX_NUMBERS:
+            raise _too_much(what)
     return data
-
-
-def _check_glb(data: bytes, what: str) -> None:
-    try:
-        magic, version, _size = _HEADER.unpack_from(data)
-        size, _kind = _CHUNK.unpack_from(data, _HEADER.size)
-        begin = _HEADER.size + _CHUNK.size
-        tree = decode_finite_json(data[begin : begin + size].decode("utf-8"))
-        if (magic, version) != (b"glTF", 2):
-            raise ValueError
-        numbers = _numbers_shown(tree)
-    except (ValueError, TypeError, KeyError, IndexError, AttributeError, struct.error):
-        raise InputError(f"{what} is not a GLB file (glTF 2.0).") from None
-    if numbers > MAX_NUMBERS:
-        raise _too_much(what)
 
 
 def _numbers_shown(tree: Any) -> int:

@@ -84,7 +84,16 @@ def reach_wrist(arm: CanonicalArm, goal: Goal, aim: Goal, start: Start, most: in
         theta = close(arm, elbow_circle(arm, wrist, elbow), wrist, tool, None, start.theta)
     if theta is None:
         return Reached(start.theta, passes, True)
-    return Reached(_rolled(arm, theta, goal.roll) if goal.roll else theta, passes)
+    if goal.roll:
+        # The last joint is turned as near to the roll as its limits allow.
+        axis = chain(theta)[5]
+        x, y = goal.roll
+        wanted = atan2(dot(axis, x), dot(axis, y))
+        fitted = fit(wanted, theta[6], arm.limits[6])
+        if fitted is None:
+            fitted = min(arm.limits[6], key=lambda limit: abs(remainder(limit - wanted, TURN)))
+        theta = (*theta[:6], fitted)
+    return Reached(theta, passes)
 
 
 def _iterate(
@@ -106,17 +115,6 @@ def _iterate(
         if abs(before - gap) < _STALLED * gap:
             return None, passes
     return None, most
-
-
-def _rolled(arm: CanonicalArm, theta: Angles, roll: tuple[Vector, Vector]) -> Angles:
-    """Return θ with the last joint turned as near to a roll as its limits allow."""
-    axis = chain(theta)[5]
-    x, y = roll
-    wanted = atan2(dot(axis, x), dot(axis, y))
-    fitted = fit(wanted, theta[6], arm.limits[6])
-    if fitted is None:
-        fitted = min(arm.limits[6], key=lambda limit: abs(remainder(limit - wanted, TURN)))
-    return (*theta[:6], fitted)
 
 
 _TINY = 1e-12

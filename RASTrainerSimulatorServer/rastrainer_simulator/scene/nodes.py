@@ -134,7 +134,6 @@ class Node:
 
 
 def no_go_name(path: Path) -> str:
-    """Return the name of the node of a no-go structure, by its mesh file."""
     return f"{NO_GO_PREFIX}{path.stem}"
 
 

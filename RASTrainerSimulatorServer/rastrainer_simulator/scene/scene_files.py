@@ -143,7 +143,6 @@ class SceneFiles:
         return self._paths[1]
 
     async def _use_built(self, path: Path) -> bool:
-        """Use the scene if it is already in the folder."""
         sha256 = await asyncio.to_thread(_sha256_of_glb, path)
         if sha256 is None:
             return False

@@ -137,19 +137,6 @@ WORLD = "world"
 WORLD_TO_GLTF = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], dtype=float)
 
 
-def to_glb(nodes: list[Node]) -> bytes:
-    """Return the GLB of nodes in World.
-
-    A node of one surface carries it; one of several has a child for each, named `NODE_MATERIAL`.
-    """
-    scene = trimesh.Scene(base_frame=ROOT)
-    scene.graph.update(frame_from=ROOT, frame_to=WORLD, matrix=WORLD_TO_GLTF)
-    materials: dict[Material, PBRMaterial] = {}
-    for node in nodes:
-        _add(scene, WORLD, node, materials)
-    return scene.export(file_type="glb", include_normals=True)
-
-
 def _add(
     scene: trimesh.Scene, parent: str, node: Node, materials: dict[Material, PBRMaterial]
 ) -> None:
@@ -158,7 +145,17 @@ def _add(
         scene.graph.update(frame_from=parent, frame_to=node.name, matrix=np.eye(4))
     for surface in node.surfaces:
         if surface.material not in materials:
-            materials[surface.material] = _material(surface.material)
+            color = np.array(surface.material.linear_color)
+            # A glowing surface is black to lamps: it has its own color in any light.
+            base, glow = (np.zeros(3), color) if surface.material.glowing else (color, np.zeros(3))
+            materials[surface.material] = PBRMaterial(
+                name=surface.material.name,
+                alphaMode="OPAQUE" if surface.material.opacity == 1.0 else "BLEND",
+                baseColorFactor=[*base, surface.material.opacity],
+                metallicFactor=surface.material.metallic,
+                roughnessFactor=surface.material.roughness,
+                emissiveFactor=glow,
+            )
         mesh = trimesh.Trimesh(
             surface.vertices,
             surface.triangles,
@@ -176,20 +173,6 @@ def _add(
         )
     for child in node.children:
         _add(scene, node.name, child, materials)
-
-
-def _material(material: Material) -> PBRMaterial:
-    color = np.array(material.linear_color)
-    # A glowing surface is black to lamps: it has its own color in any light.
-    base, glow = (np.zeros(3), color) if material.glowing else (color, np.zeros(3))
-    return PBRMaterial(
-        name=material.name,
-        alphaMode="OPAQUE" if material.opacity == 1.0 else "BLEND",
-        baseColorFactor=[*base, material.opacity],
-        metallicFactor=material.metallic,
-        roughnessFactor=material.roughness,
-        emissiveFactor=glow,
-    )
 
 
 BASE_CREASE_DEG = 60.0
@@ -216,7 +199,13 @@ def _surface(shape: Shape, material: Material) -> Surface:
 
 def scene_glb(scenario: Scenario, robot: RobotModel, task: Task | None) -> bytes:
     """Return the GLB that docs/views.md describes; takes seconds, and imports VTK."""
-    return to_glb(scene_nodes(scenario, robot, read_head_mesh(scenario.head_mesh), task))
+    nodes = scene_nodes(scenario, robot, read_head_mesh(scenario.head_mesh), task)
+    scene = trimesh.Scene(base_frame=ROOT)
+    scene.graph.update(frame_from=ROOT, frame_to=WORLD, matrix=WORLD_TO_GLTF)
+    materials: dict[Material, PBRMaterial] = {}
+    for node in nodes:
+        _add(scene, WORLD, node, materials)
+    return scene.export(file_type="glb", include_normals=True)
 
 
 def scene_nodes(

@@ -244,7 +244,16 @@ def _between(
     whole: Arrow | None = None
     best: Arrow | None = None
     for turn in TURNS:
-        arrow, is_whole = _turned(skin, start, goal, others, turn, longest)
+        # It ends before the goal's rim, and well before others, to which it must not seem to lead.
+        first = RIM_RADIUS + GAP
+        path, outward = _walk(skin, start, goal, turn, first + longest)
+        along = np.arange(first, min(first + longest, STEP * (len(path) - 1)), 0.5)
+        places = _at(path, along)[:, None]
+        is_foreign = (np.linalg.norm(places - others, axis=2) < RIM_RADIUS + BERTH).any(axis=1)
+        is_over = is_foreign | (np.linalg.norm(places[:, 0] - goal, axis=1) < RIM_RADIUS + GAP)
+        stop = int(is_over.argmax()) if is_over.any() else len(along) - 1
+        end = float(along[stop]) if len(along) else first
+        arrow, is_whole = Arrow(path, outward, first, end), not is_foreign[: stop + 1].any()
         if is_whole and all(_distance(arrow, each) >= APART for each in made):
             return arrow
         if is_whole and whole is None:
@@ -253,25 +262,6 @@ def _between(
             best = arrow
     assert best is not None  # There is at least one turn.
     return best if whole is None else whole
-
-
-def _turned(
-    skin: Skin, start: np.ndarray, goal: np.ndarray, others: np.ndarray, turn: float, longest: float
-) -> tuple[Arrow, bool]:
-    """Return the arrow that starts at `turn` (rad) from the straight path, and whether it is whole.
-
-    It ends before the goal's rim, and well before any of the `others`, which it must not seem to
-    lead to.
-    """
-    first = RIM_RADIUS + GAP
-    path, outward = _walk(skin, start, goal, turn, first + longest)
-    along = np.arange(first, min(first + longest, STEP * (len(path) - 1)), 0.5)
-    places = _at(path, along)[:, None]
-    is_foreign = (np.linalg.norm(places - others, axis=2) < RIM_RADIUS + BERTH).any(axis=1)
-    is_over = is_foreign | (np.linalg.norm(places[:, 0] - goal, axis=1) < RIM_RADIUS + GAP)
-    stop = int(is_over.argmax()) if is_over.any() else len(along) - 1
-    end = float(along[stop]) if len(along) else first
-    return Arrow(path, outward, first, end), not is_foreign[: stop + 1].any()
 
 
 def _walk(

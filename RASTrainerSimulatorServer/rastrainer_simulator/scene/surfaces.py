@@ -36,7 +36,6 @@ def soft_box(
 
 
 def post(x: float, y: float, z: Span, radius: float, material: Material) -> Surface:
-    """Return an upright cylinder."""
     return turned(x, y, [(radius, z[0]), (radius, z[1])], material)
 
 

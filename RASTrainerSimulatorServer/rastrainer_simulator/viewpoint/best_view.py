@@ -87,12 +87,9 @@ class HeldTool:
 
 @dataclass(frozen=True)
 class ViewedPoint:
-    """A fiducial to be viewed: World, m.
+    """A fiducial to be viewed, and the skin's outward unit normal there: World, m.
 
-    Attributes:
-        fiducial: its position.
-        normal: the skin's outward unit normal there.
-        marks: what must be seen on the skin, a little above it: the fiducial and its number.
+    `marks` are what must be seen on the skin, a little above it: the fiducial and its number.
     """
 
     fiducial: Vector
@@ -105,7 +102,6 @@ class PointViews:
     """What is known of the views of a fiducial before the arm's posture is.
 
     Attributes:
-        point: the fiducial.
         eyes: (k, 3) float, from where head and table leave fiducial and number visible, the best
             first; World, m.
         planned: the posture in which it is to be touched; None where the robot cannot.
@@ -122,7 +118,6 @@ class BestView:
 
     Attributes:
         eye: from where fiducial, number and tip are seen as well as possible.
-        fiducial: the point in focus.
         beside: an eye that looks along the skin; None where something is always in between.
         is_whole: whether nothing of these is hidden from `eye`.
     """
@@ -318,7 +313,6 @@ class TouchViews:
             yield label, view if view is not None and view.is_whole else None
 
     def placement(self, task: Task) -> Placement:
-        """Return where the marks of a task are on the skin."""
         return self._on_skin(task)[1]
 
     def _held(self, q: Sequence[float]) -> HeldTool:

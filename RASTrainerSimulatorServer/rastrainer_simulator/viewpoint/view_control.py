@@ -207,39 +207,34 @@ class ViewControl:
         camera: the scenario's camera that it starts from.
         orbit: how it differs from that.
         is_automatic: whether the last move was automatic.
+        travel: the move to another position that is under way.
     """
 
     def __init__(self) -> None:
         self.camera = ""
         self.orbit = FRONT
         self.is_automatic = False
-        self._travel: _Travel | None = None
+        self.travel: _Travel | None = None
 
     @property
     def is_moved(self) -> bool:
         """Whether it differs, or will differ, from the scenario's camera."""
-        travel = self._travel
+        travel = self.travel
         return (self.orbit if travel is None else travel.goal) != FRONT
 
-    @property
-    def is_traveling(self) -> bool:
-        """Whether it is moving to another position."""
-        return self._travel is not None
-
     def use(self, camera: str) -> None:
-        """Start from a camera of the scenario, unless it is already in use."""
         if camera != self.camera:
             self.camera = camera
             self.reset()
 
     def reset(self) -> None:
-        self.orbit, self._travel, self.is_automatic = FRONT, None, False
+        self.orbit, self.travel, self.is_automatic = FRONT, None, False
 
     def turn(self, camera: Camera, around_deg: float, higher_deg: float, zoom: float) -> None:
         """Turn the view by hand, at once; `zoom` multiplies its distance."""
         if (around_deg, higher_deg, zoom) == (0.0, 0.0, 1.0):
             return
-        self._travel, self.is_automatic = None, False
+        self.travel, self.is_automatic = None, False
         orbit = self.orbit
         self.orbit = limited(
             camera,
@@ -257,7 +252,7 @@ class ViewControl:
         degrees = math.hypot(turn, goal.elevation_deg - self.orbit.elevation_deg)
         seconds = max(SHORTEST_S, degrees / TRAVEL_DEG_S)
         if self.orbit != goal:
-            self._travel = _Travel(self.orbit, goal, seconds, is_automatic)
+            self.travel = _Travel(self.orbit, goal, seconds, is_automatic)
 
     def advance(self, dt: float, camera: Camera, motion: ViewMotion, is_arm_still: bool) -> None:
         """Advance by `dt` seconds: by what is held, else along the move.
@@ -269,7 +264,7 @@ class ViewControl:
             around, higher = motion.around * TURN_DEG_S * dt, motion.higher * RISE_DEG_S * dt
             self.turn(camera, around, higher, zoom)
             return
-        travel = self._travel
+        travel = self.travel
         if travel is None or (travel.is_automatic and not is_arm_still):
             return
         travel.share = min(1.0, travel.share + dt / travel.seconds)
@@ -278,7 +273,7 @@ class ViewControl:
             gentle = travel.share**2 * (3.0 - 2.0 * travel.share)
             self.orbit = travel.start.toward(travel.goal, gentle)
         else:
-            self.orbit, self._travel = travel.goal, None
+            self.orbit, self.travel = travel.goal, None
 
 
 SIDEWAYS = 0.2
@@ -297,7 +292,6 @@ class Aim(NamedTuple):
 
 
 def aim(guide: GuideAxis, line: PlannedLine, pictures: Pictures) -> Aim:
-    """Return how a planned line lies to the guide."""
     main = pictures.main
     to_the_right = unit(cross(subtract(main.focal_point, main.position), main.view_up))
     upward = main.view_up

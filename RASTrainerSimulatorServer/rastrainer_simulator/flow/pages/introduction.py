@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
+from rastrainer.number_text import clock
 from rastrainer.protocol import TRIAL_RUN, TutorialRule
 from rastrainer_simulator.flow.pages.controls import controls_page
 from rastrainer_simulator.flow.pages.experiment import open_experiment
@@ -91,7 +92,7 @@ def tutorial_done_page(page: SessionPage, outcome: TutorialOutcome) -> PageConte
     session, say = page.session, page.say
     errors = (say("tutorial.mm", error=error) for error in outcome.errors_mm)
     facts = (
-        Fact(say("tutorial-done.time"), session.duration(outcome.duration_s)),
+        Fact(say("tutorial-done.time"), clock(outcome.duration_s)),
         Fact(say("tutorial-done.first"), say("tutorial.mm", error=outcome.first_error_mm)),
         Fact(say("tutorial-done.touches"), session.texts.listed(errors)),
     )

@@ -8,6 +8,7 @@ from functools import partial
 from typing import Any
 
 from rastrainer.json_checks import is_number
+from rastrainer.number_text import clock
 from rastrainer.trial.scoring import (
     COMMON_BIAS_LIMIT_MM,
     CONTACT_LIMIT_S,
@@ -219,9 +220,9 @@ def _worst_point(training: TrainingState, result: TrialResult) -> str:
 def _facts_of_trial(session: TrainingSession) -> tuple[Fact, ...]:
     training, state, say = session.training, session.state, session.texts.say
     took = state.procedure_time
-    procedure = (Fact(say("result.procedure time"), session.duration(took or 0.0)),)
+    procedure = (Fact(say("result.procedure time"), clock(took or 0.0)),)
     return (
-        Fact(say("result.time"), session.duration(state.completion_time)),
+        Fact(say("result.time"), clock(state.completion_time)),
         *(() if took is None else procedure),
         Fact(say("result.repeated"), f"{training.rejected} / {training.undone}"),
     )

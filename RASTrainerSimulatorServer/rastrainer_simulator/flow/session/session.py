@@ -12,6 +12,7 @@ import numpy as np
 from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals_of
+from rastrainer.number_text import clock
 from rastrainer.procedure.geometry import BoneAhead
 from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, AssignmentState, Mode, RegistrationMethod
 from rastrainer.scenario.scenario import Scenario
@@ -305,13 +306,9 @@ class TrainingSession:
             task=f"{task} {self.texts.say(by)}" if by in self.texts else task,
             mode=self.texts.say(f"study.{step.mode}") if step.mode else "",
             minutes=step.minutes,
-            left=self.duration(self.services.assigned.break_left_s(step.trainee)),
+            left=clock(self.services.assigned.break_left_s(step.trainee)),
             questionnaire=step.questionnaire if asked is None else asked.title,
         )
-
-    def duration(self, seconds: float) -> str:
-        whole = int(seconds)
-        return f"{whole // 60:02d}:{whole % 60:02d}"
 
     def _note_reached(self) -> None:
         """Announce the assignment that the trainee has reached since Slicer's last message."""

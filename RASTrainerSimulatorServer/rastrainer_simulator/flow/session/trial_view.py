@@ -75,7 +75,7 @@ class TrialView:
         self._went_for, self._is_wanted = None, False
 
     def has_moved_to(self, label: str | None) -> bool:
-        is_there = not self._is_wanted and not self.control.is_traveling
+        is_there = not self._is_wanted and self.control.travel is None
         return label is not None and label == self._went_for and is_there
 
     def want_best(self) -> None:
