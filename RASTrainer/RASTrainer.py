@@ -377,7 +377,9 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
             fixture.process()
             fixture.ui.robotCheckBox.checked = True
             fixture.touch(fixture.touches())
-            fixture.clearScene()
+            slicer.mrmlScene.Clear()
+            fixture.session.sceneWasCleared()
+            fixture.process()
             self.assertEqual(fixture.ui.residualsTable.rowCount, 0)
             fixture.ui.showScenarioButton.click()
             fixture.process()

@@ -217,7 +217,21 @@ def writeOutput(
 def main(argv: Sequence[str] | None = None) -> int:
     """Run and return the exit status."""
     allow_any_text()
-    arguments = _parser().parse_args(argv)
+    parser = argparse.ArgumentParser(
+        prog="python -m rastrainer_headless.main",
+        description="Slicer's side without Slicer. Not for clinical use.",
+    )
+    parser.add_argument("--host", default=DEFAULT_HOST, help="where the simulator runs")
+    parser.add_argument("--port", type=int, default=DEFAULT_PORT, help="its OpenIGTLink port")
+    parser.add_argument(
+        "--listen", action="store_true", help="wait for a simulator started with --connect"
+    )
+    parser.add_argument("--scenario", type=Path, required=True, metavar="DIR")
+    parser.add_argument("--output", type=Path, required=True, metavar="DIR")
+    parser.add_argument("--trials", type=int, default=1, metavar="N", help="trials to wait for")
+    parser.add_argument("--timeout", type=float, default=600.0, metavar="S", help="seconds to wait")
+    parser.add_argument("--cohort", type=Path, metavar="CSV", help="trials that CTPS compares with")
+    arguments = parser.parse_args(argv)
     try:
         _run(arguments)
     except TrialsMissingError as error:
@@ -252,24 +266,6 @@ def _run(arguments: argparse.Namespace) -> None:
         host.close()
     files = writeOutput(arguments.output, host.application, scenario, latest)
     printEvent("output", **files, study=str(arguments.output / STUDY_FILE))
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="python -m rastrainer_headless.main",
-        description="Slicer's side without Slicer. Not for clinical use.",
-    )
-    parser.add_argument("--host", default=DEFAULT_HOST, help="where the simulator runs")
-    parser.add_argument("--port", type=int, default=DEFAULT_PORT, help="its OpenIGTLink port")
-    parser.add_argument(
-        "--listen", action="store_true", help="wait for a simulator started with --connect"
-    )
-    parser.add_argument("--scenario", type=Path, required=True, metavar="DIR")
-    parser.add_argument("--output", type=Path, required=True, metavar="DIR")
-    parser.add_argument("--trials", type=int, default=1, metavar="N", help="trials to wait for")
-    parser.add_argument("--timeout", type=float, default=600.0, metavar="S", help="seconds to wait")
-    parser.add_argument("--cohort", type=Path, metavar="CSV", help="trials that CTPS compares with")
-    return parser
 
 
 if __name__ == "__main__":

@@ -62,22 +62,6 @@ class HeadlessScene:
                 )
             unfinished.replace(path)
 
-    def load(self, path: Path) -> None:
-        """Replace the scene by that of a bundle (.mrb)."""
-        messages = slicer.vtkMRMLMessageCollection()
-        with tempfile.TemporaryDirectory() as cacheFolder:
-            cache = slicer.vtkCacheManager()
-            cache.SetRemoteCacheDirectory(cacheFolder)
-            dataIO = slicer.vtkDataIOManager()
-            dataIO.SetCacheManager(cache)
-            self.scene.SetDataIOManager(dataIO)
-            try:
-                isRead = self.scene.ReadFromMRB(str(path), True, messages)
-            finally:
-                self.scene.SetDataIOManager(None)
-        if not isRead:
-            raise InputError(f"{path} is not a scene bundle (.mrb) that can be read.")
-
 
 METADATA_PREFIX = "OpenIGTLink."
 UNSELECTED = "Unselected"

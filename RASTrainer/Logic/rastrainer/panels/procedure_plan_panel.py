@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import slicer
@@ -21,6 +22,7 @@ from rastrainer.panels.widgets import (
     setProperty,
     setSilently,
     setText,
+    showPercent,
 )
 from rastrainer.procedure.checks import LineMeasures, MeasuredProcedure
 from rastrainer.procedure.plan import ProcedureKind
@@ -63,7 +65,7 @@ class ProcedurePlanPanel(Panel):
         self._problem = ""
         self._removed: list[tuple[Any, int]] = []
         failure = _("The lines were not checked.")
-        shows = (self._showProblem, self.showState, self._showProgress)
+        shows = (self._showProblem, self.showState, partial(showPercent, ui.procedurePlanText))
         self._work = CancelableWork(ui.checkLinesButton, self.check, failure, *shows)
         fillComboBox(ui.procedureKindComboBox, KINDS, ProcedureKind.BIOPSY.value)
         connectClick(ui.editProcedureButton, self.edit, _("The procedure cannot be edited."))
@@ -258,10 +260,6 @@ class ProcedurePlanPanel(Panel):
         combo = self._ui.procedurePlanComboBox
         offerEntries(combo, entries, *([chosenData(combo)] if combo.count else []))
         self.showState()
-
-    def _showProgress(self, step: str, share: float) -> None:
-        if step:
-            setText(self._ui.procedurePlanText, f"{step}: {100 * share:.0f} %")
 
     def _showProblem(self, sentence: str) -> None:
         """Keep the sentence for `showState`."""

@@ -86,6 +86,13 @@ class LinkStatus:
     remedy: str = ""
 
 
+NOT_INSTALLED = LinkStatus(
+    LinkState.NOT_INSTALLED,
+    _("The extension SlicerOpenIGTLink is not installed."),
+    _("Install it in the Extensions Manager and restart Slicer."),
+)
+
+
 @dataclass
 class LinkObservation:
     """What is known of a connection.
@@ -110,7 +117,7 @@ def judge(link: LinkObservation) -> LinkStatus:
     if not link.address:
         return LinkStatus(LinkState.OFF, _("Not connected."), _("Press Start and connect."))
     if not link.isInstalled:
-        return notInstalled()
+        return NOT_INSTALLED
     if not link.isOpen:
         return _judgeClosed(link)
     if link.peerVersion not in (None, PROTOCOL_VERSION):
@@ -144,15 +151,6 @@ def _judgeClosed(link: LinkObservation) -> LinkStatus:
         if status.state is not LinkState.CONNECTED:
             return status
     return lookingAt(link.address)
-
-
-def notInstalled() -> LinkStatus:
-    """Return the status of a Slicer without the extension that brings the connector."""
-    return LinkStatus(
-        LinkState.NOT_INSTALLED,
-        _("The extension SlicerOpenIGTLink is not installed."),
-        _("Install it in the Extensions Manager and restart Slicer."),
-    )
 
 
 def judgeFinding(finding: ProbeResult, address: str) -> LinkStatus:

@@ -132,7 +132,7 @@ class Probe:
 
     def process(self) -> ProbeResult | None:
         """Let the thread run for some milliseconds; return who answers once that is known."""
-        self._job.yieldTime(POLL_S)
+        self._job.thread.join(POLL_S)
         if self._job.isDone:
             peer = self._job.outcome.result()
         elif self._clock() > self._deadline:

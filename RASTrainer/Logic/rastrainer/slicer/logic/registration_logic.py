@@ -11,7 +11,6 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.registration.fits import RIGID
-from rastrainer.registration.registration import Registration
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.logic.registration_comparison import Comparison, compareFits
 from rastrainer.slicer.scene.error_colors import (
@@ -69,11 +68,6 @@ class RegistrationLogic:
     @property
     def canUndo(self) -> bool:
         return len(self._history) > 1
-
-    @property
-    def shown(self) -> Registration | None:
-        """The fit of the chosen kind; the rigid one where the pairs do not allow that kind."""
-        return None if self.comparison is None else self.comparison.shown
 
     @property
     def transform(self) -> Any | None:
@@ -191,10 +185,6 @@ class RegistrationLogic:
             return
         scene, shown, fits = self._scene, comparison.shown, comparison.fits
 
-        def showTransform() -> None:
-            moving, fixed, _target = self.lists()
-            showRegistration(scene, shown, moving, fixed)
-
         def showTables() -> None:
             showResiduals(scene, shown, comparison.leaveOneOut.get(shown.kind))
             showFits(scene, list(fits.values()), [comparison.errors.get(kind) for kind in fits])
@@ -211,7 +201,10 @@ class RegistrationLogic:
             if request is self._request and None not in self.lists()[:2]:
                 show()
 
-        for show in (showTransform, showTables, showOnHead, finish):
+        self._work.later(
+            lambda: showIfPresent(lambda: showRegistration(scene, shown, *self.lists()[:2]))
+        )
+        for show in (showTables, showOnHead, finish):
             self._work.later(partial(showIfPresent, show))
 
     def _colorHead(self, errors: np.ndarray | None) -> None:

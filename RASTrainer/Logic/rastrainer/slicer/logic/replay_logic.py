@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -131,10 +132,7 @@ class ReplayLogic:
         feedback = self.feedback(trial)
         interval = None if feedback is None else feedback.worst.replay_s
         if interval is None:
-            inBackground(
-                lambda r: self._services.run(READ_TRACK, r, self._services.records, trialId),
-                progress,
-            )
+            inBackground(partial(self._track, trialId), progress)
             raise InputError(_("The journal does not say when the worst touch was made."))
         self._put(trial, progress)
         goTo(self._services.scene, interval[0])

@@ -37,8 +37,9 @@ from rastrainer.slicer.scene.scenario_nodes import (
     showTask,
 )
 from rastrainer.slicer.scene.trial_scene import (
+    KIND_ATTRIBUTE,
+    PLANNED,
     followPlacement,
-    isPlanned,
     showOnlyTouchesOf,
     showPlannedPlace,
 )
@@ -85,7 +86,7 @@ class ScenarioLogic:
     def _showPlace(self, scenario: Scenario, taskName: str) -> None:
         fixed = showTask(self._scene, scenario, taskName)
         placed = findNode(self._scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
-        if placed is None or isPlanned(placed):
+        if placed is None or placed.GetAttribute(KIND_ATTRIBUTE) == PLANNED:
             showPlannedPlace(self._scene, scenario, capturedPointsNode(self._scene), fixed)
 
     def useHead(self, node: Any, progress: Progress = no_progress) -> tuple[Any, list[str]]:

@@ -152,14 +152,9 @@ class SimulatorLogic:
         self.program.changed.connect(self._followProgram)
 
     @property
-    def ownProgram(self) -> str:
-        """A `rastrainer` that the user has installed elsewhere; "" for the private folder's."""
-        return self._settings.get(PROGRAM)
-
-    @property
     def needsSetup(self) -> bool:
         """Whether the simulator has to be set up before it can be started."""
-        return not self.ownProgram and not self.setup.isCurrent
+        return not self._settings.get(PROGRAM) and not self.setup.isCurrent
 
     @property
     def isChanging(self) -> bool:
@@ -182,7 +177,8 @@ class SimulatorLogic:
 
     def command(self, arguments: Sequence[str]) -> list[str]:
         """Return what runs `rastrainer` with arguments such as `simulator --port 0`."""
-        ownProgram = self.ownProgram
+        # A `rastrainer` that the user has installed elsewhere; "" for the private folder's.
+        ownProgram = self._settings.get(PROGRAM)
         if ownProgram:
             if not Path(ownProgram).is_file():
                 raise InputError(_("There is no program {path}.").format(path=ownProgram))

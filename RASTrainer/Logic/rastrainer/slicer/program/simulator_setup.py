@@ -143,7 +143,13 @@ class SimulatorSetup:
             return
         isOver, child = self._child.poll(), self._child
         for line in child.takeLines():
-            self._follow(line)
+            if BEGUN.match(line):
+                self.fetched = min(self.fetched + 1, self.count)
+            elif line.startswith(LEFT_OUT):
+                # Entries for other platforms and other versions of Python.
+                self.count -= 1
+            elif line.startswith(INSTALLING):
+                self.isInstalling = True
             self.progressed.emit(line)
         if not isOver:
             return
@@ -176,16 +182,6 @@ class SimulatorSetup:
             if isinstance(values, dict):
                 return values
         return {}
-
-    def _follow(self, line: str) -> None:
-        """Count the packages in a line of pip's output."""
-        if BEGUN.match(line):
-            self.fetched = min(self.fetched + 1, self.count)
-        elif line.startswith(LEFT_OUT):
-            # Entries for other platforms and other versions of Python.
-            self.count -= 1
-        elif line.startswith(INSTALLING):
-            self.isInstalling = True
 
     def _dropPartial(self) -> None:
         # What cannot be removed now is, before the next set-up.
