@@ -66,7 +66,6 @@ class HeadlessCommand(vtk.vtkObject):
         return self._status == self.CommandWaiting
 
     def setResponse(self, content: WireText, metadata: Mapping[str, WireText]) -> None:
-        """Keep the answer (the connector's part)."""
         self._response, self._metadata = content, metadata
         self._status = self.CommandResponseReceived
 

@@ -113,7 +113,6 @@ class HeadlessHost:
         return self.latest
 
     def close(self) -> None:
-        """Disconnect and close the study."""
         self._procedure.close()
         self._presenter.close()
         self._aborted.close()
@@ -150,12 +149,10 @@ def _openStudy(folder: Path) -> Study:
 
 
 def printEvent(event: str, **values: Any) -> None:
-    """Write one line of JSON to standard output."""
     print(json.dumps({"event": event, **values}, allow_nan=False), flush=True)
 
 
 def results_json(analysis: TrialAnalysis) -> dict[str, Any]:
-    """Return the numbers of a trial as a JSON object."""
     score, procedure, published = analysis.score, analysis.procedure, analysis.published_score
     fits = {}
     for kind, fit in analysis.fits.items():
@@ -215,7 +212,6 @@ def writeOutput(
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run and return the exit status."""
     allow_any_text()
     parser = argparse.ArgumentParser(
         prog="python -m rastrainer_headless.main",

@@ -21,7 +21,6 @@ from rastrainer.work_progress import HEAD_MADE, allow_any_text, print_progress, 
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run and return the exit status."""
     allow_any_text()
     arguments = _parser().parse_args(argv)
     try:

@@ -75,7 +75,6 @@ class PeerSockets:
         return bool(peers)
 
     def stop(self) -> None:
-        """Close all connections and wait for the threads."""
         self._stopped.set()
         self._thread.join()
         if self._listener is not None:

@@ -24,11 +24,7 @@ SLICES = {"Red": "Axial", "Green": "Coronal", "Yellow": "Sagittal"}
 
 
 class HeadlessScene:
-    """Owns a `vtkMRMLScene` and the logics without which nodes lose their storage or defaults.
-
-    Attributes:
-        scene: the scene, used exactly as `slicer.mrmlScene` is in desktop Slicer.
-    """
+    """Owns a `vtkMRMLScene` and the logics without which nodes lose their storage or defaults."""
 
     def __init__(self) -> None:
         self.scene = slicer.vtkMRMLScene()
@@ -68,11 +64,7 @@ UNSELECTED = "Unselected"
 
 
 class HeadlessStatusNode(slicer.vtkMRMLScriptedModuleNode):
-    """A stand-in of `vtkMRMLIGTLStatusNode`, which comes with the extension.
-
-    Attributes:
-        status: what has arrived.
-    """
+    """A stand-in of `vtkMRMLIGTLStatusNode`, which comes with the extension."""
 
     def __init__(self) -> None:
         self.status = Status(0)

@@ -64,7 +64,6 @@ class LandmarksPanel(Panel):
         self.showState()
 
     def show(self) -> None:
-        """Replace the landmarks by those of the chosen scenario."""
         scenario = chosenScenario(self._ui, self._session)
         if not scenario.landmarks:
             raise InputError(_("{title} has no landmarks.").format(title=scenario.title))
@@ -81,7 +80,6 @@ class LandmarksPanel(Panel):
         self.showState()
 
     def undo(self) -> None:
-        """Undo the last change."""
         self._logic.points.undo()
         self.showState()
 
@@ -96,7 +94,6 @@ class LandmarksPanel(Panel):
             self._session.scenarioMade.emit(saved.name)
 
     def showState(self) -> None:
-        """Show the landmarks of the scene."""
         ui, points, isAtWork = self._ui, self._logic.points, self._work.isUnderWay
         self._showMessage(self._message)
         rows = [

@@ -62,7 +62,6 @@ class SetUpForm:
             layout.addRow(label, row)
 
     def setUp(self) -> SetUp:
-        """Return the set-up that is chosen."""
         values = {name: tuple(box.value for box in boxes) for name, boxes in self._boxes.items()}
         return SetUp(
             head=HeadPlace(values["head"], *values["yaw"]),
@@ -128,13 +127,11 @@ class NewScenarioPanel(Panel):
             fitThreeDViews()
 
     def check(self) -> None:
-        """Report at once whether set-up, plan and fiducials can be used."""
         warnings = self._work.run(lambda report: self._maker.check(*self._wanted(), report))
         if warnings is not None:
             self._showMessage(_("Set-up, plan and fiducials can be used."), *warnings)
 
     def make(self) -> None:
-        """Make the scenario and use it."""
         made = self._work.run(lambda report: self._maker.make(*self._wanted(), report))
         if made is not None:
             scenario, warnings = made

@@ -97,6 +97,5 @@ class PanelStack:
         )
 
     def close(self) -> None:
-        """Stop listening."""
         for panel in self._panels:
             panel.close()

@@ -162,7 +162,6 @@ class ProcedurePlanPanel(Panel):
             self._session.scenarioMade.emit(saved.name)
 
     def showState(self, *_arguments: Any) -> None:
-        """Show the plan of the scene."""
         ui, isAtWork = self._ui, self._work.isUnderWay
         isFresh = self._checked is not None and self._checked[0] == self._snapshot()
         self._showLines(self._checked[1].lines if isFresh and self._checked else ())
@@ -219,7 +218,6 @@ class ProcedurePlanPanel(Panel):
                 self._showLine()
 
     def _showLine(self) -> None:
-        """Show name and instrument of the chosen line."""
         ui, line = self._ui, self._line()
         if line is not None:
             diameter, safety = instrumentOf(line)
@@ -254,7 +252,6 @@ class ProcedurePlanPanel(Panel):
         )
 
     def _showProcedures(self) -> None:
-        """Offer the procedures of the chosen scenario, and a new one."""
         entries = [(title, name) for name, title in self._session.procedures]
         entries.append((_("New procedure"), ""))
         combo = self._ui.procedurePlanComboBox
@@ -262,7 +259,6 @@ class ProcedurePlanPanel(Panel):
         self.showState()
 
     def _showProblem(self, sentence: str) -> None:
-        """Keep the sentence for `showState`."""
         self._problem = sentence
 
 

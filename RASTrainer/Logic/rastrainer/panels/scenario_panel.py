@@ -86,7 +86,6 @@ class ScenarioPanel(Panel):
         self._fill(session.settings.get(SCENARIO))
 
     def show(self) -> None:
-        """Show the chosen head and the fiducials of the chosen task."""
         with showErrors(_("The scenario cannot be shown.")):
             name = chosenData(self._ui.scenarioComboBox)
             target = self._scenarios.find(name).target_position
@@ -98,7 +97,6 @@ class ScenarioPanel(Panel):
             self._logic.show(name, self._session.task, showTarget)
 
     def loadIntoSimulator(self) -> None:
-        """Load the chosen head into the simulator."""
         with showErrors(_("The scenario was not loaded.")):
             scenario = self._scenarios.find(chosenData(self._ui.scenarioComboBox))
             self._showMessage(
@@ -108,7 +106,6 @@ class ScenarioPanel(Panel):
             self._session.training.loadScenario(scenario.name, lambda: self._showMessage(loaded))
 
     def useHead(self) -> None:
-        """Show a model, or the skin of a volume, as the head."""
         node = self._ui.headModelComboBox.currentNode()
         used = self._work.run(lambda report: self._logic.useHead(node, report))
         if used is not None:
@@ -130,7 +127,6 @@ class ScenarioPanel(Panel):
             self._showMessage(_("{title} was added.").format(title=added.title))
 
     def exportScenario(self) -> None:
-        """Write the chosen scenario as a zip file."""
         name = chosenData(self._ui.scenarioComboBox)
         keepsFace = not self._ui.removeFaceCheckBox.checked
         keepsNames = not self._ui.removeNamesCheckBox.checked

@@ -238,7 +238,7 @@ class CancelableWork:
         connectAsPressed(button, lambda: self.cancel if self.isUnderWay else guarded)
 
     def run(self, work: Callable[[Progress], T]) -> T | None:
-        """Return what the work returns, None where the user has canceled it."""
+        """Return what the work returns, None if the user cancels it."""
         self.isUnderWay, self._isCanceled = True, False
         title, self._button.text = self._button.text, _("Cancel")
         self._showUsable()

@@ -59,10 +59,7 @@ class SimulatorConnection:
     Slicer: see `rastrainer.slicer.link.probe`. A Slicer that listens cannot ask who will connect.
 
     Attributes:
-        findKit: returns what the connector and its commands are made with; None where it is not
-            installed.
         connector: the connector in the scene; None while there is no simulator to connect to.
-        seen: what is known of the connection.
         woken: emits nothing when there is something to do soon; perhaps from inside VTK.
     """
 

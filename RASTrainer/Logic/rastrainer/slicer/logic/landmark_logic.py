@@ -50,7 +50,6 @@ class LandmarkPoints(UndoablePoints):
         )
 
     def show(self, landmarks: Sequence[Landmark]) -> None:
-        """Replace all landmarks."""
         node = self._list()
         self.remember(node)
         putPoints(node, [PlacedPoint(each.name, each.position_ras.tolist()) for each in landmarks])

@@ -113,7 +113,6 @@ class RegistrationLogic:
             self._compute()
 
     def undo(self) -> None:
-        """Undo the last change."""
         if self.canUndo:
             self._history.pop()
             self._compute()

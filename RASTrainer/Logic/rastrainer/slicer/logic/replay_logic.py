@@ -56,13 +56,7 @@ class ReplayLogic:
         isTrialOpen: Callable[[], bool] = lambda: False,
         isBeingScored: Callable[[str], bool] = lambda _trialId: False,
     ) -> None:
-        """Show trials again.
-
-        Args:
-            robot: folder of the URDF.
-            isTrialOpen: returns whether the scene shows a trial that is being played.
-            isBeingScored: returns whether a trial is being scored, which gives feedback, too.
-        """
+        """`robot` is the folder of the URDF; a trial that is being scored gets feedback by that."""
         self.feedbackFound = Signal()
         self.shown = Signal()
         self.procedureShown = Signal()
@@ -114,12 +108,7 @@ class ReplayLogic:
         self._until = None
 
     def show(self, trial: StoredTrial, progress: Progress = no_progress) -> None:
-        """Show a trial again, from its beginning.
-
-        Args:
-            progress: called with each step and the share of the work done, many times a second; it
-                may let the application draw, and may raise to cancel: then nothing is shown.
-        """
+        """Show a trial again from its beginning; if `progress` cancels, nothing is shown."""
         self._put(trial, progress)
         self._play(None)
 

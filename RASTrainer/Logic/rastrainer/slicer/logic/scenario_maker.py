@@ -70,7 +70,6 @@ class ScenarioMaker:
     """What the panel New scenario does."""
 
     def __init__(self, scene: Any, files: ScenarioFiles, run: Run) -> None:
-        """`run` runs what finds and makes the head."""
         self._scene = scene
         self._files = files
         self._run = run

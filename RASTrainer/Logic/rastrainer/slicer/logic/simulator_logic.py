@@ -67,12 +67,10 @@ class RunningSimulator:
 
     @property
     def canConnect(self) -> bool:
-        """Whether its address is known."""
         return self.holder is not None and self.holder.port > 0 and not self.isEnding
 
     @property
     def canEnd(self) -> bool:
-        """Whether its process is known."""
         return self.holder is not None and self.holder.pid > 0 and not self.isEnding
 
     def look(self) -> bool:
@@ -206,7 +204,7 @@ class SimulatorLogic:
             self.program.stop()
 
     def startSetup(self, index: str = "", wheels: str = "") -> None:
-        """Start setting the simulator up, from a source of `pipArguments`."""
+        """Start the set-up, from a source of `pipArguments`."""
         if self.program.isRunning or self.running.look():
             raise InputError(_("End the simulator that is running before setting it up again."))
         self.setup.begin(index.strip(), Path(wheels) if wheels else None)

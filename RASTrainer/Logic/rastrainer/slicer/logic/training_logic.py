@@ -37,10 +37,8 @@ class TrialStatus:
     """State of the simulator's trial; without one, its phase is `idle`.
 
     Attributes:
-        nextPoint: label of the fiducial to touch, if any.
         touched: how many points are kept.
         total: how many there are to touch.
-        elapsedS: the trial's time, pauses left out.
         instruction: what the trainee reads.
         procedure: that the trial continues with; empty for the touches alone.
     """

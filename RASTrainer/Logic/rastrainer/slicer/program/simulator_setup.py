@@ -51,8 +51,6 @@ class SimulatorSetup:
     """The private folder and the pip that fills it; call `process` now and then.
 
     Attributes:
-        folder: of the installed simulator.
-        package: what the module brings along for it.
         fetched: packages that pip has fetched, or is fetching.
         count: packages that it is to fetch on this computer.
         isInstalling: whether all are there and are being put into the folder.
@@ -77,7 +75,6 @@ class SimulatorSetup:
 
     @property
     def isRunning(self) -> bool:
-        """Whether a set-up is running."""
         return self._child is not None
 
     @property
@@ -172,7 +169,6 @@ class SimulatorSetup:
             self._dropPartial()
 
     def command(self, arguments: Sequence[str]) -> list[str]:
-        """Return what starts the installed `rastrainer` with these arguments."""
         return private_command(self._python, self.folder, PROGRAM, *arguments)
 
     def _read(self, name: str) -> dict[str, Any]:
