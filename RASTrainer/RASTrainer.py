@@ -170,7 +170,7 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
 
     def cleanup(self) -> None:
         if self._building is not None:
-            self._building.stop()
+            self._building.isOver = True
         for timer, slot in ((self._timer, self.onTimeout), (self._workTimer, self.onWorkTimeout)):
             if timer is not None:
                 timer.stop()

@@ -134,7 +134,7 @@ class TraineesPanel(Panel):
     def setConsent(self, consent: bool) -> None:
         with showErrors(_("The consent was not saved.")):
             try:
-                self._logic.setConsent(consent)
+                self._logic.change(consent=consent)
             except InputError:
                 setChecked(self._ui.consentCheckBox, not consent)
                 raise
@@ -145,7 +145,7 @@ class TraineesPanel(Panel):
         with showErrors(failed if isArchived else _("The trainee was not restored.")):
             if isArchived:
                 self._ui.archivedCheckBox.checked = True
-            self._logic.setArchived(isArchived)
+            self._logic.change(archived=isArchived)
 
     def exportTrainee(self) -> None:
         from rastrainer.study.trainee_data import export_trainee

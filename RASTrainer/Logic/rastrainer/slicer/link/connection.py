@@ -84,11 +84,6 @@ class SimulatorConnection:
         self._nextProbe = self._connectsUntil = self._lastLook = 0.0
         self._heartbeatTime: int | None = None
 
-    @property
-    def isOpen(self) -> bool:
-        """Whether there is a TCP connection."""
-        return self.seen.isOpen
-
     def beginConnection(self, address: tuple[str, int], isListening: bool) -> None:
         """Request a connection: to the address, or from any client of its port."""
         self.endConnection()
@@ -110,7 +105,7 @@ class SimulatorConnection:
         """Restore what was lost; return whether the connection has just been opened."""
         if self._kit is None or not self.seen.address:
             return False
-        wasOpen = self.isOpen
+        wasOpen = self.seen.isOpen
         if self.connector is not None and self.connector.GetScene() is None:
             self._dropConnector()
             self._searchAnew()
@@ -132,7 +127,7 @@ class SimulatorConnection:
             connector.Stop()
             self._searchAnew()
             self.seen.isOpen = False
-        return self.isOpen and not wasOpen
+        return self.seen.isOpen and not wasOpen
 
     def _connect(self, isLost: bool) -> None:
         """Let the connector connect or listen; only to a simulator, so search for one first."""

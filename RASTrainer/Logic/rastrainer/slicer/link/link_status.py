@@ -98,7 +98,7 @@ class LinkObservation:
     """What is known of a connection.
 
     The `address` is as the user gave it, empty if no connection is wanted. `silenceS` are seconds
-    since the last heartbeat, or since the connection was opened, without those in which Slicer
+    since the last heartbeat, or since the TCP connection was opened, without those in which Slicer
     itself was held up; `hasHeartbeat` says that one has come over this connection.
     """
 

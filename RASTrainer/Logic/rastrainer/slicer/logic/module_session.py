@@ -207,7 +207,8 @@ class ModuleSession:
         self.files.process()
         followPlacement(self._scene)
         self.slices.process()
-        if self._watch.takeChange():
+        if self._watch.hasChanged:
+            self._watch.hasChanged = False
             self.sceneChanged.emit()
         if self._second != int(time.monotonic()):
             self._second = int(time.monotonic())
@@ -242,7 +243,7 @@ class ModuleSession:
         self.simulator.close()
 
     def _isTrialOpen(self) -> bool:
-        return self.link.isOpen and self.training.status.isOpen
+        return self.link.seen.isOpen and self.training.status.isOpen
 
     def _showTrainees(self, *_values: Any) -> None:
         """Let each panel show the changed study in a separate turn."""

@@ -110,12 +110,9 @@ class TraineeLogic:
         self.changed.emit()
         return trainee
 
-    def setConsent(self, consent: bool) -> None:
-        self.study.change_trainee(self.chosen, consent=consent)
-        self.changed.emit()
-
-    def setArchived(self, archived: bool) -> None:
-        self.study.change_trainee(self.chosen, archived=archived)
+    def change(self, **changes: bool) -> None:
+        """Change `consent` or `archived` of the chosen trainee."""
+        self.study.change_trainee(self.chosen, **changes)
         self.changed.emit()
 
     def delete(self, progress: Progress = no_progress) -> Erasure:
