@@ -28,7 +28,6 @@ class HeadlessCommand(vtk.vtkObject):
     CommandResponseEvent = 128000
     CommandExpiredEvent = 128001
     CommandReceivedEvent = 128002
-    CommandCancelledEvent = 128003
     CommandCompletedEvent = 128004
 
     def __init__(self) -> None:

@@ -96,7 +96,6 @@ class SimulatorConnection:
         )
 
     def endConnection(self) -> None:
-        """Stop requesting a connection."""
         self._searchAnew()
         self._dropConnector()
         self.seen = LinkObservation()
@@ -181,7 +180,6 @@ class SimulatorConnection:
         return finding if isOurs else None
 
     def _makeConnector(self) -> Any:
-        """Return a new connector in the scene; requires a kit."""
         assert self._kit is not None
         self.connector = connector = self._kit.makeConnector()
         connector.SetName(CONNECTOR_NAME)

@@ -113,7 +113,6 @@ class LinkObservation:
 
 
 def judge(link: LinkObservation) -> LinkStatus:
-    """Return the state of the link in words."""
     if not link.address:
         return LinkStatus(LinkState.OFF, _("Not connected."), _("Press Start and connect."))
     if not link.isInstalled:
@@ -179,7 +178,6 @@ def judgeFinding(finding: ProbeResult, address: str) -> LinkStatus:
 
 
 def lookingAt(address: str) -> LinkStatus:
-    """Return the status during the test of what answers."""
     sentence = _("Looking for a simulator at {address}.").format(address=address)
     return LinkStatus(LinkState.LOOKING, sentence)
 

@@ -21,7 +21,13 @@ from rastrainer.slicer.scene.error_colors import (
 )
 from rastrainer.slicer.scene.nodes import Role, findNode, surfaceOf, worldPoints
 from rastrainer.slicer.scene.plan_points import LIST
-from rastrainer.slicer.scene.registration_input import Choices, SkinReader, readPairs, snapshot
+from rastrainer.slicer.scene.registration_input import (
+    Choices,
+    SkinNormals,
+    readPairs,
+    readSkin,
+    snapshot,
+)
 from rastrainer.slicer.scene.scenario_nodes import TASK_ATTRIBUTE
 from rastrainer.slicer.scene.tables import showFits, showResiduals
 from rastrainer.slicer.scene.trial_scene import checkSameTask, showRegistration
@@ -57,7 +63,8 @@ class RegistrationLogic:
         self._chosen = ["", "", ""]
         self._history: list[Choices] = [Choices()]
         self._seen: tuple = ()
-        self._skins = SkinReader()
+        self._surface: tuple = ()
+        self._skin: SkinNormals | None = None
         self._request: Request | None = None
 
     @property
@@ -149,7 +156,9 @@ class RegistrationLogic:
         self._seen = self._snapshot()
         self._request = None
         head = self._head()
-        skin = self._skins.read(head)
+        if surfaceOf(head) != self._surface:
+            self._surface, self._skin = surfaceOf(head), readSkin(head)
+        skin = self._skin
         if skin is not None and fixed is not None and not skin.knows(worldPoints(fixed)):
             # Before they are touched: it takes long.
             self._work.do(partial(skin.findNormals, worldPoints(fixed)), lambda _none: None)

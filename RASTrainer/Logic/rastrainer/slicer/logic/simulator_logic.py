@@ -107,7 +107,6 @@ class RunningSimulator:
         self.changed.emit()
 
     def process(self) -> None:
-        """Check whether the simulator found is still there."""
         if self.holder is None or time.monotonic() < self._lookAt:
             return
         self.look()
