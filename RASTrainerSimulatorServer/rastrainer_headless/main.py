@@ -76,7 +76,11 @@ class HeadlessHost:
         self._work = BackgroundWork()
         self._files = SceneFileLoader(self.application.scene, self._work)
         services = TrialServices(
-            self.application.scene, self.link, cache.find, lambda: _openStudy(output), self._work
+            self.application.scene,
+            self.link,
+            cache.find,
+            lambda: Study.open(output / STUDY_FILE, make_folder=True),
+            self._work,
         )
         self._presenter = TrialLogic(services, () if cohort is None else read_trials(cohort))
         self._aborted = AbortedTrialLogic(services)
@@ -142,10 +146,6 @@ class HeadlessHost:
         self.latest = analysis
         self.scored += 1
         printEvent("trial", results=results)
-
-
-def _openStudy(folder: Path) -> Study:
-    return Study.open(folder / STUDY_FILE, make_folder=True)
 
 
 def printEvent(event: str, **values: Any) -> None:
@@ -249,7 +249,7 @@ def _run(arguments: argparse.Namespace) -> None:
     cache = ScenarioCache(arguments.scenario)
     scenario = load_scenario(arguments.scenario)
     # What is wrong with it is reported before anyone plays.
-    _openStudy(arguments.output).close()
+    Study.open(arguments.output / STUDY_FILE, make_folder=True).close()
     host = HeadlessHost(cache, arguments.output, arguments.cohort)
     showScenario(host.application.scene, scenario)
     try:

@@ -33,7 +33,7 @@ def test_a_loading_scenario_prevents_trials_until_it_is_loaded_or_refused(room):
     assert not room.logic.obstacle
     room.refusal = "There is no such scenario."
     room.logic.loadScenario("nowhere", lambda: done.append(True))
-    assert room.logic.isLoading
+    assert room.logic.loadings
     room.run_until(lambda: room.answers[-1:] == [room.refusal])
     assert (len(done), room.logic.obstacle) == (1, "")
 

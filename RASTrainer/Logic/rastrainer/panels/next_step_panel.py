@@ -112,7 +112,7 @@ class NextStepPanel(Panel):
             phase=trial.phase,
             touched=trial.touched,
             total=trial.total,
-            isLoading=session.training.isLoading,
+            isLoading=session.training.loadings > 0,
         )
         setLight(ui.linkLight, LINK_COLORS[now.link.state])
         setText(ui.linkText, WORDS[now.link.state])
