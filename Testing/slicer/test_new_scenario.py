@@ -256,12 +256,12 @@ def test_the_default_setup_is_shown_until_it_is_changed(host):
     unfold(host, "newScenarioCollapsibleButton", "setUpGroupBox")
     form = host.widget._panels._panels
     (panel,) = [each for each in form if type(each).__name__ == "NewScenarioPanel"]
-    assert panel._setUp.setUp() == SetUp()
+    assert panel._wanted()[1].setUp == SetUp()
     host.type("head0SpinBox", "500")
     host.type("shift0SpinBox", "3")
     host.type("turn0SpinBox", "180")
     host.type("base1SpinBox", "-40")
-    changed = panel._setUp.setUp()
+    changed = panel._wanted()[1].setUp
     assert changed.head.center_mm == (500.0, 0.0, 220.0)
     assert changed.perturbation == Perturbation(3.0, 180.0, 3.0)
     assert changed.robot_base_mm == (0.0, -40.0)
