@@ -170,7 +170,7 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
 
     def cleanup(self) -> None:
         if self._building is not None:
-            self._building.stop()
+            self._building.isOver = True
         for timer, slot in ((self._timer, self.onTimeout), (self._workTimer, self.onWorkTimeout)):
             if timer is not None:
                 timer.stop()
@@ -377,7 +377,9 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
             fixture.process()
             fixture.ui.robotCheckBox.checked = True
             fixture.touch(fixture.touches())
-            fixture.clearScene()
+            slicer.mrmlScene.Clear()
+            fixture.session.sceneWasCleared()
+            fixture.process()
             self.assertEqual(fixture.ui.residualsTable.rowCount, 0)
             fixture.ui.showScenarioButton.click()
             fixture.process()

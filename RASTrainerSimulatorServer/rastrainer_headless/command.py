@@ -28,7 +28,6 @@ class HeadlessCommand(vtk.vtkObject):
     CommandResponseEvent = 128000
     CommandExpiredEvent = 128001
     CommandReceivedEvent = 128002
-    CommandCancelledEvent = 128003
     CommandCompletedEvent = 128004
 
     def __init__(self) -> None:
@@ -66,7 +65,6 @@ class HeadlessCommand(vtk.vtkObject):
         return self._status == self.CommandWaiting
 
     def setResponse(self, content: WireText, metadata: Mapping[str, WireText]) -> None:
-        """Keep the answer (the connector's part)."""
         self._response, self._metadata = content, metadata
         self._status = self.CommandResponseReceived
 

@@ -97,10 +97,6 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         if self._sockets is not None:
             self._sockets.port = port
 
-    def GetServerPort(self) -> int:
-        """Return the TCP port, that in use where a server was given port 0."""
-        return self._sockets.portInUse if self._sockets else self._address[1]
-
     def GetState(self) -> int:
         return self._state
 

@@ -77,7 +77,11 @@ class HeadlessHost:
         self._work = BackgroundWork()
         self._files = SceneFileLoader(self.application.scene, self._work)
         services = TrialServices(
-            self.application.scene, self.link, cache.find, lambda: _openStudy(output), self._work
+            self.application.scene,
+            self.link,
+            cache.find,
+            lambda: Study.open(output / STUDY_FILE, make_folder=True),
+            self._work,
         )
         self._presenter = TrialLogic(services, () if cohort is None else read_trials(cohort))
         self._aborted = AbortedTrialLogic(services)
@@ -114,7 +118,6 @@ class HeadlessHost:
         return self.latest
 
     def close(self) -> None:
-        """Disconnect and close the study."""
         self._procedure.close()
         self._presenter.close()
         self._aborted.close()
@@ -146,17 +149,11 @@ class HeadlessHost:
         printEvent("trial", results=results)
 
 
-def _openStudy(folder: Path) -> Study:
-    return Study.open(folder / STUDY_FILE, make_folder=True)
-
-
 def printEvent(event: str, **values: Any) -> None:
-    """Write one line of JSON to standard output."""
     print(json.dumps({"event": event, **values}, allow_nan=False), flush=True)
 
 
 def results_json(analysis: TrialAnalysis) -> dict[str, Any]:
-    """Return the numbers of a trial as a JSON object."""
     score, procedure, published = analysis.score, analysis.procedure, analysis.published_score
     fits = {}
     for kind, fit in analysis.fits.items():
@@ -217,9 +214,22 @@ def writeOutput(
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run and return the exit status."""
     allow_any_text()
-    arguments = _parser().parse_args(argv)
+    parser = argparse.ArgumentParser(
+        prog="python -m rastrainer_headless.main",
+        description="Slicer's side without Slicer. Not for clinical use.",
+    )
+    parser.add_argument("--host", default=DEFAULT_HOST, help="where the simulator runs")
+    parser.add_argument("--port", type=int, default=DEFAULT_PORT, help="its OpenIGTLink port")
+    parser.add_argument(
+        "--listen", action="store_true", help="wait for a simulator started with --connect"
+    )
+    parser.add_argument("--scenario", type=Path, required=True, metavar="DIR")
+    parser.add_argument("--output", type=Path, required=True, metavar="DIR")
+    parser.add_argument("--trials", type=int, default=1, metavar="N", help="trials to wait for")
+    parser.add_argument("--timeout", type=float, default=600.0, metavar="S", help="seconds to wait")
+    parser.add_argument("--cohort", type=Path, metavar="CSV", help="trials that CTPS compares with")
+    arguments = parser.parse_args(argv)
     try:
         _run(arguments)
     except TrialsMissingError as error:
@@ -241,7 +251,7 @@ def _run(arguments: argparse.Namespace) -> None:
     cache = ScenarioCache(arguments.scenario)
     scenario = load_scenario(arguments.scenario)
     # What is wrong with it is reported before anyone plays.
-    _openStudy(arguments.output).close()
+    Study.open(arguments.output / STUDY_FILE, make_folder=True).close()
     host = HeadlessHost(cache, arguments.output, arguments.cohort)
     showScenario(host.application.scene, scenario)
     try:
@@ -254,24 +264,6 @@ def _run(arguments: argparse.Namespace) -> None:
         host.close()
     files = writeOutput(arguments.output, host.application, scenario, latest)
     printEvent("output", **files, study=str(arguments.output / STUDY_FILE))
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="python -m rastrainer_headless.main",
-        description="Slicer's side without Slicer. Not for clinical use.",
-    )
-    parser.add_argument("--host", default=DEFAULT_HOST, help="where the simulator runs")
-    parser.add_argument("--port", type=int, default=DEFAULT_PORT, help="its OpenIGTLink port")
-    parser.add_argument(
-        "--listen", action="store_true", help="wait for a simulator started with --connect"
-    )
-    parser.add_argument("--scenario", type=Path, required=True, metavar="DIR")
-    parser.add_argument("--output", type=Path, required=True, metavar="DIR")
-    parser.add_argument("--trials", type=int, default=1, metavar="N", help="trials to wait for")
-    parser.add_argument("--timeout", type=float, default=600.0, metavar="S", help="seconds to wait")
-    parser.add_argument("--cohort", type=Path, metavar="CSV", help="trials that CTPS compares with")
-    return parser
 
 
 if __name__ == "__main__":

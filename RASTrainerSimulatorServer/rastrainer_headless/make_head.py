@@ -21,13 +21,12 @@ from rastrainer.work_progress import HEAD_MADE, allow_any_text, print_progress, 
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run and return the exit status."""
     allow_any_text()
     arguments = _parser().parse_args(argv)
     try:
         from rastrainer.slicer.head.head_draft import makeDraft
         from rastrainer.slicer.head.volume import HeadSettings
-        from rastrainer_headless.volume_files import readAnyVolume
+        from rastrainer_headless.volume_files import readVolume
     except ImportError as error:
         print(
             f"A head cannot be made here, {error.name} is missing: pip install slicer-core pydicom",
@@ -35,7 +34,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         )
         return 2
     try:
-        volume = readAnyVolume(arguments.volume, arguments.orientation)
+        volume = readVolume(arguments.volume, arguments.orientation)
         settings = HeadSettings(threshold=arguments.threshold, baseMm=arguments.cut)
 
         def headMade(head: HeadDraft, warnings: list[str]) -> None:

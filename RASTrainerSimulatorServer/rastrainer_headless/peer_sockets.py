@@ -10,7 +10,8 @@ from collections.abc import Callable
 
 from rastrainer.igtl import message as wire
 
-_crashes: list[str] = []
+crashes: list[str] = []
+"""What would have crashed Slicer, one sentence each."""
 
 
 class CrashError(RuntimeError):
@@ -19,16 +20,9 @@ class CrashError(RuntimeError):
 
 def recordCrash(sentence: str) -> CrashError:
     """Record a crash, from any thread; the caller may raise the error."""
-    _crashes.append(sentence)
+    crashes.append(sentence)
     logging.critical("Slicer would not have survived: %s", sentence)
     return CrashError(sentence)
-
-
-def takeCrashes() -> list[str]:
-    """Return what was recorded since the last call."""
-    taken = _crashes[:]
-    _crashes.clear()
-    return taken
 
 
 RETRY_PERIOD_S = 0.1
@@ -69,11 +63,6 @@ class PeerSockets:
         self._thread = threading.Thread(target=self._keepConnected, daemon=True)
         self._thread.start()
 
-    @property
-    def portInUse(self) -> int:
-        """The port; differs from the given one where that was 0."""
-        return self._listener.getsockname()[1] if self._listener else self.port
-
     def send(self, data: bytes) -> bool:
         """Send to every peer, blocking while one does not read; return whether all took it."""
         with self._lock:
@@ -86,7 +75,6 @@ class PeerSockets:
         return bool(peers)
 
     def stop(self) -> None:
-        """Close all connections and wait for the threads."""
         self._stopped.set()
         self._thread.join()
         if self._listener is not None:

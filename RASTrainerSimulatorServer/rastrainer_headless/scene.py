@@ -24,11 +24,7 @@ SLICES = {"Red": "Axial", "Green": "Coronal", "Yellow": "Sagittal"}
 
 
 class HeadlessScene:
-    """Owns a `vtkMRMLScene` and the logics without which nodes lose their storage or defaults.
-
-    Attributes:
-        scene: the scene, used exactly as `slicer.mrmlScene` is in desktop Slicer.
-    """
+    """Owns a `vtkMRMLScene` and the logics without which nodes lose their storage or defaults."""
 
     def __init__(self) -> None:
         self.scene = slicer.vtkMRMLScene()
@@ -62,33 +58,13 @@ class HeadlessScene:
                 )
             unfinished.replace(path)
 
-    def load(self, path: Path) -> None:
-        """Replace the scene by that of a bundle (.mrb)."""
-        messages = slicer.vtkMRMLMessageCollection()
-        with tempfile.TemporaryDirectory() as cacheFolder:
-            cache = slicer.vtkCacheManager()
-            cache.SetRemoteCacheDirectory(cacheFolder)
-            dataIO = slicer.vtkDataIOManager()
-            dataIO.SetCacheManager(cache)
-            self.scene.SetDataIOManager(dataIO)
-            try:
-                isRead = self.scene.ReadFromMRB(str(path), True, messages)
-            finally:
-                self.scene.SetDataIOManager(None)
-        if not isRead:
-            raise InputError(f"{path} is not a scene bundle (.mrb) that can be read.")
-
 
 METADATA_PREFIX = "OpenIGTLink."
 UNSELECTED = "Unselected"
 
 
 class HeadlessStatusNode(slicer.vtkMRMLScriptedModuleNode):
-    """A stand-in of `vtkMRMLIGTLStatusNode`, which comes with the extension.
-
-    Attributes:
-        status: what has arrived.
-    """
+    """A stand-in of `vtkMRMLIGTLStatusNode`, which comes with the extension."""
 
     def __init__(self) -> None:
         self.status = Status(0)

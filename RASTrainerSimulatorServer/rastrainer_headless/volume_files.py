@@ -17,18 +17,13 @@ from rastrainer.slicer.head.volume_header import checkHeader, leastSize, missing
 from rastrainer_headless.dicom_series import isDicom, readDicom
 
 
-def readAnyVolume(path: Path, orientation: str | None = None) -> Volume:
-    """Read an NRRD or NIfTI file, a DICOM file of many slices, or a folder of DICOM files."""
-    if path.is_dir() or (path.is_file() and isDicom(path)):
-        return readDicom(path)
-    return readVolume(path, orientation)
-
-
 def readVolume(path: Path, orientation: str | None = None) -> Volume:
-    """Read a volume of any format that Slicer's volume reader knows, such as NRRD.
+    """Read a file that Slicer's volume reader knows, such as NRRD, or a DICOM file or folder.
 
     `orientation`, such as LAS, is for a file that states none.
     """
+    if path.is_dir() or (path.is_file() and isDicom(path)):
+        return readDicom(path)
     if not path.is_file():
         raise InputError(f"{path} does not exist; give a volume such as a .nii.gz or .nrrd file.")
     checkHeader(path)

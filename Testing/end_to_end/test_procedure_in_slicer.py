@@ -55,7 +55,7 @@ class Leader:
         """Break off without notice, like a killed process, and return a new Leader."""
         self.session.link.connector.Stop()
         other = Leader(*self.place)
-        other.until(lambda: other.session.link.isOpen and other.status.name)
+        other.until(lambda: other.session.link.seen.isOpen and other.status.name)
         return other
 
     @property
@@ -115,7 +115,7 @@ def led(tmp_path_factory):
     seen: dict = {"scenario": scenario, "lost": [], "found": []}
     with SimulatorProcess(folder / "records", "--no-views", "--speed", SPEED) as simulator:
         leader = Leader(folder, simulator.port)
-        leader.until(lambda: leader.session.link.isOpen)
+        leader.until(lambda: leader.session.link.seen.isOpen)
         with Player(simulator.port) as player:
             touching = threading.Thread(
                 target=play, args=(player, scenario), kwargs={"procedure": PROCEDURE}, daemon=True

@@ -38,7 +38,7 @@ def scenario():
 def slicer_for_aborted(folder, simulator):
     """Return Slicer's side, once the simulator knows it."""
     side = SlicerSide(folder / "study.db", simulator.port, AbortedTrialLogic)
-    run_logic_until(side.link, side.work, lambda: side.link.isOpen, TIMEOUT_S)
+    run_logic_until(side.link, side.work, lambda: side.link.seen.isOpen, TIMEOUT_S)
     return side
 
 

@@ -100,19 +100,21 @@ def test_closing_does_not_wait_forever(work):
     assert received == []
 
 
-def test_the_main_thread_waits_only_briefly_for_a_worker(monkeypatch):
-    waited, may_end = [], threading.Event()
-    job = Job(may_end.wait)
-    join = job._thread.join
-    monkeypatch.setattr(job._thread, "join", lambda time: (waited.append(time), join(time)))
+def test_the_main_thread_waits_only_briefly_for_a_worker(work, monkeypatch):
+    waited, may_end, received = [], threading.Event(), []
+    work.do(may_end.wait, received.append)
+    thread = work._underWay[0].thread
+    join = thread.join
+    monkeypatch.setattr(thread, "join", lambda time: (waited.append(time), join(time)))
     for _ in range(3):
-        job.yieldTime()
+        work.yieldTime()
     may_end.set()
     assert waited == [TIME_S] * 3
     assert TIME_S <= 0.05
-    while not job.isDone:
-        job.yieldTime()
-    assert job.outcome.result()
+    while work.isBusy:
+        work.yieldTime()
+        work.process()
+    assert received == [True]
 
 
 @pytest.mark.usefixtures("host")
@@ -141,7 +143,7 @@ def test_no_garbage_is_collected_in_a_worker_thread(work):
         assert not gc.isenabled()
         each.set()
         while not job.isDone:
-            job.yieldTime()
+            job.thread.join(TIME_S)
     assert seen == [False, False]
     assert gc.isenabled()
     if not was_enabled:
@@ -183,7 +185,7 @@ def test_a_worker_soon_releases_the_gil_and_everything_is_restored_afterward():
     assert sys.getswitchinterval() < USUAL_SWITCH_INTERVAL_S / 10
     may_end.set()
     while not job.isDone:
-        job.yieldTime()
+        job.thread.join(TIME_S)
     assert sys.getswitchinterval() == USUAL_SWITCH_INTERVAL_S
 
 

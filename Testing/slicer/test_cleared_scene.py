@@ -45,7 +45,7 @@ def test_a_chosen_list_is_not_mistaken_for_the_next_one_with_its_id(host, sessio
     other = [add_list(host.scene, name, fixed) for name in ("theirs", "also theirs")]
     assert [node.GetID() for node in other] == [node.GetID() for node in own]
     assert logic.lists()[0] is None
-    assert (logic.shown, bool(logic.problem)) == (None, True)
+    assert (logic.comparison, bool(logic.problem)) == (None, True)
 
 
 def test_a_plan_placed_at_once_in_the_next_scene_is_not_mapped_by_the_old_registration(
@@ -55,7 +55,9 @@ def test_a_plan_placed_at_once_in_the_next_scene_is_not_mapped_by_the_old_regist
     session.scenario.show("colin27", "task-1")
     touched = transforms.apply(colin.perturbed_head_to_world(3), colin.task("task-1").fiducials)
     setPoints(capturedPointsNode(host.scene), LABELS, touched)
-    host.wait_until(lambda: session.registration.shown is not None, "the touches are registered")
+    host.wait_until(
+        lambda: session.registration.comparison is not None, "the touches are registered"
+    )
     host.scene.Clear(0)
     target = add_list(host.scene, "target", np.zeros((1, 3)))
     with pytest.raises(InputError, match="no registration to map the plan with"):

@@ -101,7 +101,7 @@ def test_a_simulator_that_connects_later_is_sent_everything_again(lesson):
 def test_a_deleted_or_archived_trainee_is_sent_as_one_without_a_curriculum(lesson):
     lesson.logic.choose(Curriculum.read(SHIPPED), isForEverybody=True)
     lesson.trainees.choose("A")
-    lesson.trainees.setArchived(True)
+    lesson.trainees.change(archived=True)
     last = lesson.sent[2]
     assert (last["trainee"], "assignments" in last) == ("A", False)
 

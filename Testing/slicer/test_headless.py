@@ -23,6 +23,7 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer_headless import main as headless
 from rastrainer_headless.main import results_json, writeOutput
 from rastrainer_headless.scene import HeadlessScene
+from Testing.slicer.scene_bundle import load_bundle
 from Testing.slicer.simulator_double import SimulatorDouble
 
 ASSETS = Path(__file__).parents[2] / "assets"
@@ -111,7 +112,7 @@ def test_a_trial_is_played_and_its_files_are_written(colin_record, tmp_path, cap
 
 def check_saved_scene(path, results):
     application = HeadlessScene()
-    application.load(path)
+    load_bundle(application, path)
     scene = application.scene
     transform = findNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
     matrix = np.reshape(results["fits"]["rigid"]["matrix"], (4, 4))

@@ -11,8 +11,10 @@ from rastrainer.igtl.content import Point, Points, Status, String
 from rastrainer.igtl.message import Message, crc64, pack
 from rastrainer_headless.command import HeadlessCommand
 from rastrainer_headless.connector import HeadlessConnector
-from rastrainer_headless.peer_sockets import CrashError, takeCrashes
+from rastrainer_headless.peer_sockets import CrashError
 from Testing.domain.igtl.sent_pose import transform_of
+from Testing.free_port import free_port
+from Testing.slicer.crashes import take_crashes
 from Testing.slicer.simulator_double import SimulatorDouble, wait_until
 
 SHIFT = ((1, 0, 0, 10), (0, 1, 0, 20), (0, 0, 1, 30), (0, 0, 0, 1))
@@ -253,9 +255,9 @@ def test_a_lost_connection_is_reported_only_after_the_next_one(scene):
 def test_as_a_server_it_accepts_many_clients(scene):
     connector = HeadlessConnector()
     scene.AddNode(connector)
-    connector.SetTypeServer(0)
+    port = free_port()
+    connector.SetTypeServer(port)
     connector.Start()
-    port = connector.GetServerPort()
     with Client(port=port) as first, Client(port=port) as second:
         first.send(Message("One", String("1")))
         second.send(Message("Two", String("2")))
@@ -270,7 +272,7 @@ def test_any_call_that_would_crash_slicer_is_an_error_here(connector, simulator)
     simulator.send_bytes(bytes(data))
     with pytest.raises(CrashError, match="GET_STATUS"):
         wait_for(connector, lambda: False)
-    assert len(takeCrashes()) == 1
+    assert len(take_crashes()) == 1
 
 
 @pytest.mark.parametrize(
@@ -285,7 +287,7 @@ def test_any_call_that_would_crash_slicer_is_an_error_here(connector, simulator)
 def test_bytes_that_are_not_openigtlink_would_have_crashed_slicer(connector, simulator, said):
     simulator.send_bytes(said)
     crashes = []
-    wait_for(connector, lambda: crashes.extend(takeCrashes()) or crashes)
+    wait_for(connector, lambda: crashes.extend(take_crashes()) or crashes)
     assert len(crashes) == 1
 
 

@@ -82,7 +82,7 @@ def test_a_connection_dead_before_the_first_heartbeat_is_reestablished(link, sim
     simulator.beats = False
     link.connectTo(port=simulator.port)
     run_link_until(link, lambda: simulator.commands)
-    run_link_until(link, lambda: clock.skip_ahead() and not link.isOpen)
+    run_link_until(link, lambda: clock.skip_ahead() and not link.seen.isOpen)
     run_link_until(link, lambda: len(simulator.commands) == 2)
     beat(simulator)
     run_link_until(link, lambda: link.status.state is LinkState.CONNECTED)
@@ -96,7 +96,7 @@ def test_a_slicer_that_was_itself_stalled_does_not_take_the_simulator_for_silent
     simulator.beats = False
     clock.ahead += 10 * RECONNECT_AFTER_S
     link.process()
-    assert link.isOpen
+    assert link.seen.isOpen
     assert link.status.state is LinkState.CONNECTED
 
 

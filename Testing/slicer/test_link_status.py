@@ -6,12 +6,12 @@ import pytest
 
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.slicer.link.link_status import (
+    NOT_INSTALLED,
     LinkObservation,
     LinkState,
     Peer,
     ProbeResult,
     judge,
-    notInstalled,
 )
 
 WELL = LinkObservation(
@@ -96,7 +96,7 @@ def test_each_state_has_its_sentence_and_its_remedy(link, state, sentence, remed
 
 
 def test_a_missing_extension_is_named():
-    status = notInstalled()
+    status = NOT_INSTALLED
     assert status.state is LinkState.NOT_INSTALLED
     assert "SlicerOpenIGTLink" in status.sentence
     assert "Extensions Manager" in status.remedy

@@ -3,7 +3,6 @@
 import sys
 import threading
 import zipfile
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,8 +15,7 @@ from rastrainer.scenario.writer import new_folder, write_scenario
 from rastrainer.slicer.head.extraction import findHead
 from rastrainer.slicer.head.volume import HeadSettings, Volume, forSegment, volumeOfSegment
 from rastrainer.slicer.logic import head_preview, scenario_logic, scenario_maker
-from rastrainer.slicer.logic.head_preview import HeadPreview
-from rastrainer.slicer.program.child_process import OwnProcess
+from rastrainer.slicer.logic.head_preview import editedHead
 from rastrainer.slicer.scene.nodes import Role, findNode, setPoints
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario, png
 from Testing.slicer.head.phantoms import phantom
@@ -160,13 +158,10 @@ def test_a_found_head_becomes_a_segment_with_the_displayed_base_and_threshold(ho
     assert node.GetSegmentation().GetNumberOfSegments() == 1
     bounds = findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_PREVIEW).GetPolyData().GetBounds()
     assert bounds[5] == pytest.approx(70.0 * SIZE, abs=1.5)
-    preview = HeadPreview(host.scene, OwnProcess(Path(sys.executable)))
     settings = HeadSettings()
-    found = findHead(
-        volumeOfSegment(preview.segment(volume, settings)), forSegment(settings), ignore
-    )
+    found = findHead(volumeOfSegment(editedHead(volume, settings)), forSegment(settings), ignore)
     assert found.baseMm == pytest.approx(bounds[4], abs=0.01)
-    assert preview.segment(add_volume(host.scene, EMPTY, "other"), settings) is None
+    assert editedHead(add_volume(host.scene, EMPTY, "other"), settings) is None
     host.type("thresholdSpinBox", "60")
     host.press("makeScenarioButton")
     assert "changed since the head was found" in host.messages[-1].text
@@ -261,12 +256,12 @@ def test_the_default_setup_is_shown_until_it_is_changed(host):
     unfold(host, "newScenarioCollapsibleButton", "setUpGroupBox")
     form = host.widget._panels._panels
     (panel,) = [each for each in form if type(each).__name__ == "NewScenarioPanel"]
-    assert panel._setUp.setUp() == SetUp()
+    assert panel._wanted()[1].setUp == SetUp()
     host.type("head0SpinBox", "500")
     host.type("shift0SpinBox", "3")
     host.type("turn0SpinBox", "180")
     host.type("base1SpinBox", "-40")
-    changed = panel._setUp.setUp()
+    changed = panel._wanted()[1].setUp
     assert changed.head.center_mm == (500.0, 0.0, 220.0)
     assert changed.perturbation == Perturbation(3.0, 180.0, 3.0)
     assert changed.robot_base_mm == (0.0, -40.0)

@@ -9,7 +9,7 @@ from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.link.pending_commands import MAX_AT_ONCE, SENDING_S
 from rastrainer_headless.connector import headlessKit
-from rastrainer_headless.peer_sockets import takeCrashes
+from Testing.slicer.crashes import take_crashes
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until, wait_until
 
 BURST = 300
@@ -212,7 +212,7 @@ def test_the_stand_in_reports_a_command_that_died_too_early(silent):
     silent.may_answer.set()
     with pytest.raises(RuntimeError, match="deleted before"):
         wait_until(lambda: False, silent.link.connector.PeriodicProcess)
-    assert takeCrashes()
+    assert take_crashes()
 
 
 def test_in_the_module_an_answer_needs_no_poll(host, module_widget, simulator):

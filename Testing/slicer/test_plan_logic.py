@@ -79,7 +79,7 @@ def room(scene, scenario):
 def test_a_target_is_mapped_into_world_with_its_expected_error(room):
     room.register()
     plan = room.logic.read(room.target(TUMOR))
-    shown = room.registration.shown
+    shown = room.registration.comparison.shown
     np.testing.assert_allclose(transforms.apply(shown.matrix, plan.endsWorld), [TUMOR])
     there = transforms.apply(room.head_to_world, TUMOR[None])[0]
     assert np.linalg.norm(plan.endsWorld[-1] - there) < 1.5
@@ -197,7 +197,7 @@ def test_placing_a_target_erases_none_and_each_change_can_be_undone(room):
     np.testing.assert_allclose(worldPoints(node), [TUMOR])
     points.undo()
     assert node.GetNumberOfControlPoints() == 0
-    assert not points.changes
+    assert not points.canUndo
 
 
 def test_undo_skips_points_that_were_not_placed_and_removed_ones(room):
@@ -242,7 +242,7 @@ def test_the_true_error_at_the_target_is_shown_once_the_head_pose_is_known(is_se
     if is_sent_first:
         assert room.logic.trueErrorMm is None
         room.reveal()
-    found = room.registration.shown.matrix @ room.head_to_world
+    found = room.registration.comparison.shown.matrix @ room.head_to_world
     error = np.linalg.norm(transforms.apply(found, TUMOR[None])[0] - TUMOR)
     assert room.logic.trueErrorMm == pytest.approx(error)
     room.logic.forgetTruth()

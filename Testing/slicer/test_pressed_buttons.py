@@ -176,12 +176,12 @@ def test_a_consent_that_could_not_be_saved_is_not_shown_as_given(host, monkeypat
     host.press("createTraineeButton")
     host.unfold("consentCheckBox")
 
-    def refuse(_consent):
+    def refuse(**_changes):
         from rastrainer.errors import InputError
 
         raise InputError("Another program has locked the study.")
 
-    monkeypatch.setattr(host.widget.logic.session.trainees, "setConsent", refuse)
+    monkeypatch.setattr(host.widget.logic.session.trainees, "change", refuse)
     host.check("consentCheckBox")
     assert not host.find("consentCheckBox").checked
 

@@ -20,6 +20,7 @@ from rastrainer_simulator.flow.session.plan_marks import PLACED, PLANNED, SHOWN
 from rastrainer_simulator.presentation.look import TONES
 from Testing.domain.procedure.made_up_procedure import made_up_meshes, made_up_procedure, trajectory
 from Testing.domain.procedure.procedure_records import recorded, rotation
+from Testing.slicer.scene_bundle import load_bundle
 
 ROLES = (Role.PLANNED_LINE, Role.REGISTERED_LINE, Role.TRUE_LINE)
 
@@ -111,7 +112,7 @@ def test_everything_is_still_there_in_a_saved_and_reopened_scene(
 ):
     showProcedureErrors(headless_scene.scene, *analysis)
     headless_scene.save(tmp_path / "procedure.mrb")
-    headless_scene.load(tmp_path / "procedure.mrb")
+    load_bundle(headless_scene, tmp_path / "procedure.mrb")
     check(headless_scene.scene, analysis[0])
     assert findNode(headless_scene.scene, MODEL, Role.ERRORS_BY_HAND).GetPolyData() is not None
     # When it is shown again, nothing is duplicated.

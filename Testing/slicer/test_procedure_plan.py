@@ -25,6 +25,7 @@ from rastrainer.slicer.scene.procedure_lines import (
     showPlan,
 )
 from Testing.domain.procedure.made_up_procedure import made_up_procedure, vessel
+from Testing.slicer.scene_bundle import load_bundle
 
 PLAN = PlanDescription("Two leads", "dbs")
 ENDS = np.array([[0.0, 0.0, 90.0], [0.0, 0.0, 20.0]])
@@ -153,7 +154,7 @@ def test_instruments_and_structures_are_kept_with_the_scene(headless_scene, logi
     setInstrument(line, 2.25, 3.5)
     sphere_node(headless_scene.scene)
     headless_scene.save(tmp_path / "plan.mrb")
-    headless_scene.load(tmp_path / "plan.mrb")
+    load_bundle(headless_scene, tmp_path / "plan.mrb")
     (line,) = planLines(headless_scene.scene)
     assert instrumentOf(line) == (2.25, 3.5)
     (node,) = noGoNodes(headless_scene.scene)

@@ -5,7 +5,8 @@ import time
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer_headless.connector import headlessKit
-from rastrainer_headless.peer_sockets import RETRY_PERIOD_S, takeCrashes
+from rastrainer_headless.peer_sockets import RETRY_PERIOD_S
+from Testing.slicer.crashes import take_crashes
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until, wait_until
 from Testing.slicer.strangers import is_silent, says, stranger, web_server
 
@@ -43,9 +44,9 @@ def test_the_connector_stand_in_notices_commands_that_died_too_early(scene):
     with stranger(says(HTTP)) as port:
         connector.SetTypeClient("127.0.0.1", port)
         connector.Start()
-        wait_until(takeCrashes, lambda: None)
+        wait_until(take_crashes, lambda: None)
         connector.Stop()
-    takeCrashes()  # It may have connected again before it was stopped.
+    take_crashes()  # It may have connected again before it was stopped.
 
 
 def test_a_simulator_that_replaces_a_web_page_at_the_port_is_found(link, clock):

@@ -88,7 +88,7 @@ def test_touches_are_registered_during_the_trial_from_the_third_on(table):
     assert "at least 3" in table.logic.problem
     table.touch(table.touched[:5])
     assert table.logic.comparison.pairs.missing == LABELS[5:]
-    assert len(table.logic.shown.labels) == 5
+    assert len(table.logic.comparison.shown.labels) == 5
     assert AFFINE in table.logic.comparison.fits
 
 
@@ -120,16 +120,16 @@ def test_a_bad_touch_is_named_excluded_by_one_click_and_restored(table):
     bad = table.touched.copy()
     bad[6] += [9.0, -6.0, 5.0]
     table.touch(bad)
-    before = table.logic.shown.fre_mm
+    before = table.logic.comparison.shown.fre_mm
     remedy = table.warn("outlier")
     assert (remedy.warning.points, remedy.title) == (("7",), "Leave out 7")
     table.logic.change(remedy.choices)
     assert table.logic.comparison.pairs.excluded == ("7",)
-    assert table.logic.shown.fre_mm < 0.5 * before
+    assert table.logic.comparison.shown.fre_mm < 0.5 * before
     assert table.logic.comparison.remedies == ()
     assert table.node(Role.RESIDUALS).GetNumberOfRows() == 14
     table.logic.undo()
-    assert table.logic.shown.fre_mm == before
+    assert table.logic.comparison.shown.fre_mm == before
     assert not table.logic.canUndo
 
 
@@ -137,12 +137,12 @@ def test_a_touch_that_is_deselected_in_slicer_is_left_out_until_it_is_selected(t
     bad = table.touched.copy()
     bad[6] += [9.0, -6.0, 5.0]
     table.touch(bad)
-    before, touches = table.logic.shown.fre_mm, capturedPointsNode(table.scene)
+    before, touches = table.logic.comparison.shown.fre_mm, capturedPointsNode(table.scene)
     touches.SetNthControlPointSelected(6, False)
     table.logic.process()
     pairs = table.logic.comparison.pairs
     assert (pairs.excluded, pairs.missing, len(pairs.labels)) == (("7",), (), 14)
-    assert table.logic.shown.fre_mm < 0.5 * before
+    assert table.logic.comparison.shown.fre_mm < 0.5 * before
     table.fixed.SetNthControlPointSelected(0, False)
     table.logic.process()
     assert {*table.logic.comparison.pairs.excluded} == {"1", "7"}
@@ -150,7 +150,7 @@ def test_a_touch_that_is_deselected_in_slicer_is_left_out_until_it_is_selected(t
         for row in range(15):
             node.SetNthControlPointSelected(row, True)
     table.logic.process()
-    assert table.logic.shown.fre_mm == before
+    assert table.logic.comparison.shown.fre_mm == before
 
 
 def test_swapped_touches_are_put_in_order_by_one_click(table):
@@ -160,9 +160,9 @@ def test_swapped_touches_are_put_in_order_by_one_click(table):
     assert remedy.title == "Put in order"
     table.logic.change(remedy.choices)
     assert table.logic.comparison.remedies == ()
-    assert table.logic.shown.fre_mm < 2.0
+    assert table.logic.comparison.shown.fre_mm < 2.0
     table.logic.undo()
-    assert table.logic.shown.fre_mm > 5.0
+    assert table.logic.comparison.shown.fre_mm > 5.0
 
 
 def test_of_two_touches_at_one_place_the_later_is_excluded(table):
@@ -192,12 +192,12 @@ def test_any_fiducial_may_be_left_out_until_too_few_are_left(table):
     table.touch()
     for label in LABELS[:12]:
         table.logic.change(table.logic.choices.without((label,)))
-    assert len(table.logic.shown.labels) == 3
+    assert len(table.logic.comparison.shown.labels) == 3
     table.logic.change(table.logic.choices.without((LABELS[12],)))
     assert table.logic.comparison is None
     assert "at least 3" in table.logic.problem
     table.logic.undo()
-    assert len(table.logic.shown.labels) == 3
+    assert len(table.logic.comparison.shown.labels) == 3
 
 
 def test_a_stated_localization_error_weights_only_the_rigid_fit_and_can_be_undone(table):
@@ -289,7 +289,7 @@ def test_color_bars_beside_the_head_are_labeled_in_mm(table):
 def test_points_off_the_head_have_an_isotropic_error(table):
     setPoints(table.fixed, LABELS, 0.5 * table.scenario.task("task-1").fiducials)
     table.touch(transforms.apply(table.scenario.head_to_world, 0.5 * table.touched_on_mri))
-    shown, position = table.logic.shown, table.scenario.target_position
+    shown, position = table.logic.comparison.shown, table.scenario.target_position
     assert table.logic.comparison.targetError(position) == target_error(shown, position)
 
 
@@ -300,10 +300,10 @@ def test_other_lists_can_be_registered_and_deleted_nodes_do_not_matter(table):
     setPoints(mine, LABELS, moved)
     table.logic.chooseLists(mine, table.fixed, None)
     table.logic.process()
-    np.testing.assert_allclose(table.logic.shown.moving_mm, moved)
+    np.testing.assert_allclose(table.logic.comparison.shown.moving_mm, moved)
     table.scene.RemoveNode(mine)
     table.logic.process()
-    np.testing.assert_allclose(table.logic.shown.moving_mm, table.touched, atol=1e-9)
+    np.testing.assert_allclose(table.logic.comparison.shown.moving_mm, table.touched, atol=1e-9)
     for role, class_name in (
         (Role.WORLD_TO_HEAD, "vtkMRMLLinearTransformNode"),
         (Role.RESIDUAL_ARROWS, "vtkMRMLModelNode"),
@@ -422,7 +422,9 @@ def test_with_turns_each_part_of_a_registration_is_shown_in_a_separate_turn(
     counts = [sum(part is not None for part in parts) for parts in seen]
     assert counts == sorted(counts)
     assert set(counts) == {0, 1, 2, 3, 4}
-    np.testing.assert_array_equal(arrayFromTransformMatrix(logic.transform), logic.shown.matrix)
+    np.testing.assert_array_equal(
+        arrayFromTransformMatrix(logic.transform), logic.comparison.shown.matrix
+    )
 
 
 def test_with_turns_the_result_is_the_same_as_at_once(table, logic_in_turns, work):

@@ -21,6 +21,7 @@ from rastrainer.slicer.scene.scenario_nodes import (
 )
 from rastrainer_headless.scene import HeadlessScene
 from Testing.domain.scenario.made_up_scenario import ball_head, ball_volume
+from Testing.slicer.scene_bundle import load_bundle
 
 
 class Loading:
@@ -209,7 +210,7 @@ def test_a_saved_scene_carries_the_images_and_shows_them(imaged, tmp_path):
     headless.save(tmp_path / "trial.mrb")
     imaged.volume.file.unlink()
     opened = HeadlessScene()
-    opened.load(tmp_path / "trial.mrb")
+    load_bundle(opened, tmp_path / "trial.mrb")
     node = findNode(opened.scene, VOLUME, Role.HEAD_VOLUME)
     assert np.array_equal(slicer.util.arrayFromVolume(node).T, ball_volume().values)
     assert node.GetDisplayNode().GetWindow() == 120.0

@@ -84,10 +84,10 @@ def test_a_new_trainee_is_chosen_and_all_listeners_are_notified(logic):
 
 def test_an_archived_trainee_is_listed_only_on_request(logic):
     logic.create("a", consent=False)
-    logic.setArchived(True)
+    logic.change(archived=True)
     assert logic.trainees() == ()
     assert [t.pseudonym for t in logic.trainees(archived=True)] == ["a"]
-    logic.setConsent(True)
+    logic.change(consent=True)
     assert logic.chosenTrainee().consent
 
 
@@ -123,8 +123,8 @@ def test_a_table_of_everyone_has_only_those_who_consented_to_research(logic, add
         logic.inStudy(lambda study: write_histories(study, tmp_path / "all.csv"))
     assert not (tmp_path / "all.csv").exists()
     logic.choose("b")
-    logic.setConsent(True)
-    logic.setArchived(True)
+    logic.change(consent=True)
+    logic.change(archived=True)
     assert logic.inStudy(lambda study: write_histories(study, tmp_path / "all.csv")) == (1, 1)
     with (tmp_path / "all.csv").open(newline="") as file:
         assert [row["trainee"] for row in csv.DictReader(file)] == ["b"]

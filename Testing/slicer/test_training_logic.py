@@ -9,7 +9,7 @@ from rastrainer.errors import InputError
 from rastrainer.igtl.content import Point, Points
 from rastrainer.protocol import DeviceName
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode
-from rastrainer.slicer.scene.trial_scene import isApplied, isPlanned
+from rastrainer.slicer.scene.trial_scene import KIND_ATTRIBUTE, PLANNED, isApplied
 from Testing.slicer.training_room import LOADING_REFUSAL, TRIAL
 
 
@@ -33,7 +33,7 @@ def test_a_loading_scenario_prevents_trials_until_it_is_loaded_or_refused(room):
     assert not room.logic.obstacle
     room.refusal = "There is no such scenario."
     room.logic.loadScenario("nowhere", lambda: done.append(True))
-    assert room.logic.isLoading
+    assert room.logic.loadings
     room.run_until(lambda: room.answers[-1:] == [room.refusal])
     assert (len(done), room.logic.obstacle) == (1, "")
 
@@ -106,7 +106,7 @@ def test_touches_appear_on_the_planned_head_while_the_trial_runs(room, scenario)
     room.simulator.send(DeviceName.CAPTURED_POINTS, points, {"count": "1"})
     room.run_until(lambda: capturedPointsNode(room.scene).GetNumberOfControlPoints() == 1)
     transform = room.node(Role.WORLD_TO_HEAD, "vtkMRMLLinearTransformNode")
-    assert isPlanned(transform)
+    assert transform.GetAttribute(KIND_ATTRIBUTE) == PLANNED
     assert isApplied(transform)
     np.testing.assert_allclose(
         arrayFromTransformMatrix(transform) @ scenario.head_to_world,

@@ -19,6 +19,7 @@ from rastrainer.slicer.scene.trial_replay import (
 )
 from rastrainer_headless.scene import HeadlessScene
 from Testing.slicer.recorded_trial import URDF, write_recorded_trial
+from Testing.slicer.scene_bundle import load_bundle
 
 TRIAL = "00000000-0000-0000-0000-000000000001"
 WORLD_TO_HEAD = np.array(
@@ -111,7 +112,7 @@ def test_another_trial_replaces_the_previous_one(scene, replayed, tmp_path):
 def test_a_replay_is_saved_with_the_scene(headless_scene, replayed, tmp_path):
     headless_scene.save(tmp_path / "trial.mrb")
     again = HeadlessScene()
-    again.load(tmp_path / "trial.mrb")
+    load_bundle(again, tmp_path / "trial.mrb")
     assert findReplay(again.scene).GetNumberOfItems() == replayed.GetNumberOfItems()
 
 
@@ -121,7 +122,7 @@ def test_a_replayed_trace_is_saved_with_the_scene(headless_scene, scene, tmp_pat
     showReplay(scene, "Trial 1", track, readArmChain(URDF), WORLD_TO_HEAD)
     headless_scene.save(tmp_path / "trial.mrb")
     again = HeadlessScene()
-    again.load(tmp_path / "trial.mrb")
+    load_bundle(again, tmp_path / "trial.mrb")
     goTo(again.scene, 3.0)
     assert node(again.scene, "trace").GetPolyData().GetNumberOfPoints() == 45
 

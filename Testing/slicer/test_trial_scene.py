@@ -14,6 +14,7 @@ from rastrainer.slicer.scene.nodes import labelsOf, setPoints, worldPoints
 from rastrainer.slicer.scene.registration_input import Choices, readPairs
 from rastrainer.slicer.scene.tables import showFits, showResiduals
 from rastrainer.slicer.scene.trial_scene import showRegistration
+from Testing.slicer.scene_bundle import load_bundle
 
 LABELS = tuple(str(i + 1) for i in range(15))
 
@@ -113,7 +114,7 @@ def test_the_transform_remembers_its_lists_even_in_a_saved_scene(
     node = showRegistration(headless_scene.scene, registered(moving, fixed), moving, fixed)
     assert trial_scene.movingNode(node) is moving
     headless_scene.save(tmp_path / "trial.mrb")
-    headless_scene.load(tmp_path / "trial.mrb")
+    load_bundle(headless_scene, tmp_path / "trial.mrb")
     node = headless_scene.scene.GetFirstNodeByName("WorldToHead")
     assert trial_scene.movingNode(node).GetName() == "CapturedPoints"
     assert labelsOf(node.GetNodeReference(trial_scene.FIXED_REFERENCE)) == LABELS

@@ -51,7 +51,8 @@ def test_a_step_that_asks_for_the_end_is_not_entered_again(loop):
 
 def test_what_is_stopped_or_has_failed_does_nothing_more(loop):
     done = []
-    Turns(steps(done), loop.append).stop()
+    turns = Turns(steps(done), loop.append)
+    turns.isOver = True
     loop.pop()()
     assert (done, loop) == ([], [])
     turns = Turns(steps(done, ValueError("broken")), loop.append)

@@ -11,7 +11,7 @@ from pydicom.uid import JPEG2000Lossless, RLELossless
 from scipy.spatial.transform import Rotation
 
 from rastrainer.errors import InputError
-from rastrainer_headless.volume_files import readAnyVolume
+from rastrainer_headless.volume_files import readVolume
 from Testing.slicer.head.dicom_series import LPS_TO_RAS, enhanced, slices, write_slices
 
 SHAPE = (9, 7, 12)
@@ -48,14 +48,14 @@ def expect(volume, values=VALUES, lps_matrix=None):
 def test_a_series_is_read_however_its_slices_lie(tmp_path, axes, direction):
     matrix = placed(axes * [1.0, 1.0, direction])
     write_slices(tmp_path, slices(VALUES, matrix))
-    expect(readAnyVolume(tmp_path), lps_matrix=matrix)
+    expect(readVolume(tmp_path), lps_matrix=matrix)
 
 
 def test_the_tilt_of_a_gantry_becomes_that_of_the_axes(tmp_path):
     matrix = placed()
     matrix[1, 2] = 1.2
     write_slices(tmp_path, slices(VALUES, matrix))
-    expect(readAnyVolume(tmp_path), lps_matrix=matrix)
+    expect(readVolume(tmp_path), lps_matrix=matrix)
 
 
 def test_anything_that_is_no_slice_of_the_series_is_ignored(tmp_path):
@@ -84,7 +84,7 @@ def test_anything_that_is_no_slice_of_the_series_is_ignored(tmp_path):
     directory.FileSetID = "DISK"
     directory.save_as(tmp_path / "DICOMDIR", enforce_file_format=True)
     (tmp_path / "README").write_text("\x08 no DICOM")
-    volume = readAnyVolume(tmp_path)
+    volume = readVolume(tmp_path)
     expect(volume)
     assert volume.warnings == ()
 
@@ -94,7 +94,7 @@ def test_files_without_preamble_are_read(tmp_path, is_implicit):
     for k, each in enumerate(slices(VALUES, placed())):
         del each.file_meta
         each.save_as(tmp_path / f"I{k}", implicit_vr=is_implicit, little_endian=True)
-    expect(readAnyVolume(tmp_path))
+    expect(readVolume(tmp_path))
 
 
 def test_frames_of_an_enhanced_file_are_slices_alone_or_in_a_folder(tmp_path):
@@ -102,7 +102,7 @@ def test_frames_of_an_enhanced_file_are_slices_alone_or_in_a_folder(tmp_path):
     image = enhanced(VALUES, matrix)
     image.save_as(tmp_path / "all.dcm", enforce_file_format=True)
     for path in (tmp_path, tmp_path / "all.dcm"):
-        expect(readAnyVolume(path), lps_matrix=matrix)
+        expect(readVolume(path), lps_matrix=matrix)
 
 
 def rle(image):
@@ -124,7 +124,7 @@ def test_compressed_pixels_are_read(tmp_path, compress):
     for each in datasets:
         compress(each)
     write_slices(tmp_path, datasets)
-    expect(readAnyVolume(tmp_path), np.repeat(np.repeat(VALUES, 8, 0), 8, 1))
+    expect(readVolume(tmp_path), np.repeat(np.repeat(VALUES, 8, 0), 8, 1))
 
 
 def test_values_are_scaled_slice_by_slice(tmp_path):
@@ -133,7 +133,7 @@ def test_values_are_scaled_slice_by_slice(tmp_path):
         each.RescaleSlope, each.RescaleIntercept = "2", str(-1024 - k)
     write_slices(tmp_path, datasets)
     scaled = 2.0 * VALUES - 1024.0 - np.arange(SHAPE[2])
-    expect(readAnyVolume(tmp_path), scaled)
+    expect(readVolume(tmp_path), scaled)
 
 
 def test_the_same_slices_twice_are_taken_once(tmp_path):
@@ -144,14 +144,14 @@ def test_the_same_slices_twice_are_taken_once(tmp_path):
         image = pydicom.dcmread(path)
         image.SOPInstanceUID = f"1.2.99.{k}"
         image.save_as(path)
-    expect(readAnyVolume(tmp_path))
+    expect(readVolume(tmp_path))
 
 
 def test_the_larger_of_two_series_is_taken_and_named(tmp_path):
     write_slices(tmp_path, slices(VALUES, placed(), SeriesDescription="T1 MPRAGE"), "a")
     flair = slices(VALUES[:, :, :10] + 7, placed(), "1.2.4", SeriesDescription="FLAIR")
     write_slices(tmp_path, flair, "b")
-    volume = readAnyVolume(tmp_path)
+    volume = readVolume(tmp_path)
     expect(volume)
     assert "2 series of many slices" in volume.warnings[0]
     assert "“T1 MPRAGE” with 12" in volume.warnings[0]
@@ -163,7 +163,7 @@ def test_two_echoes_of_one_series_are_two_stacks(tmp_path):
     for k, each in enumerate(second):
         each.SOPInstanceUID = f"1.2.5.{k}"
     write_slices(tmp_path / "2", second[:-1])
-    expect(readAnyVolume(tmp_path))
+    expect(readVolume(tmp_path))
 
 
 def without(datasets):
@@ -194,10 +194,10 @@ def test_a_series_that_is_no_volume_is_refused_and_says_why(tmp_path, change, se
     change(datasets)
     write_slices(tmp_path, datasets)
     with pytest.raises(InputError, match=sentence):
-        readAnyVolume(tmp_path)
+        readVolume(tmp_path)
 
 
 def test_a_single_slice_is_refused(tmp_path):
     write_slices(tmp_path, slices(VALUES[:, :, :1], placed()))
     with pytest.raises(InputError, match="no series of at least 8 slices"):
-        readAnyVolume(next(tmp_path.iterdir()))
+        readVolume(next(tmp_path.iterdir()))

@@ -8,7 +8,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.head.volume import Volume, imageOfNode
-from rastrainer_headless.volume_files import readAnyVolume, readVolume
+from rastrainer_headless.volume_files import readVolume
 from Testing.slicer.head.placed import add_volume
 from Testing.slicer.head.volume_file import write_volume
 
@@ -97,7 +97,7 @@ def test_a_file_that_cannot_be_used_says_what_it_is(tmp_path, name):
     content, sentence = UNUSABLE[name]
     (tmp_path / name).write_bytes(content)
     with pytest.raises(InputError, match=sentence) as caught:
-        readAnyVolume(tmp_path / name)
+        readVolume(tmp_path / name)
     assert "\n" not in str(caught.value)
 
 

@@ -21,7 +21,6 @@ from rastrainer.study.curriculum.standing import (
     state_of,
     title_of,
 )
-from rastrainer.study_messages import AssignmentStanding
 
 
 class CurriculumPanel(Panel):
@@ -63,7 +62,15 @@ class CurriculumPanel(Panel):
         tips = [f"{each.name}: {state_of(each)}, {progress_of_assignment(each)}" for each in rows]
         everybody = self._logic.standings()
         ui.assignmentsTable.visible, ui.classTable.visible = bool(rows), bool(everybody)
-        fillTable(ui.assignmentsTable, map(_row, rows), tips)
+        assignments = [
+            (
+                title_of(each),
+                short_progress_of(each),
+                "–" if each.mean is None else fixed(each.mean, 0),
+            )
+            for each in rows
+        ]
+        fillTable(ui.assignmentsTable, assignments, tips)
         fillTable(
             ui.classTable,
             (
@@ -89,11 +96,3 @@ class CurriculumPanel(Panel):
             hasOne = self._logic.standing() is not None
         reason = _("There is no curriculum to end.") if isSomebody else nobody
         setEnabled(ui.endCurriculumButton, hasOne, reason)
-
-
-def _row(standing: AssignmentStanding) -> tuple[str, str, str]:
-    return (
-        title_of(standing),
-        short_progress_of(standing),
-        "–" if standing.mean is None else fixed(standing.mean, 0),
-    )

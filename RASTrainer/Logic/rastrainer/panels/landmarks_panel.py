@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from rastrainer.errors import InputError
@@ -17,7 +18,7 @@ from rastrainer.panels.widgets import (
     setEnabled,
     setText,
 )
-from rastrainer.scenario.points import FACE_LANDMARKS, Landmark
+from rastrainer.scenario.points import FACE_LANDMARKS
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.translation import _
@@ -44,29 +45,25 @@ class LandmarksPanel(Panel):
         self._logic = session.landmarks
         failure = _("No landmarks could be proposed.")
         self._work = CancelableWork(
-            ui.proposeLandmarksButton, self.propose, failure, self._showMessage, self.showState
+            ui.proposeLandmarksButton,
+            partial(self._run, self._logic.propose),
+            failure,
+            self._showMessage,
+            self.showState,
         )
         fillComboBox(ui.landmarkNameComboBox, ENTRIES, FACE_LANDMARKS[0])
         connectClick(ui.showLandmarksButton, self.show, _("The landmarks cannot be shown."))
         connectClick(ui.placeLandmarkButton, self.place, _("No landmark can be placed."))
         ui.removeLandmarkButton.connect("clicked()", self.remove)
         ui.undoLandmarkButton.connect("clicked()", self.undo)
-        connectClick(ui.checkLandmarksButton, self.check, _("The landmarks were not checked."))
+        check = partial(self._run, self._logic.check)
+        connectClick(ui.checkLandmarksButton, check, _("The landmarks were not checked."))
         connectClick(ui.saveLandmarksButton, self.save, _("The landmarks were not saved."))
         self.listen((session.sceneChanged, self.showState))
         self._message = ""
         self.showState()
 
-    def propose(self) -> None:
-        """Replace the landmarks by proposed ones on the chosen head."""
-        self._run(self._logic.propose)
-
-    def check(self) -> None:
-        """Check the landmarks on the head of the chosen scenario, and the robot's reach."""
-        self._run(self._logic.check)
-
     def show(self) -> None:
-        """Replace the landmarks by those of the chosen scenario."""
         scenario = chosenScenario(self._ui, self._session)
         if not scenario.landmarks:
             raise InputError(_("{title} has no landmarks.").format(title=scenario.title))
@@ -83,7 +80,6 @@ class LandmarksPanel(Panel):
         self.showState()
 
     def undo(self) -> None:
-        """Undo the last change."""
         self._logic.points.undo()
         self.showState()
 
@@ -98,10 +94,12 @@ class LandmarksPanel(Panel):
             self._session.scenarioMade.emit(saved.name)
 
     def showState(self) -> None:
-        """Show the landmarks of the scene."""
         ui, points, isAtWork = self._ui, self._logic.points, self._work.isUnderWay
         self._showMessage(self._message)
-        rows = [_row(landmark) for landmark in points.placed()]
+        rows = [
+            (NAMES.get(each.name, each.name), *(fixed(float(v), 1) for v in each.position_ras))
+            for each in points.placed()
+        ]
         if fillTable(ui.landmarksTable, rows):
             # The first usual landmark that is missing comes next.
             placed = [landmark.name for landmark in points.placed()]
@@ -115,7 +113,6 @@ class LandmarksPanel(Panel):
             setEnabled(button, bool(rows) and not isAtWork, reason)
 
     def _run(self, work: Callable[[Scenario, Progress], str]) -> None:
-        """Work on the chosen scenario, and show the sentence that it returns."""
         scenario = chosenScenario(self._ui, self._session)
         said = self._work.run(lambda report: work(scenario, report))
         if said is not None:
@@ -130,8 +127,3 @@ class LandmarksPanel(Panel):
             )
             sentence = f"{sentence} {leftOut}".strip()
         setText(self._ui.landmarksText, sentence)
-
-
-def _row(landmark: Landmark) -> tuple[str, ...]:
-    name = NAMES.get(landmark.name, landmark.name)
-    return (name, *(fixed(float(value), 1) for value in landmark.position_ras))

@@ -37,40 +37,27 @@ _ROWS = (
 """Label, name, lowest and highest, usual values; places are in the table's frame."""
 
 
-class SetUpForm:
-    """The spin boxes of a set-up, in rows of a form; they are called `head0SpinBox` and so on."""
-
-    def __init__(self, parent: Any) -> None:
-        """Fill a widget that has no layout yet."""
-        layout = qt.QFormLayout(parent)
-        self._boxes: dict[str, list[Any]] = {}
-        for label, name, (least, most), usual in _ROWS:
-            row = qt.QWidget()
-            across = qt.QHBoxLayout(row)
-            across.setContentsMargins(0, 0, 0, 0)
-            self._boxes[name] = []
-            for place, value in enumerate(usual):
-                box = qt.QDoubleSpinBox()
-                box.objectName = f"{name}{place}SpinBox"
-                box.minimum, box.maximum = least, most
-                box.decimals = 1
-                # Three share a row: they must not be as wide as the widest number.
-                box.minimumWidth = NARROWEST
-                box.value = value
-                across.addWidget(box)
-                self._boxes[name].append(box)
-            layout.addRow(label, row)
-
-    def setUp(self) -> SetUp:
-        """Return the set-up that is chosen."""
-        values = {name: tuple(box.value for box in boxes) for name, boxes in self._boxes.items()}
-        return SetUp(
-            head=HeadPlace(values["head"], *values["yaw"]),
-            perturbation=Perturbation(*values["shift"], *values["turn"], *values["tilt"]),
-            table=OperatingTable(values["table"], values["size"]),
-            stand=Stand(*values["stand"]),
-            robot_base_mm=values["base"],
-        )
+def addSetUpRows(parent: Any) -> dict[str, list[Any]]:
+    """Fill a widget without layout with spin boxes `head0SpinBox` and so on; return them by row."""
+    layout = qt.QFormLayout(parent)
+    boxes: dict[str, list[Any]] = {}
+    for label, name, (least, most), usual in _ROWS:
+        row = qt.QWidget()
+        across = qt.QHBoxLayout(row)
+        across.setContentsMargins(0, 0, 0, 0)
+        boxes[name] = []
+        for place, value in enumerate(usual):
+            box = qt.QDoubleSpinBox()
+            box.objectName = f"{name}{place}SpinBox"
+            box.minimum, box.maximum = least, most
+            box.decimals = 1
+            # Three share a row: they must not be as wide as the widest number.
+            box.minimumWidth = NARROWEST
+            box.value = value
+            across.addWidget(box)
+            boxes[name].append(box)
+        layout.addRow(label, row)
+    return boxes
 
 
 SAMPLE = "MRBrainTumor1"
@@ -82,7 +69,7 @@ class NewScenarioPanel(Panel):
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
         self._maker = session.scenarioMaker
-        self._setUp = SetUpForm(ui.setUpGroupBox)
+        self._setUp = addSetUpRows(ui.setUpGroupBox)
         failure = _("The scenario was not made.")
         shows = (self._showMessage, self._showUsable, self._showProgress)
         self._work = CancelableWork(ui.makeScenarioButton, self.make, failure, *shows)
@@ -128,13 +115,11 @@ class NewScenarioPanel(Panel):
             fitThreeDViews()
 
     def check(self) -> None:
-        """Report at once whether set-up, plan and fiducials can be used."""
         warnings = self._work.run(lambda report: self._maker.check(*self._wanted(), report))
         if warnings is not None:
             self._showMessage(_("Set-up, plan and fiducials can be used."), *warnings)
 
     def make(self) -> None:
-        """Make the scenario and use it."""
         made = self._work.run(lambda report: self._maker.make(*self._wanted(), report))
         if made is not None:
             scenario, warnings = made
@@ -144,6 +129,14 @@ class NewScenarioPanel(Panel):
 
     def _wanted(self) -> tuple[Any, NewScenarioOptions]:
         ui = self._ui
+        values = {name: tuple(box.value for box in boxes) for name, boxes in self._setUp.items()}
+        setUp = SetUp(
+            head=HeadPlace(values["head"], *values["yaw"]),
+            perturbation=Perturbation(*values["shift"], *values["turn"], *values["tilt"]),
+            table=OperatingTable(values["table"], values["size"]),
+            stand=Stand(*values["stand"]),
+            robot_base_mm=values["base"],
+        )
         return ui.scanComboBox.currentNode(), NewScenarioOptions(
             title=ui.titleLineEdit.text,
             source=ui.sourceLineEdit.text,
@@ -152,7 +145,7 @@ class NewScenarioPanel(Panel):
             cutMm=_chosen(ui.cutSpinBox),
             hasSkull=ui.skullCheckBox.checked,
             hasVolume=ui.volumeCheckBox.checked,
-            setUp=self._setUp.setUp(),
+            setUp=setUp,
             targets=ui.plannedTargetsComboBox.currentNode(),
             trajectory=ui.plannedTrajectoryComboBox.currentNode(),
             isHandPlaced=ui.handPlacedCheckBox.checked,

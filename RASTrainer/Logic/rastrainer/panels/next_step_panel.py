@@ -15,7 +15,7 @@ from rastrainer.panels.panel import Panel
 from rastrainer.panels.plain_text import buttonTitle, shortName
 from rastrainer.panels.widgets import LINK_COLORS, connectAsPressed, setEnabled, setLight, setText
 from rastrainer.protocol import TRIAL_RUN, Phase, StepKind
-from rastrainer.slicer.link.link_status import LinkState, notInstalled
+from rastrainer.slicer.link.link_status import NOT_INSTALLED, LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.next_step import NextAction, NextStep, Section, WorkflowState, nextStep
 from rastrainer.slicer.translation import _
@@ -101,7 +101,7 @@ class NextStepPanel(Panel):
         self._now = now = replace(
             self._now,
             # Reported at once, before downloading a simulator to which no connection is possible.
-            link=session.link.status if session.link.findKit() else notInstalled(),
+            link=session.link.status if session.link.findKit() else NOT_INSTALLED,
             program=simulator.program.state,
             programSentence=simulator.program.sentence,
             isBeingSetUp=simulator.setup.isRunning,
@@ -112,7 +112,7 @@ class NextStepPanel(Panel):
             phase=trial.phase,
             touched=trial.touched,
             total=trial.total,
-            isLoading=session.training.isLoading,
+            isLoading=session.training.loadings > 0,
         )
         setLight(ui.linkLight, LINK_COLORS[now.link.state])
         setText(ui.linkText, WORDS[now.link.state])

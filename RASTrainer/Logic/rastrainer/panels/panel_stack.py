@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from types import SimpleNamespace
 from typing import Any
 
@@ -77,25 +77,25 @@ class PanelStack:
             yield
             panels[kind] = kind(self.ui, session)
             self._panels.append(panels[kind])
-        self._panels.append(NextStepPanel(self.ui, session, _actions(panels)))
+        self._panels.append(
+            NextStepPanel(
+                self.ui,
+                session,
+                {
+                    NextAction.START_SIMULATOR: panels[SimulatorPanel].startAndConnect,
+                    NextAction.CONNECT: panels[SimulatorPanel].connect,
+                    NextAction.CONNECT_TO_RUNNING: panels[RunningSimulatorPanel].connectToIt,
+                    NextAction.CREATE_TRAINEE: panels[TraineesPanel].createTrainee,
+                    NextAction.START_STUDY_STEP: panels[StudyPanel].startStep,
+                    NextAction.EXPLAIN_REPEAT: panels[StudyPanel].explainRepeat,
+                    NextAction.START_TRIAL_RUN: panels[TrainingPanel].startTrialRun,
+                    NextAction.START_TASK: panels[TrainingPanel].startTask,
+                    NextAction.PAUSE: panels[TrainingPanel].pause,
+                    NextAction.RESUME: panels[TrainingPanel].resume,
+                },
+            )
+        )
 
     def close(self) -> None:
-        """Stop listening."""
         for panel in self._panels:
             panel.close()
-
-
-def _actions(panels: Mapping[type, Any]) -> dict[NextAction, Callable[[], None]]:
-    """Return the actions of the sections that the line at the top can trigger."""
-    return {
-        NextAction.START_SIMULATOR: panels[SimulatorPanel].startAndConnect,
-        NextAction.CONNECT: panels[SimulatorPanel].connect,
-        NextAction.CONNECT_TO_RUNNING: panels[RunningSimulatorPanel].connectToIt,
-        NextAction.CREATE_TRAINEE: panels[TraineesPanel].createTrainee,
-        NextAction.START_STUDY_STEP: panels[StudyPanel].startStep,
-        NextAction.EXPLAIN_REPEAT: panels[StudyPanel].explainRepeat,
-        NextAction.START_TRIAL_RUN: panels[TrainingPanel].startTrialRun,
-        NextAction.START_TASK: panels[TrainingPanel].startTask,
-        NextAction.PAUSE: panels[TrainingPanel].pause,
-        NextAction.RESUME: panels[TrainingPanel].resume,
-    }

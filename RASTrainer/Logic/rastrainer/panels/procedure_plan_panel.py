@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import slicer
@@ -21,6 +22,7 @@ from rastrainer.panels.widgets import (
     setProperty,
     setSilently,
     setText,
+    showPercent,
 )
 from rastrainer.procedure.checks import LineMeasures, MeasuredProcedure
 from rastrainer.procedure.plan import ProcedureKind
@@ -63,7 +65,7 @@ class ProcedurePlanPanel(Panel):
         self._problem = ""
         self._removed: list[tuple[Any, int]] = []
         failure = _("The lines were not checked.")
-        shows = (self._showProblem, self.showState, self._showProgress)
+        shows = (self._showProblem, self.showState, partial(showPercent, ui.procedurePlanText))
         self._work = CancelableWork(ui.checkLinesButton, self.check, failure, *shows)
         fillComboBox(ui.procedureKindComboBox, KINDS, ProcedureKind.BIOPSY.value)
         connectClick(ui.editProcedureButton, self.edit, _("The procedure cannot be edited."))
@@ -160,7 +162,6 @@ class ProcedurePlanPanel(Panel):
             self._session.scenarioMade.emit(saved.name)
 
     def showState(self, *_arguments: Any) -> None:
-        """Show the plan of the scene."""
         ui, isAtWork = self._ui, self._work.isUnderWay
         isFresh = self._checked is not None and self._checked[0] == self._snapshot()
         self._showLines(self._checked[1].lines if isFresh and self._checked else ())
@@ -217,7 +218,6 @@ class ProcedurePlanPanel(Panel):
                 self._showLine()
 
     def _showLine(self) -> None:
-        """Show name and instrument of the chosen line."""
         ui, line = self._ui, self._line()
         if line is not None:
             diameter, safety = instrumentOf(line)
@@ -252,19 +252,13 @@ class ProcedurePlanPanel(Panel):
         )
 
     def _showProcedures(self) -> None:
-        """Offer the procedures of the chosen scenario, and a new one."""
         entries = [(title, name) for name, title in self._session.procedures]
         entries.append((_("New procedure"), ""))
         combo = self._ui.procedurePlanComboBox
         offerEntries(combo, entries, *([chosenData(combo)] if combo.count else []))
         self.showState()
 
-    def _showProgress(self, step: str, share: float) -> None:
-        if step:
-            setText(self._ui.procedurePlanText, f"{step}: {100 * share:.0f} %")
-
     def _showProblem(self, sentence: str) -> None:
-        """Keep the sentence for `showState`."""
         self._problem = sentence
 
 

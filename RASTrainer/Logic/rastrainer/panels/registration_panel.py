@@ -92,9 +92,9 @@ class RegistrationPanel(Panel):
             setApplied(transform, applied)
 
     def _chooseFiducial(self) -> None:
-        """Center the slices on the chosen fiducial."""
-        if self._logic.shown is not None and self._chosen() >= 0:
-            self._session.slices.show(self._logic.shown.fixed_mm[self._chosen()])
+        comparison, row = self._logic.comparison, self._chosen()
+        if comparison is not None and row >= 0:
+            self._session.slices.show(comparison.shown.fixed_mm[row])
         self._showButtons()
 
     def _show(self) -> None:
@@ -103,19 +103,6 @@ class RegistrationPanel(Panel):
         setText(ui.treText, _treText(comparison) if comparison else "", INTERVAL_NOTE)
         fits = _fitRows(comparison) if comparison else []
         fillTable(ui.fitsTable, fits, [INTERVAL_NOTE] * len(fits))
-        self._showResiduals(comparison)
-        self._showRemedies(comparison.remedies if comparison else ())
-        self._showButtons()
-        self._showApplied()
-
-    def _showButtons(self) -> None:
-        ui = self._ui
-        for button in (ui.excludeButton, ui.fleButton):
-            setEnabled(button, self._chosen() >= 0, _("Choose a row of the table first."))
-        setEnabled(ui.undoButton, self._logic.canUndo, _("No pair was changed."))
-
-    def _showResiduals(self, comparison: Comparison | None) -> None:
-        """Show the residuals; the chosen fiducial stays chosen, whichever row it is in now."""
         table, row = self._ui.residualsTable, self._chosen()
         chosen = self._labels[row] if row >= 0 else ""
         rows: list[tuple[str, ...]] = []
@@ -136,6 +123,15 @@ class RegistrationPanel(Panel):
             if newRow != row:
                 table.clearSelection()
                 table.setCurrentCell(newRow, 0 if newRow >= 0 else -1)
+        self._showRemedies(comparison.remedies if comparison else ())
+        self._showButtons()
+        self._showApplied()
+
+    def _showButtons(self) -> None:
+        ui = self._ui
+        for button in (ui.excludeButton, ui.fleButton):
+            setEnabled(button, self._chosen() >= 0, _("Choose a row of the table first."))
+        setEnabled(ui.undoButton, self._logic.canUndo, _("No pair was changed."))
 
     def _showRemedies(self, remedies: tuple[Remedy, ...]) -> None:
         """Show each warning with its button, in place of those before, unless they are the same.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -25,11 +26,12 @@ from rastrainer.panels.widgets import (
     setChecked,
     setEnabled,
     setText,
+    showPercent,
 )
 from rastrainer.protocol import TRIAL_RUN, RegistrationMethod
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
-from rastrainer.slicer.logic.scenario_logic import ComparedMethod, compareMethods
+from rastrainer.slicer.logic.scenario_logic import compareMethods
 from rastrainer.slicer.settings import SCENARIO, TASK
 from rastrainer.slicer.translation import _
 from rastrainer.work_progress import no_progress
@@ -45,7 +47,8 @@ class ScenarioPanel(Panel):
         self._logic = session.scenario
         self._scenarios, self._files = session.scenarios, session.scenarioFiles
         failure = _("This cannot be used as the head.")
-        shows = (self._showHeadMessage, self._showUsable, self._showProgress)
+        self._showHeadMessage = partial(setText, ui.otherHeadText)
+        shows = (self._showHeadMessage, self._showUsable, partial(showPercent, ui.otherHeadText))
         self._work = CancelableWork(ui.useHeadButton, self.useHead, failure, *shows)
         failure = _("The scenario was not saved.")
         self._writing = CancelableWork(
@@ -83,7 +86,6 @@ class ScenarioPanel(Panel):
         self._fill(session.settings.get(SCENARIO))
 
     def show(self) -> None:
-        """Show the chosen head and the fiducials of the chosen task."""
         with showErrors(_("The scenario cannot be shown.")):
             name = chosenData(self._ui.scenarioComboBox)
             target = self._scenarios.find(name).target_position
@@ -95,7 +97,6 @@ class ScenarioPanel(Panel):
             self._logic.show(name, self._session.task, showTarget)
 
     def loadIntoSimulator(self) -> None:
-        """Load the chosen head into the simulator."""
         with showErrors(_("The scenario was not loaded.")):
             scenario = self._scenarios.find(chosenData(self._ui.scenarioComboBox))
             self._showMessage(
@@ -105,7 +106,6 @@ class ScenarioPanel(Panel):
             self._session.training.loadScenario(scenario.name, lambda: self._showMessage(loaded))
 
     def useHead(self) -> None:
-        """Show a model, or the skin of a volume, as the head."""
         node = self._ui.headModelComboBox.currentNode()
         used = self._work.run(lambda report: self._logic.useHead(node, report))
         if used is not None:
@@ -127,7 +127,6 @@ class ScenarioPanel(Panel):
             self._showMessage(_("{title} was added.").format(title=added.title))
 
     def exportScenario(self) -> None:
-        """Write the chosen scenario as a zip file."""
         name = chosenData(self._ui.scenarioComboBox)
         keepsFace = not self._ui.removeFaceCheckBox.checked
         keepsNames = not self._ui.removeNamesCheckBox.checked
@@ -171,13 +170,6 @@ class ScenarioPanel(Panel):
             return
         fitSliceViews(self._session.work.later)
         self._session.work.later(self._session.slices.showAgain)
-
-    def _showProgress(self, step: str, share: float) -> None:
-        if step:
-            self._showHeadMessage(f"{step}: {100 * share:.0f} %")
-
-    def _showHeadMessage(self, sentence: str) -> None:
-        setText(self._ui.otherHeadText, sentence)
 
     def _fill(self, wanted: str = "") -> None:
         """Offer the available scenarios, and choose one; the first if it is missing."""
@@ -258,6 +250,7 @@ class MethodsPanel(Panel):
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         super().__init__(ui, session)
+        self._showMessage = partial(setText, ui.methodsText)
         failure = _("The methods were not compared.")
         self._work = CancelableWork(
             ui.compareMethodsButton, self.compare, failure, self._showMessage
@@ -274,7 +267,19 @@ class MethodsPanel(Panel):
             lambda report: compareMethods(simulator, scenario, trials, shift, report)
         )
         if found is not None:
-            fillTable(ui.methodsTable, [_row(method) for method in found])
+            interval = _("{low} to {high}")
+            rows = [
+                (
+                    METHOD_NAMES.get(each.name, each.name),
+                    fixed(each.residual, 2),
+                    fixed(each.true, 2),
+                    fixed(each.expected, 2),
+                    interval.format(low=fixed(each.low, 2), high=fixed(each.high, 2)),
+                    _("{share} %").format(share=fixed(100.0 * each.held, 0)),
+                )
+                for each in found
+            ]
+            fillTable(ui.methodsTable, rows)
             text = _(
                 "Residuals of different methods are of different points: they do not show which "
                 "is better. The true error does."
@@ -283,17 +288,3 @@ class MethodsPanel(Panel):
                 few = _("The head has too few landmarks for the other methods.")
                 text = f"{text} {few}"
             self._showMessage(text)
-
-    def _showMessage(self, sentence: str) -> None:
-        setText(self._ui.methodsText, sentence)
-
-
-def _row(method: ComparedMethod) -> tuple[str, ...]:
-    return (
-        METHOD_NAMES.get(method.name, method.name),
-        fixed(method.residual, 2),
-        fixed(method.true, 2),
-        fixed(method.expected, 2),
-        _("{low} to {high}").format(low=fixed(method.low, 2), high=fixed(method.high, 2)),
-        _("{share} %").format(share=fixed(100.0 * method.held, 0)),
-    )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -21,11 +22,11 @@ from rastrainer.panels.widgets import (
     setChecked,
     setEnabled,
     setText,
+    showPercent,
 )
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.score_tables import (
-    GroupComparison,
     ctpsRows,
     motionRows,
     scoreRows,
@@ -48,7 +49,8 @@ class ScorePanel(Panel):
         super().__init__(ui, session)
         self._trainees = session.trainees
         failure = _("The trial is not shown.")
-        shows = (self._showMessage, self._showUsable, self._showProgress)
+        self._showMessage = partial(setText, ui.scoreMessageText)
+        shows = (self._showMessage, self._showUsable, partial(showPercent, ui.replayText))
         self._work = CancelableWork(ui.replayButton, self.replay, failure, *shows)
         self._trial: StoredTrial | None = None
         self._newTrial = ""
@@ -183,7 +185,18 @@ class ScorePanel(Panel):
         fillTable(ui.scoreTable, rows, [row.tip for row in scores])
         fillTable(ui.ctpsTable, ((row.title, row.text) for row in ctps), [row.note for row in ctps])
         setText(ui.ctpsText, CTPS_WARNING if ctps else "")
-        fillTable(ui.standingsTable, (_standingRow(s) for s in beside))
+        comparisons = [
+            (
+                f"{each.title} ({each.unit})" if each.unit else each.title,
+                fixed(each.value, 2),
+                each.group,
+                str(each.count),
+                fixed(each.median, 2),
+                f"{100 * each.betterThan:.0f} %",
+            )
+            for each in beside
+        ]
+        fillTable(ui.standingsTable, comparisons)
         notes = [row.note for row in motion]
         fillTable(ui.motionTable, ((row.title, row.text) for row in motion), notes)
         # Once for each trial, so that messages about an export or a report stay.
@@ -225,13 +238,6 @@ class ScorePanel(Panel):
         setEnabled(ui.worstTouchButton, isUsable, busy if isAtWork else reason, tip)
         self._showReplay()
 
-    def _showProgress(self, step: str, share: float) -> None:
-        if step:
-            setText(self._ui.replayText, f"{step}: {100 * share:.0f} %")
-
-    def _showMessage(self, sentence: str) -> None:
-        setText(self._ui.scoreMessageText, sentence)
-
 
 def _title(trial: StoredTrial | None) -> str:
     if trial is None:
@@ -240,15 +246,4 @@ def _title(trial: StoredTrial | None) -> str:
         trainee=trial.record.trainee,
         task=task_title(trial.record.task),
         mode=short_mode_title(trial.record.mode),
-    )
-
-
-def _standingRow(standing: GroupComparison) -> tuple[str, ...]:
-    return (
-        f"{standing.title} ({standing.unit})" if standing.unit else standing.title,
-        fixed(standing.value, 2),
-        standing.group,
-        str(standing.count),
-        fixed(standing.median, 2),
-        f"{100 * standing.betterThan:.0f} %",
     )

@@ -66,12 +66,6 @@ class SelfTestFixture:
             pass
         self.session.process()
 
-    def clearScene(self) -> None:
-        """Close the scene, and notify the session as the module's widget does."""
-        slicer.mrmlScene.Clear()
-        self.session.sceneWasCleared()
-        self.process()
-
     def touches(self) -> np.ndarray:
         """Return good touches of task 1, (15, 3) float, World, mm."""
         scenario = self.session.scenarios.find(SCENARIO)

@@ -40,7 +40,6 @@ class SetupPanel(Panel):
         ui.setupCollapsibleButton.collapsed = not self._simulator.needsSetup
 
     def setUp(self) -> None:
-        """Start the set-up."""
         with showErrors(_("The simulator could not be set up.")):
             self._ui.setupLogEdit.clear()
             self._simulator.startSetup(
@@ -48,7 +47,6 @@ class SetupPanel(Panel):
             )
 
     def remove(self) -> None:
-        """Remove what was set up, after asking."""
         question = _(
             "Remove the simulator, the folder {folder}, from this computer? Trials, studies "
             "and scenarios stay. It can be set up again at any time."

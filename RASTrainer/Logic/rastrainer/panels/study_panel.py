@@ -44,7 +44,10 @@ class StudyPanel(Panel):
         connectClick(ui.beginStudyButton, self.begin, _("The study was not started."))
         connectClick(ui.enrollButton, self._logic.enroll, _("The trainee was not enrolled."))
         self.startStep = guardedAction(self._logic.startStep, _("The step was not started."))
-        self.explainRepeat = guardedAction(self._explainRepeat, _("The reason was not saved."))
+        question = _("Why is the aborted trial repeated? The reason goes into the report.")
+        title, explain = _("Repeat the step"), self._logic.explainRepeat
+        ask = partial(self._withReason, title, question, explain)
+        self.explainRepeat = guardedAction(ask, _("The reason was not saved."))
         ui.startStepButton.connect("clicked()", self.startStep)
         ui.repeatStepButton.connect("clicked()", self.explainRepeat)
         connectClick(ui.skipStepButton, self.skipStep, _("The step was not skipped."))
@@ -78,10 +81,6 @@ class StudyPanel(Panel):
             # The step may be done while the dialog is open.
             skip = partial(self._logic.skipStep, step.name)
             self._withReason(_("Skip the step"), question, skip)
-
-    def _explainRepeat(self) -> None:
-        question = _("Why is the aborted trial repeated? The reason goes into the report.")
-        self._withReason(_("Repeat the step"), question, self._logic.explainRepeat)
 
     def _withReason(self, title: str, question: str, do: Callable[[str], None]) -> None:
         """Do what needs a reason; a reason that is refused can be completed."""

@@ -75,7 +75,6 @@ class PlanPanel(Panel):
         self.showState()
 
     def undo(self) -> None:
-        """Undo the last placing or removal."""
         self._logic.points.undo()
         self.showState()
 
@@ -89,7 +88,6 @@ class PlanPanel(Panel):
             self._session.scenarioMade.emit(scenario.name)
 
     def showState(self, *_arguments: Any) -> None:
-        """Show the plan."""
         plan, problem = self._read()
         self._logic.follow(plan)
         ui, logic, node = self._ui, self._logic, self._ui.planComboBox.currentNode()

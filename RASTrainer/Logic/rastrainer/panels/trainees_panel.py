@@ -57,7 +57,10 @@ class TraineesPanel(Panel):
         ui.consentCheckBox.connect("toggled(bool)", self.setConsent)
         ui.createTraineeButton.connect("clicked()", self.createTrainee)
         ui.traineesCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
-        connectAsPressed(ui.archiveButton, lambda: partial(self.setArchived, not self._isArchived))
+        connectAsPressed(
+            ui.archiveButton,
+            lambda: partial(self.setArchived, not (self._trainee and self._trainee.archived)),
+        )
         for button, action, failure in (
             (ui.exportTraineeButton, self.exportTrainee, _("The trainee was not exported.")),
             (ui.exportHistoryButton, self.exportHistory, _("The history was not exported.")),
@@ -67,10 +70,6 @@ class TraineesPanel(Panel):
             connectClick(button, action, failure)
         self.listen((self._logic.changed, self._show), (session.sceneChanged, self._showPlots))
         self._show()
-
-    @property
-    def _isArchived(self) -> bool:
-        return self._trainee is not None and self._trainee.archived
 
     def chooseStudy(self, path: str) -> None:
         """Continue with the study of another file, once its name is complete."""
@@ -135,7 +134,7 @@ class TraineesPanel(Panel):
     def setConsent(self, consent: bool) -> None:
         with showErrors(_("The consent was not saved.")):
             try:
-                self._logic.setConsent(consent)
+                self._logic.change(consent=consent)
             except InputError:
                 setChecked(self._ui.consentCheckBox, not consent)
                 raise
@@ -146,7 +145,7 @@ class TraineesPanel(Panel):
         with showErrors(failed if isArchived else _("The trainee was not restored.")):
             if isArchived:
                 self._ui.archivedCheckBox.checked = True
-            self._logic.setArchived(isArchived)
+            self._logic.change(archived=isArchived)
 
     def exportTrainee(self) -> None:
         from rastrainer.study.trainee_data import export_trainee
@@ -259,7 +258,8 @@ class TraineesPanel(Panel):
         setChecked(ui.consentCheckBox, trainee is not None and trainee.consent)
         self._showDeleting()
         ui.consentCheckBox.enabled = trainee is not None
-        ui.archiveButton.text = _("Bring back") if self._isArchived else _("Archive")
+        isArchived = trainee is not None and trainee.archived
+        ui.archiveButton.text = _("Bring back") if isArchived else _("Archive")
         nobody = _("Choose a trainee first.")
         for button in (ui.archiveButton, ui.exportTraineeButton):
             setEnabled(button, trainee is not None, nobody)

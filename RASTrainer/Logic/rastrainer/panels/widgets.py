@@ -61,6 +61,11 @@ def setText(label: Any, text: str, tip: str = "") -> None:
         label.visible = bool(shown)
 
 
+def showPercent(label: Any, step: str, share: float) -> None:
+    if step:
+        setText(label, f"{step}: {100 * share:.0f} %")
+
+
 def textLabel(text: str) -> Any:
     """Return a label for what anyone may have written, as those of the `.ui` files are."""
     label = qt.QLabel(wrappable(shortened(text, LONGEST_TEXT)))
@@ -168,9 +173,9 @@ def setChecked(box: Any, checked: bool) -> None:
     setSilently(box, "checked", checked)
 
 
-def millimeters(value: float | None, digits: int = 2) -> str:
+def millimeters(value: float | None) -> str:
     """Return a length with its unit, or a dash if it is unknown."""
-    return "–" if value is None else f"{value:.{digits}f} mm"
+    return "–" if value is None else f"{value:.2f} mm"
 
 
 _CHANGES = {
@@ -233,7 +238,7 @@ class CancelableWork:
         connectAsPressed(button, lambda: self.cancel if self.isUnderWay else guarded)
 
     def run(self, work: Callable[[Progress], T]) -> T | None:
-        """Return what the work returns, None where the user has canceled it."""
+        """Return what the work returns, None if the user cancels it."""
         self.isUnderWay, self._isCanceled = True, False
         title, self._button.text = self._button.text, _("Cancel")
         self._showUsable()

@@ -64,25 +64,21 @@ class Job(Generic[T]):
         self._work = work
         self.outcome: Future[T] = Future()
         self._isSupervised = True
-        self._thread = threading.Thread(target=self._run, daemon=True)
+        self.thread = threading.Thread(target=self._run, daemon=True)
         if not Job._supervised:
             Job._former = gc.isenabled(), sys.getswitchinterval()
             gc.disable()
             sys.setswitchinterval(SWITCH_INTERVAL_S)
         Job._supervised += 1
-        self._thread.start()
+        self.thread.start()
 
     @property
     def isDone(self) -> bool:
         """Whether the thread has ended."""
-        isDone = not self._thread.is_alive()
+        isDone = not self.thread.is_alive()
         if isDone:
             self.leave()
         return isDone
-
-    def yieldTime(self, seconds: float = TIME_S) -> None:
-        """Let the thread run, and return when it has ended or the time is over."""
-        self._thread.join(seconds)
 
     def leave(self) -> None:
         """Stop supervising the thread: it has ended, or its result is no longer needed."""
@@ -166,7 +162,7 @@ class BackgroundWork:
     def yieldTime(self) -> None:
         """Let running work continue for a moment, unless functions are postponed."""
         if self._underWay is not None and not self._slices:
-            self._underWay[0].yieldTime()
+            self._underWay[0].thread.join(TIME_S)
 
     def process(self) -> None:
         """Call one postponed function, or deliver a finished result."""
@@ -200,11 +196,11 @@ class BackgroundWork:
         if self._underWay is None:
             return
         job = self._underWay[0]
-        job.yieldTime(CLOSING_S)
+        job.thread.join(CLOSING_S)
         self.process()
         if self._underWay is not None:
             self._isLeft.set()
-            job.yieldTime(LEAVING_S)
+            job.thread.join(LEAVING_S)
             job.leave()
             self._underWay = None
 
@@ -233,7 +229,7 @@ def inBackground(work: Callable[[Progress], T], progress: Progress) -> T:
     try:
         while not job.isDone:
             progress(*reported[-1])
-            job.yieldTime()
+            job.thread.join(TIME_S)
     except BaseException:
         isCanceled.set()
         job.leave()

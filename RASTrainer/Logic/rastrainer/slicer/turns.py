@@ -14,7 +14,7 @@ class Turns:
     """Runs the steps of an iterator, each in a later turn; it may be finished at once.
 
     Attributes:
-        isOver: whether all steps are done, or none will follow.
+        isOver: whether all steps are done; set it, and none will follow.
     """
 
     def __init__(
@@ -30,9 +30,6 @@ class Turns:
         """Do now what is left, unless a step asks for that itself."""
         while not (self.isOver or self._isAtWork):
             self._step()
-
-    def stop(self) -> None:
-        self.isOver = True
 
     def _go(self) -> None:
         if not (self.isOver or self._isAtWork):

@@ -64,7 +64,6 @@ class _Nifti:
 
 
 def checkHeader(path: Path) -> None:
-    """Check what a file says about itself before it is read."""
     begin = _begin(path)
     if path.suffix.lower() in (".mgz", ".mgh") or begin.startswith(_MGH):
         raise _unusable(path, "is in FreeSurfer's format", "mri_convert makes NIfTI of it")
@@ -189,7 +188,6 @@ def _letters(axes: np.ndarray) -> str:
 
 
 def _nrrd(begin: bytes) -> dict[str, str]:
-    """Return the fields of an NRRD file's header."""
     header, _, _ = begin.replace(b"\r\n", b"\n").partition(b"\n\n")
     lines = [line.partition(":") for line in header.decode("latin-1").split("\n")]
     return {

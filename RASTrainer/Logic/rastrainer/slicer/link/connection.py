@@ -59,10 +59,7 @@ class SimulatorConnection:
     Slicer: see `rastrainer.slicer.link.probe`. A Slicer that listens cannot ask who will connect.
 
     Attributes:
-        findKit: returns what the connector and its commands are made with; None where it is not
-            installed.
         connector: the connector in the scene; None while there is no simulator to connect to.
-        seen: what is known of the connection.
         woken: emits nothing when there is something to do soon; perhaps from inside VTK.
     """
 
@@ -87,11 +84,6 @@ class SimulatorConnection:
         self._nextProbe = self._connectsUntil = self._lastLook = 0.0
         self._heartbeatTime: int | None = None
 
-    @property
-    def isOpen(self) -> bool:
-        """Whether there is a TCP connection."""
-        return self.seen.isOpen
-
     def beginConnection(self, address: tuple[str, int], isListening: bool) -> None:
         """Request a connection: to the address, or from any client of its port."""
         self.endConnection()
@@ -104,7 +96,6 @@ class SimulatorConnection:
         )
 
     def endConnection(self) -> None:
-        """Stop requesting a connection."""
         self._searchAnew()
         self._dropConnector()
         self.seen = LinkObservation()
@@ -113,7 +104,7 @@ class SimulatorConnection:
         """Restore what was lost; return whether the connection has just been opened."""
         if self._kit is None or not self.seen.address:
             return False
-        wasOpen = self.isOpen
+        wasOpen = self.seen.isOpen
         if self.connector is not None and self.connector.GetScene() is None:
             self._dropConnector()
             self._searchAnew()
@@ -135,7 +126,7 @@ class SimulatorConnection:
             connector.Stop()
             self._searchAnew()
             self.seen.isOpen = False
-        return self.isOpen and not wasOpen
+        return self.seen.isOpen and not wasOpen
 
     def _connect(self, isLost: bool) -> None:
         """Let the connector connect or listen; only to a simulator, so search for one first."""
@@ -189,7 +180,6 @@ class SimulatorConnection:
         return finding if isOurs else None
 
     def _makeConnector(self) -> Any:
-        """Return a new connector in the scene; requires a kit."""
         assert self._kit is not None
         self.connector = connector = self._kit.makeConnector()
         connector.SetName(CONNECTOR_NAME)

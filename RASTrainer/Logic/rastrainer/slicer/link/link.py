@@ -102,7 +102,7 @@ class Link(SimulatorConnection):
         """
         isWanted = bool(self.seen.address)
         isChanging = self._probe is not None or self._clock() < self._connectsUntil
-        if self.isOpen:
+        if self.seen.isOpen:
             isChanging = not self.seen.hasHeartbeat
         if self._test is not None or (isWanted and self._kit is not None and isChanging):
             return SOON_S
@@ -140,7 +140,7 @@ class Link(SimulatorConnection):
         """
         if areWanted != self._posesAreWanted:
             self._posesAreWanted = areWanted
-            if self.isOpen:
+            if self.seen.isOpen:
                 self._sendHello(isFirst=False)
 
     def send(
@@ -153,7 +153,7 @@ class Link(SimulatorConnection):
         """Send a command; `onReply` is called by a later `process`, exactly once."""
         check_arguments(name, arguments or {})
         status = judge(self.seen)
-        if not self.isOpen or status.state is LinkState.WRONG_VERSION:
+        if not self.seen.isOpen or status.state is LinkState.WRONG_VERSION:
             self._pending.refuse(onReply, status.sentence)
             self._processSoon()
             return
@@ -183,7 +183,7 @@ class Link(SimulatorConnection):
         if status != self.status:
             self.status = status
             self._guard.emit("The link's status", self.statusChanged, status)
-        self._pending.poll(self.isOpen)
+        self._pending.poll(self.seen.isOpen)
         if self.connector is not None:
             self._guard.run("The touched points and the state", self._emitNodes)
         self._emitCommands()
@@ -220,7 +220,7 @@ class Link(SimulatorConnection):
     def _processArrivals(self) -> None:
         self._isCallDue = False
         if not self._scene.IsBatchProcessing():
-            self._pending.poll(self.isOpen)
+            self._pending.poll(self.seen.isOpen)
             self._emitCommands()
 
     def _sendHello(self, isFirst: bool) -> None:

@@ -86,12 +86,19 @@ class LinkStatus:
     remedy: str = ""
 
 
+NOT_INSTALLED = LinkStatus(
+    LinkState.NOT_INSTALLED,
+    _("The extension SlicerOpenIGTLink is not installed."),
+    _("Install it in the Extensions Manager and restart Slicer."),
+)
+
+
 @dataclass
 class LinkObservation:
     """What is known of a connection.
 
     The `address` is as the user gave it, empty if no connection is wanted. `silenceS` are seconds
-    since the last heartbeat, or since the connection was opened, without those in which Slicer
+    since the last heartbeat, or since the TCP connection was opened, without those in which Slicer
     itself was held up; `hasHeartbeat` says that one has come over this connection.
     """
 
@@ -106,11 +113,10 @@ class LinkObservation:
 
 
 def judge(link: LinkObservation) -> LinkStatus:
-    """Return the state of the link in words."""
     if not link.address:
         return LinkStatus(LinkState.OFF, _("Not connected."), _("Press Start and connect."))
     if not link.isInstalled:
-        return notInstalled()
+        return NOT_INSTALLED
     if not link.isOpen:
         return _judgeClosed(link)
     if link.peerVersion not in (None, PROTOCOL_VERSION):
@@ -146,15 +152,6 @@ def _judgeClosed(link: LinkObservation) -> LinkStatus:
     return lookingAt(link.address)
 
 
-def notInstalled() -> LinkStatus:
-    """Return the status of a Slicer without the extension that brings the connector."""
-    return LinkStatus(
-        LinkState.NOT_INSTALLED,
-        _("The extension SlicerOpenIGTLink is not installed."),
-        _("Install it in the Extensions Manager and restart Slicer."),
-    )
-
-
 def judgeFinding(finding: ProbeResult, address: str) -> LinkStatus:
     """Return in words who answers at an address where no connection is wanted."""
     if finding.peer in _ABSENT:
@@ -181,7 +178,6 @@ def judgeFinding(finding: ProbeResult, address: str) -> LinkStatus:
 
 
 def lookingAt(address: str) -> LinkStatus:
-    """Return the status during the test of what answers."""
     sentence = _("Looking for a simulator at {address}.").format(address=address)
     return LinkStatus(LinkState.LOOKING, sentence)
 

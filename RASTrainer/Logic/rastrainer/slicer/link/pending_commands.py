@@ -21,6 +21,7 @@ MAX_AT_ONCE = 16
 """Most commands without an answer; the simulator carries out as many at once."""
 SENDING_S = 0.01
 """Time limit for sending in one turn: sending blocks while the simulator does not read."""
+_LOST = Reply(False, _("The connection to the simulator was lost."))
 
 
 @dataclass
@@ -87,7 +88,7 @@ class PendingCommands:
         if isOpen:
             self._sendSome()
         else:
-            replies += [(request.onReply, _lost()) for request in self._waiting]
+            replies += [(request.onReply, _LOST) for request in self._waiting]
             self._waiting.clear()
         for onReply, reply in replies:
             self._guard.run("The reply to a command", onReply, reply)
@@ -121,12 +122,8 @@ class PendingCommands:
             except InputError:
                 return Reply(False, _("The simulator's answer cannot be read."))
         if not isOpen:
-            return _lost()
+            return _LOST
         if not command.IsInProgress() or self._clock() > request.deadline:
             sentence = _("The simulator did not answer {name}.")
             return Reply(False, sentence.format(name=request.name))
         return None
-
-
-def _lost() -> Reply:
-    return Reply(False, _("The connection to the simulator was lost."))

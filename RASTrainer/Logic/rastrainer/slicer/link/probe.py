@@ -30,12 +30,7 @@ _TLS_ALERT = b"\x15\x03"
 
 
 class PeerRecognition:
-    """Takes the bytes of one peer as they come.
-
-    Attributes:
-        peer: who it is, as far as that is certain; else None.
-        version: of the protocol, where it is a simulator.
-    """
+    """Takes the bytes of one peer as they come; `peer` is None until it is certain who it is."""
 
     def __init__(self) -> None:
         self.peer: Peer | None = None
@@ -45,7 +40,6 @@ class PeerRecognition:
         self._reader = MessageReader({Status.TYPE: MAX_STATUS_BYTES})
 
     def feed(self, data: bytes) -> None:
-        """Take what has arrived."""
         self._size += len(data)
         self._start += data[: max(0, 8 - len(self._start))]
         known = (*_HEADERS, *_WEB_PAGES, _TLS_ALERT)
@@ -132,7 +126,7 @@ class Probe:
 
     def process(self) -> ProbeResult | None:
         """Let the thread run for some milliseconds; return who answers once that is known."""
-        self._job.yieldTime(POLL_S)
+        self._job.thread.join(POLL_S)
         if self._job.isDone:
             peer = self._job.outcome.result()
         elif self._clock() > self._deadline:
@@ -145,7 +139,6 @@ class Probe:
         return ProbeResult(peer, self._ip, self._recognition.version)
 
     def close(self) -> None:
-        """Stop asking."""
         self._job.leave()
         with contextlib.suppress(OSError):  # It may not be connected.
             self._socket.shutdown(socket.SHUT_RDWR)

@@ -43,56 +43,55 @@ def findSkin(
     return found
 
 
-class HeadPreview:
-    """A model of the head that is found, and a segment of it that the Segment Editor may change."""
+def showHead(run: Run, volumeNode: Any, settings: HeadSettings, progress: Progress) -> list[str]:
+    """Show the head in a `vtkMRMLScalarVolumeNode`; return warnings, one sentence each.
 
-    def __init__(self, scene: Any, run: Run) -> None:
-        self._scene = scene
-        self._run = run
+    That is a model of it, and a segment that the Segment Editor may change.
+    """
+    from rastrainer.slicer.head.volume import showSegment
 
-    def show(self, volumeNode: Any, settings: HeadSettings, progress: Progress) -> list[str]:
-        """Show the head in a `vtkMRMLScalarVolumeNode`; return warnings, one sentence each."""
-        from rastrainer.slicer.head.volume import showSegment
+    found, skin, warnings = findSkin(run, volumeNode, settings, progress)
+    scene = volumeNode.GetScene()
+    draft = findOrAddNode(scene, SEGMENTATION, Role.HEAD_SEGMENT, "Head to be edited")
+    model = findOrAddNode(scene, MODEL, Role.HEAD_PREVIEW, "Head as found")
+    for node in (draft, model):
+        # It is shown where it was found.
+        node.SetAndObserveTransformNodeID(None)
+    showSegment(draft, found)
+    draft.SetReferenceImageGeometryParameterFromVolumeNode(volumeNode)
+    draft.SetAttribute(PREVIEWED_ATTRIBUTE, volumeNode.GetID())
+    draft.SetAttribute(SETTINGS_ATTRIBUTE, repr(settings))
+    model.SetAndObservePolyData(meshPolyData(skin))
+    model.GetDisplayNode().SetColor(SKIN_COLOR)
+    for node in (draft, model):
+        node.SetDisplayVisibility(True)
+    return warnings
 
-        found, skin, warnings = findSkin(self._run, volumeNode, settings, progress)
-        draft = findOrAddNode(self._scene, SEGMENTATION, Role.HEAD_SEGMENT, "Head to be edited")
-        model = findOrAddNode(self._scene, MODEL, Role.HEAD_PREVIEW, "Head as found")
-        for node in (draft, model):
-            # It is shown where it was found.
-            node.SetAndObserveTransformNodeID(None)
-        showSegment(draft, found)
-        draft.SetReferenceImageGeometryParameterFromVolumeNode(volumeNode)
-        draft.SetAttribute(PREVIEWED_ATTRIBUTE, volumeNode.GetID())
-        draft.SetAttribute(SETTINGS_ATTRIBUTE, repr(settings))
-        model.SetAndObservePolyData(meshPolyData(skin))
-        model.GetDisplayNode().SetColor(SKIN_COLOR)
-        for node in (draft, model):
-            node.SetDisplayVisibility(True)
-        return warnings
 
-    def hide(self, volumeNode: Any) -> None:
-        """Hide the draft, and a rendering of its volume: the result is shown instead."""
-        for className, role in ((SEGMENTATION, Role.HEAD_SEGMENT), (MODEL, Role.HEAD_PREVIEW)):
-            for node in nodesOf(self._scene, className, role):
-                node.SetDisplayVisibility(False)
-        for index in range(volumeNode.GetNumberOfDisplayNodes()):
-            display = volumeNode.GetNthDisplayNode(index)
-            if display is not None and display.IsA("vtkMRMLVolumeRenderingDisplayNode"):
-                display.SetVisibility(False)
+def hideHead(scene: Any, volumeNode: Any) -> None:
+    """Hide the draft, and a rendering of its volume: the result is shown instead."""
+    for className, role in ((SEGMENTATION, Role.HEAD_SEGMENT), (MODEL, Role.HEAD_PREVIEW)):
+        for node in nodesOf(scene, className, role):
+            node.SetDisplayVisibility(False)
+    for index in range(volumeNode.GetNumberOfDisplayNodes()):
+        display = volumeNode.GetNthDisplayNode(index)
+        if display is not None and display.IsA("vtkMRMLVolumeRenderingDisplayNode"):
+            display.SetVisibility(False)
 
-    def segment(self, volumeNode: Any, settings: HeadSettings) -> SegmentImage | None:
-        """Return the segment of the head that is shown of a volume, None where none is."""
-        from rastrainer.slicer.head.volume import SEGMENT_NAME, readSegment
 
-        node = findNode(self._scene, SEGMENTATION, Role.HEAD_SEGMENT)
-        if node is None or node.GetAttribute(PREVIEWED_ATTRIBUTE) != volumeNode.GetID():
-            return None
-        if node.GetAttribute(SETTINGS_ATTRIBUTE) != repr(settings):
-            raise InputError(
-                _(
-                    "The threshold or the cut has been changed since the head was found: find the "
-                    "head again, or reset it."
-                )
+def editedHead(volumeNode: Any, settings: HeadSettings) -> SegmentImage | None:
+    """Return the segment of the head that is shown of a volume, None where none is."""
+    from rastrainer.slicer.head.volume import SEGMENT_NAME, readSegment
+
+    node = findNode(volumeNode.GetScene(), SEGMENTATION, Role.HEAD_SEGMENT)
+    if node is None or node.GetAttribute(PREVIEWED_ATTRIBUTE) != volumeNode.GetID():
+        return None
+    if node.GetAttribute(SETTINGS_ATTRIBUTE) != repr(settings):
+        raise InputError(
+            _(
+                "The threshold or the cut has been changed since the head was found: find the "
+                "head again, or reset it."
             )
-        segment = node.GetSegmentation().GetSegmentIdBySegmentName(SEGMENT_NAME)
-        return readSegment(node, segment)
+        )
+    segment = node.GetSegmentation().GetSegmentIdBySegmentName(SEGMENT_NAME)
+    return readSegment(node, segment)

@@ -50,7 +50,6 @@ class LandmarkPoints(UndoablePoints):
         )
 
     def show(self, landmarks: Sequence[Landmark]) -> None:
-        """Replace all landmarks."""
         node = self._list()
         self.remember(node)
         putPoints(node, [PlacedPoint(each.name, each.position_ras.tolist()) for each in landmarks])
@@ -105,7 +104,6 @@ class LandmarkLogic:
             return self._files.run(words, progress, mayFail=True)
 
     def save(self, scenario: Scenario, title: str, progress: Progress = no_progress) -> Scenario:
-        """Copy a scenario with the landmarks of the scene, and return the copy."""
         with self._written() as path:
             plan = ["--landmarks", str(path)]
             return self._files.saveWith(plan, scenario.name, title, progress)

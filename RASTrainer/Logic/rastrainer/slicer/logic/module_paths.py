@@ -14,9 +14,7 @@ class ModulePaths:
     """Where the session reads and writes files.
 
     Attributes:
-        assets: folder of scenarios, robots and published studies.
         python: that sets the simulator up, runs it, and does long work in separate processes.
-        simulator: private folder of the simulator.
         study: file of the study, until another is chosen.
         records: folder of the journals of the simulator that is started from here.
         library: folder of the user's own scenarios, which the simulator knows too.

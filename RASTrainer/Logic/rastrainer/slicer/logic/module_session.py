@@ -76,13 +76,7 @@ class ModuleSession:
         settings: Settings | None = None,
         callSoon: CallSoon = lambda _work: None,
     ) -> None:
-        """Open a session.
-
-        Args:
-            findKit: returns the factory of the connector; None if it is not installed.
-            settings: of the user; without them what the user chooses is forgotten at the end.
-            callSoon: has something called in the application's next turn.
-        """
+        """Without `settings`, what the user chooses is forgotten at the end."""
         self.places = places
         self.settings = settings or Settings()
         self.layout = BorrowedLayout(scene)
@@ -157,7 +151,6 @@ class ModuleSession:
         """Open the present study, or begin it; this thread draws the window and waits for no lock.
 
         Raises:
-            InputError: the file is no study, or cannot be used.
             StudyBusyError: another program has it locked.
         """
         return Study.open(self.studyPlace, self._lockWait, make_folder=True)
@@ -186,9 +179,6 @@ class ModuleSession:
         """Return how long the next `process` may wait; None: until `woken` is emitted.
 
         Nothing reports what other programs write into the study, or that time has passed.
-
-        Args:
-            isEntered: someone looks at the module.
         """
         if self.simulator.isChanging or self.replay.isReleasing:
             return SOON_S
@@ -217,7 +207,8 @@ class ModuleSession:
         self.files.process()
         followPlacement(self._scene)
         self.slices.process()
-        if self._watch.takeChange():
+        if self._watch.hasChanged:
+            self._watch.hasChanged = False
             self.sceneChanged.emit()
         if self._second != int(time.monotonic()):
             self._second = int(time.monotonic())
@@ -252,7 +243,7 @@ class ModuleSession:
         self.simulator.close()
 
     def _isTrialOpen(self) -> bool:
-        return self.link.isOpen and self.training.status.isOpen
+        return self.link.seen.isOpen and self.training.status.isOpen
 
     def _showTrainees(self, *_values: Any) -> None:
         """Let each panel show the changed study in a separate turn."""

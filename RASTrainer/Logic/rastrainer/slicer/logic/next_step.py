@@ -61,21 +61,15 @@ class WorkflowState:
     """State of a session.
 
     Attributes:
-        program: state of the simulator's process, if Slicer has started it.
-        programSentence: what happened to it last.
-        needsSetup: the simulator has to be set up before it can be started here.
         isElsewhere: the simulator is to be on another computer.
         runningSentence: that a simulator runs already which was not started from here; empty where
             none does.
         trainee: pseudonym of the chosen trainee; empty if none is.
         hasPracticed: the chosen trainee has played before, be it the trial run alone.
         isLearning: the chosen trainee does the tutorial before the trial run.
-        isLoading: the simulator is loading a scenario, and starts no trial.
         isUnscored: the trial that was registered last could not be kept or scored.
         hasNewResult: a trial of the chosen trainee was scored and has not been viewed.
         isResultShown: the score was viewed last.
-        studyStep: next step of the chosen trainee in the study; None without one.
-        studySentence: the same for people.
     """
 
     link: LinkStatus

@@ -74,10 +74,7 @@ class ProcedureLogic(Listening):
     simulator waits for that as long as Slicer is connected. Nothing is revealed by it.
 
     Attributes:
-        changed: emits nothing, whenever `status` has changed.
-        outcomeChanged: emits nothing, whenever `outcome` has changed.
         answered: emits the error of each command, empty if it was accepted.
-        status: of the trial's procedure.
         outcome: of the procedure that was scored last; None before, and during the next one.
         isRegistrationFailed: whether the touches that wait for it could not be registered; the
             reason has been emitted by `answered`.

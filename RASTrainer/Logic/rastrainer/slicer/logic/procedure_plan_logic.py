@@ -136,7 +136,6 @@ class ProcedurePlanLogic:
         plan: PlanDescription,
         progress: Progress = no_progress,
     ) -> Scenario:
-        """Copy a scenario with the plan, and return the copy."""
         with tempfile.TemporaryDirectory() as temporary:
             words = ["--procedure", str(self._write(Path(temporary), plan))]
             return self._files.saveWith(words, scenario.name, title, progress)

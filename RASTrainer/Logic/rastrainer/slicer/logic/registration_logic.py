@@ -11,7 +11,6 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.registration.fits import RIGID
-from rastrainer.registration.registration import Registration
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.logic.registration_comparison import Comparison, compareFits
 from rastrainer.slicer.scene.error_colors import (
@@ -22,7 +21,13 @@ from rastrainer.slicer.scene.error_colors import (
 )
 from rastrainer.slicer.scene.nodes import Role, findNode, surfaceOf, worldPoints
 from rastrainer.slicer.scene.plan_points import LIST
-from rastrainer.slicer.scene.registration_input import Choices, SkinReader, readPairs, snapshot
+from rastrainer.slicer.scene.registration_input import (
+    Choices,
+    SkinNormals,
+    readPairs,
+    readSkin,
+    snapshot,
+)
 from rastrainer.slicer.scene.scenario_nodes import TASK_ATTRIBUTE
 from rastrainer.slicer.scene.tables import showFits, showResiduals
 from rastrainer.slicer.scene.trial_scene import checkSameTask, showRegistration
@@ -58,7 +63,8 @@ class RegistrationLogic:
         self._chosen = ["", "", ""]
         self._history: list[Choices] = [Choices()]
         self._seen: tuple = ()
-        self._skins = SkinReader()
+        self._surface: tuple = ()
+        self._skin: SkinNormals | None = None
         self._request: Request | None = None
 
     @property
@@ -69,11 +75,6 @@ class RegistrationLogic:
     @property
     def canUndo(self) -> bool:
         return len(self._history) > 1
-
-    @property
-    def shown(self) -> Registration | None:
-        """The fit of the chosen kind; the rigid one where the pairs do not allow that kind."""
-        return None if self.comparison is None else self.comparison.shown
 
     @property
     def transform(self) -> Any | None:
@@ -119,7 +120,6 @@ class RegistrationLogic:
             self._compute()
 
     def undo(self) -> None:
-        """Undo the last change."""
         if self.canUndo:
             self._history.pop()
             self._compute()
@@ -156,7 +156,9 @@ class RegistrationLogic:
         self._seen = self._snapshot()
         self._request = None
         head = self._head()
-        skin = self._skins.read(head)
+        if surfaceOf(head) != self._surface:
+            self._surface, self._skin = surfaceOf(head), readSkin(head)
+        skin = self._skin
         if skin is not None and fixed is not None and not skin.knows(worldPoints(fixed)):
             # Before they are touched: it takes long.
             self._work.do(partial(skin.findNormals, worldPoints(fixed)), lambda _none: None)
@@ -191,10 +193,6 @@ class RegistrationLogic:
             return
         scene, shown, fits = self._scene, comparison.shown, comparison.fits
 
-        def showTransform() -> None:
-            moving, fixed, _target = self.lists()
-            showRegistration(scene, shown, moving, fixed)
-
         def showTables() -> None:
             showResiduals(scene, shown, comparison.leaveOneOut.get(shown.kind))
             showFits(scene, list(fits.values()), [comparison.errors.get(kind) for kind in fits])
@@ -211,7 +209,10 @@ class RegistrationLogic:
             if request is self._request and None not in self.lists()[:2]:
                 show()
 
-        for show in (showTransform, showTables, showOnHead, finish):
+        self._work.later(
+            lambda: showIfPresent(lambda: showRegistration(scene, shown, *self.lists()[:2]))
+        )
+        for show in (showTables, showOnHead, finish):
             self._work.later(partial(showIfPresent, show))
 
     def _colorHead(self, errors: np.ndarray | None) -> None:

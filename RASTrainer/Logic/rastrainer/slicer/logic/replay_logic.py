@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -55,13 +56,7 @@ class ReplayLogic:
         isTrialOpen: Callable[[], bool] = lambda: False,
         isBeingScored: Callable[[str], bool] = lambda _trialId: False,
     ) -> None:
-        """Show trials again.
-
-        Args:
-            robot: folder of the URDF.
-            isTrialOpen: returns whether the scene shows a trial that is being played.
-            isBeingScored: returns whether a trial is being scored, which gives feedback, too.
-        """
+        """`robot` is the folder of the URDF; a trial that is being scored gets feedback by that."""
         self.feedbackFound = Signal()
         self.shown = Signal()
         self.procedureShown = Signal()
@@ -113,12 +108,7 @@ class ReplayLogic:
         self._until = None
 
     def show(self, trial: StoredTrial, progress: Progress = no_progress) -> None:
-        """Show a trial again, from its beginning.
-
-        Args:
-            progress: called with each step and the share of the work done, many times a second; it
-                may let the application draw, and may raise to cancel: then nothing is shown.
-        """
+        """Show a trial again from its beginning; if `progress` cancels, nothing is shown."""
         self._put(trial, progress)
         self._play(None)
 
@@ -131,10 +121,7 @@ class ReplayLogic:
         feedback = self.feedback(trial)
         interval = None if feedback is None else feedback.worst.replay_s
         if interval is None:
-            inBackground(
-                lambda r: self._services.run(READ_TRACK, r, self._services.records, trialId),
-                progress,
-            )
+            inBackground(partial(self._track, trialId), progress)
             raise InputError(_("The journal does not say when the worst touch was made."))
         self._put(trial, progress)
         goTo(self._services.scene, interval[0])

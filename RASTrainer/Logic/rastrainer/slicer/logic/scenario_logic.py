@@ -37,8 +37,9 @@ from rastrainer.slicer.scene.scenario_nodes import (
     showTask,
 )
 from rastrainer.slicer.scene.trial_scene import (
+    KIND_ATTRIBUTE,
+    PLANNED,
     followPlacement,
-    isPlanned,
     showOnlyTouchesOf,
     showPlannedPlace,
 )
@@ -85,16 +86,13 @@ class ScenarioLogic:
     def _showPlace(self, scenario: Scenario, taskName: str) -> None:
         fixed = showTask(self._scene, scenario, taskName)
         placed = findNode(self._scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
-        if placed is None or isPlanned(placed):
+        if placed is None or placed.GetAttribute(KIND_ATTRIBUTE) == PLANNED:
             showPlannedPlace(self._scene, scenario, capturedPointsNode(self._scene), fixed)
 
     def useHead(self, node: Any, progress: Progress = no_progress) -> tuple[Any, list[str]]:
-        """Make a model, or the skin of a volume, the displayed head.
+        """Make a model, or the skin of a volume, the displayed head; return it with warnings.
 
         The head that was one before is hidden, and is no longer ours to fill.
-
-        Returns:
-            The head's model, and warnings about its volume, one sentence each.
         """
         model, warnings = node, list[str]()
         if node.IsA("vtkMRMLVolumeNode"):
@@ -129,7 +127,6 @@ class ScenarioLogic:
             self._work.do(lambda: self._run(READ_LINKS, check, folder), self._addLinks, refuse)
 
     def forgetScene(self) -> None:
-        """Stop showing the robot: the scene was cleared."""
         self._isRobotComing = False
 
     @property
@@ -177,7 +174,6 @@ class ScenarioFiles:
         return load_scenario(folder)
 
     def importScenario(self, package: Path, progress: Progress = no_progress) -> Scenario:
-        """Unpack a scenario's zip file into the library."""
         folder = inBackground(lambda report: unpack(package, self._library, report), progress)
         self._cache.refresh()
         return load_scenario(folder)

@@ -21,7 +21,7 @@ from rastrainer.scenario.scenario import UNKNOWN_LICENSE, Scenario
 from rastrainer.scenario.setup import SetUp
 from rastrainer.scenario.writer import HeadDraft, write_draft
 from rastrainer.slicer.background_work import inBackground
-from rastrainer.slicer.logic.head_preview import HeadPreview
+from rastrainer.slicer.logic.head_preview import editedHead, hideHead, showHead
 from rastrainer.slicer.logic.scenario_logic import ScenarioFiles, planArguments
 from rastrainer.slicer.program.child_process import Run, runChild
 from rastrainer.slicer.scene.nodes import (
@@ -72,11 +72,9 @@ class ScenarioMaker:
     """What the panel New scenario does."""
 
     def __init__(self, scene: Any, files: ScenarioFiles, run: Run) -> None:
-        """`run` runs what finds and makes the head."""
         self._scene = scene
         self._files = files
         self._run = run
-        self._preview = HeadPreview(scene, run)
 
     def preview(
         self, volumeNode: Any, options: NewScenarioOptions, progress: Progress
@@ -85,7 +83,7 @@ class ScenarioMaker:
 
         The Segment Editor may change its segment; `make` then takes it as it is.
         """
-        return self._preview.show(volumeNode, _settings(options), progress)
+        return showHead(self._run, volumeNode, _settings(options), progress)
 
     def make(
         self, volumeNode: Any, options: NewScenarioOptions, progress: Progress
@@ -100,7 +98,7 @@ class ScenarioMaker:
             title,
             lambda folder: warnings.extend(self._plan(volumeNode, options, progress, folder)),
         )
-        self._preview.hide(volumeNode)
+        hideHead(self._scene, volumeNode)
         return scenario, warnings
 
     def check(self, volumeNode: Any, options: NewScenarioOptions, progress: Progress) -> list[str]:
@@ -119,7 +117,7 @@ class ScenarioMaker:
         from rastrainer.slicer.head.volume import imageOfNode
 
         image, settings = imageOfNode(volumeNode), _settings(options)
-        segment = self._preview.segment(volumeNode, settings)
+        segment = editedHead(volumeNode, settings)
         title = options.title.strip() or volumeNode.GetName()
         source = options.source.strip() or SOURCE.format(name=volumeNode.GetName())
         terms = options.license.strip() or UNKNOWN_LICENSE

@@ -67,12 +67,10 @@ class RunningSimulator:
 
     @property
     def canConnect(self) -> bool:
-        """Whether its address is known."""
         return self.holder is not None and self.holder.port > 0 and not self.isEnding
 
     @property
     def canEnd(self) -> bool:
-        """Whether its process is known."""
         return self.holder is not None and self.holder.pid > 0 and not self.isEnding
 
     def look(self) -> bool:
@@ -109,7 +107,6 @@ class RunningSimulator:
         self.changed.emit()
 
     def process(self) -> None:
-        """Check whether the simulator found is still there."""
         if self.holder is None or time.monotonic() < self._lookAt:
             return
         self.look()
@@ -152,14 +149,9 @@ class SimulatorLogic:
         self.program.changed.connect(self._followProgram)
 
     @property
-    def ownProgram(self) -> str:
-        """A `rastrainer` that the user has installed elsewhere; "" for the private folder's."""
-        return self._settings.get(PROGRAM)
-
-    @property
     def needsSetup(self) -> bool:
         """Whether the simulator has to be set up before it can be started."""
-        return not self.ownProgram and not self.setup.isCurrent
+        return not self._settings.get(PROGRAM) and not self.setup.isCurrent
 
     @property
     def isChanging(self) -> bool:
@@ -182,7 +174,8 @@ class SimulatorLogic:
 
     def command(self, arguments: Sequence[str]) -> list[str]:
         """Return what runs `rastrainer` with arguments such as `simulator --port 0`."""
-        ownProgram = self.ownProgram
+        # A `rastrainer` that the user has installed elsewhere; "" for the private folder's.
+        ownProgram = self._settings.get(PROGRAM)
         if ownProgram:
             if not Path(ownProgram).is_file():
                 raise InputError(_("There is no program {path}.").format(path=ownProgram))
@@ -210,7 +203,7 @@ class SimulatorLogic:
             self.program.stop()
 
     def startSetup(self, index: str = "", wheels: str = "") -> None:
-        """Start setting the simulator up, from a source of `pipArguments`."""
+        """Start the set-up, from a source of `pipArguments`."""
         if self.program.isRunning or self.running.look():
             raise InputError(_("End the simulator that is running before setting it up again."))
         self.setup.begin(index.strip(), Path(wheels) if wheels else None)

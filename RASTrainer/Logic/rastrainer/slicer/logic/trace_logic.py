@@ -84,7 +84,7 @@ class TraceLogic(Listening):
         isDue = self._clock() - self._asked >= PERIOD_S
         if wanted is None or wanted == self._shown or self._isAsking or not isDue:
             return
-        if self._scenario is None or not self._services.link.isOpen:
+        if self._scenario is None or not self._services.link.seen.isOpen:
             return
         if requestedFile(findNode(self._services.scene, MODEL, Role.HEAD_MODEL)):
             # The head that is to be colored is still being read.

@@ -47,13 +47,7 @@ class TraineeLogic:
         openPatiently: Callable[[], Study] | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Keep the trainees of a study.
-
-        Args:
-            records: folder of the simulator's journals, if it is on this computer.
-            openPatiently: opens the study in any thread, which may wait for a lock; as `openStudy`
-                when left out.
-        """
+        """`openPatiently` opens the study in any thread, which may wait for a lock."""
         self._openPatiently = openPatiently or openStudy
         self.changed = Signal()
         self.chosen = ""
@@ -117,20 +111,15 @@ class TraineeLogic:
         self.changed.emit()
         return trainee
 
-    def setConsent(self, consent: bool) -> None:
-        self.study.change_trainee(self.chosen, consent=consent)
-        self.changed.emit()
-
-    def setArchived(self, archived: bool) -> None:
-        self.study.change_trainee(self.chosen, archived=archived)
+    def change(self, **changes: bool) -> None:
+        """Change `consent` or `archived` of the chosen trainee."""
+        self.study.change_trainee(self.chosen, **changes)
         self.changed.emit()
 
     def delete(self, progress: Progress = no_progress) -> Erasure:
         """Delete the chosen trainee with all trials and journals, for good; return their numbers.
 
-        Args:
-            progress: called many times a second meanwhile, with a step once something is deleted;
-                it may let the application draw, and may raise to cancel as long as nothing is.
+        `progress` is called with a step once something is deleted, and may cancel until then.
         """
         from rastrainer.study.trainee_data import erase_trainee
 
@@ -153,11 +142,7 @@ class TraineeLogic:
         return erased
 
     def inStudy(self, do: Callable[[Study], T], progress: Progress = no_progress) -> T:
-        """Return what `do` returns, in the background, where it may wait for a lock.
-
-        Args:
-            progress: called many times a second meanwhile; it may let the application draw.
-        """
+        """Return what `do` returns, in the background, where it may wait for a lock."""
 
         def work(_report: Progress) -> T:
             with self._openPatiently() as study:

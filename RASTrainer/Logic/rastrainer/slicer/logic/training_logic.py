@@ -37,10 +37,8 @@ class TrialStatus:
     """State of the simulator's trial; without one, its phase is `idle`.
 
     Attributes:
-        nextPoint: label of the fiducial to touch, if any.
         touched: how many points are kept.
         total: how many there are to touch.
-        elapsedS: the trial's time, pauses left out.
         instruction: what the trainee reads.
         procedure: that the trial continues with; empty for the touches alone.
     """
@@ -73,6 +71,7 @@ class TrainingLogic(Listening):
         answered: emits the error of each command, empty if it was accepted.
         sceneShown: emits the `Scenario` of an open trial whose head and fiducials are now shown.
         learner: pseudonym of the trainee doing the tutorial before the trial run; empty if none.
+        loadings: how many scenarios the simulator is loading for Slicer; it refuses trials then.
     """
 
     def __init__(
@@ -97,7 +96,7 @@ class TrainingLogic(Listening):
         self._stateTime = 0.0
         self._shownTrial = ""
         self._total = FIDUCIAL_COUNT
-        self._loadings = 0
+        self.loadings = 0
         super().__init__(
             (link.stateChanged, self._follow),
             (link.pointsChanged, lambda _node: self.changed.emit()),
@@ -169,30 +168,25 @@ class TrainingLogic(Listening):
         self.command(CommandName.ABORT, {"trialId": trialId})
 
     @property
-    def isLoading(self) -> bool:
-        """Whether the simulator is loading a scenario for Slicer: it refuses trials meanwhile."""
-        return self._loadings > 0
-
-    @property
     def obstacle(self) -> str:
         """Why no trial can be started now, for any trainee; empty if one can."""
         if self._link.status.state is not LinkState.CONNECTED:
             return _("Connect to the simulator first.")
         if self.status.isOpen:
             return _("A trial is open: abort it or let it be registered first.")
-        return LOADING if self.isLoading else ""
+        return LOADING if self.loadings else ""
 
     def loadScenario(self, folder: str, done: Callable[[], None]) -> None:
         """Load another scenario into the simulator, between two trials; call `done` once it has."""
 
         def takeAnswer(reply: Reply) -> None:
-            self._loadings -= 1
+            self.loadings -= 1
             self.answered.emit(reply.error)
             if reply.ok:
                 done()
             self.changed.emit()
 
-        self._loadings += 1
+        self.loadings += 1
         self.changed.emit()
         self._link.send(
             CommandName.LOAD_SCENARIO, {"folder": folder}, takeAnswer, timeoutS=LOADING_S

@@ -153,7 +153,7 @@ class TrialLogic(DeliveryQueue):
             self._noteBusy(error)
             self.report(str(error))
             return
-        while self._unscored and self._services.link.isOpen:
+        while self._unscored and self._services.link.seen.isOpen:
             record = self._unscored.popleft()
             # Since the list was read it may have been scored.
             if record.trial_id in self._beingScored | self._scored | self._refused:

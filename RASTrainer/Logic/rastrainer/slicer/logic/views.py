@@ -31,14 +31,7 @@ WITH_PLOT = slicer.vtkMRMLLayoutNode.SlicerLayoutConventionalPlotView
 
 
 def jumpTo(scene: Any, position: Sequence[float], later: CallLater = callNow) -> None:
-    """Move all slice views to a point, one view after the other by `later`.
-
-    Their orientation stays.
-
-    Args:
-        position: (3,) float, RAS mm.
-        later: has each view moved; each cuts the images and all surfaces, the first time for long.
-    """
+    """Move all slice views to a point, RAS mm, each by `later`: it cuts the images and surfaces."""
     for view in nodesOfClass(scene, "vtkMRMLSliceNode"):
         later(partial(view.JumpSliceByOffsetting, *position))
 

@@ -226,7 +226,7 @@ class OwnProcess:
             if ended.exitStatus != 0 or not outcome.is_file():
                 reason = ended.lastLine or "it wrote nothing"
                 raise InputError(f"A process of Slicer's Python ended before it was done: {reason}")
-            kind, value = _read(outcome)
+            kind, value = pickle.loads(outcome.read_bytes())
         if kind == "refused":
             raise InputError(value)
         if kind == "missing":
@@ -245,7 +245,7 @@ def main(folder: str) -> None:
     """Do the task in a folder, and leave its outcome there."""
     path = Path(folder)
     try:
-        function, arguments, named = _read(path / TASK)
+        function, arguments, named = pickle.loads((path / TASK).read_bytes())
         outcome = "done", runHere(function, print_progress, *arguments, **named)
     except InputError as error:
         outcome = "refused", str(error)
@@ -261,8 +261,3 @@ def _write(path: Path, value: Any) -> None:
     """Write a value; arrays go straight to the file, which leaves Python's lock to others."""
     with path.open("wb") as file:
         pickle.dump(value, file, pickle.HIGHEST_PROTOCOL)
-
-
-def _read(path: Path) -> Any:
-    with path.open("rb") as file:
-        return pickle.load(file)

@@ -150,7 +150,6 @@ else:
             self._id = process.pid
 
         def end(self, isAsked: bool) -> None:
-            """Ask them to end, or kill them."""
             # Where they have all ended, or (macOS) those that have wait to be noticed.
             with contextlib.suppress(ProcessLookupError, PermissionError):
                 os.killpg(self._id, signal.SIGTERM if isAsked else signal.SIGKILL)

@@ -37,13 +37,10 @@ class SimulatorProgram:
     """Starts and stops `rastrainer simulator`; call `process` now and then.
 
     Attributes:
-        port: on which it listens when it is ready.
-        sentence: what happened last, for people.
         pageAddresses: where a browser or a headset finds the simulator's page.
         fingerprint: SHA-256 of the certificate of the pages in the local network; empty without.
         kinematics: what computes the robot's, such as "Pinocchio 3.9.0"; empty while not known.
         pairingCode: that admits a browser or a headset; known only to the program that started it.
-        ready: emits nothing when it is ready.
         changed: emits nothing, whenever a state, a sentence, an address or the code has changed.
         wroteLine: emits each line of its output.
     """

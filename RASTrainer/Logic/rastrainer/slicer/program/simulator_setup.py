@@ -51,8 +51,6 @@ class SimulatorSetup:
     """The private folder and the pip that fills it; call `process` now and then.
 
     Attributes:
-        folder: of the installed simulator.
-        package: what the module brings along for it.
         fetched: packages that pip has fetched, or is fetching.
         count: packages that it is to fetch on this computer.
         isInstalling: whether all are there and are being put into the folder.
@@ -77,7 +75,6 @@ class SimulatorSetup:
 
     @property
     def isRunning(self) -> bool:
-        """Whether a set-up is running."""
         return self._child is not None
 
     @property
@@ -143,7 +140,13 @@ class SimulatorSetup:
             return
         isOver, child = self._child.poll(), self._child
         for line in child.takeLines():
-            self._follow(line)
+            if BEGUN.match(line):
+                self.fetched = min(self.fetched + 1, self.count)
+            elif line.startswith(LEFT_OUT):
+                # Entries for other platforms and other versions of Python.
+                self.count -= 1
+            elif line.startswith(INSTALLING):
+                self.isInstalling = True
             self.progressed.emit(line)
         if not isOver:
             return
@@ -166,7 +169,6 @@ class SimulatorSetup:
             self._dropPartial()
 
     def command(self, arguments: Sequence[str]) -> list[str]:
-        """Return what starts the installed `rastrainer` with these arguments."""
         return private_command(self._python, self.folder, PROGRAM, *arguments)
 
     def _read(self, name: str) -> dict[str, Any]:
@@ -176,16 +178,6 @@ class SimulatorSetup:
             if isinstance(values, dict):
                 return values
         return {}
-
-    def _follow(self, line: str) -> None:
-        """Count the packages in a line of pip's output."""
-        if BEGUN.match(line):
-            self.fetched = min(self.fetched + 1, self.count)
-        elif line.startswith(LEFT_OUT):
-            # Entries for other platforms and other versions of Python.
-            self.count -= 1
-        elif line.startswith(INSTALLING):
-            self.isInstalling = True
 
     def _dropPartial(self) -> None:
         # What cannot be removed now is, before the next set-up.

@@ -70,7 +70,6 @@ def trim(folder: Path) -> tuple[int, int]:
 
 
 def size(folder: Path) -> int:
-    """Return how many bytes the files of a folder have."""
     return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
 
 
@@ -150,7 +149,6 @@ def drop_symbols(library: Path) -> None:
 
 
 def main() -> None:
-    """Trim the folder that the command line names."""
     os.environ["PYGAME_HIDE_SUPPORT_PROMPT"] = "1"
     folder = Path(sys.argv[1]).resolve()
     kept, removed = trim(folder)

@@ -168,7 +168,6 @@ def glyphsPolyData(
 
 
 def showResidualArrows(scene: Any, registration: Registration) -> Any:
-    """Show the arrows in a `vtkMRMLModelNode` and return it."""
     node = findOrAddNode(scene, "vtkMRMLModelNode", Role.RESIDUAL_ARROWS, "Residual arrows")
     with slicer.util.NodeModify(node):
         node.SetDescription(f"Residuals, {magnification(registration):g} times as long")

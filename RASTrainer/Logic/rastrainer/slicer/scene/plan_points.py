@@ -67,7 +67,6 @@ def placedPoints(node: Any | None, inRas: bool = False) -> list[PlacedPoint]:
 
 
 def putPoints(node: Any, points: Sequence[PlacedPoint]) -> None:
-    """Replace the points of a list or a line."""
     with slicer.util.NodeModify(node):
         places = np.array([point.position for point in points], dtype=float).reshape(-1, 3)
         setPoints(node, [point.label for point in points], places)
@@ -90,7 +89,6 @@ class UndoablePoints:
 
     @property
     def canUndo(self) -> bool:
-        """Whether a change can be undone."""
         return any(self._changed(*before) is not None for before in self._before)
 
     def undo(self) -> None:
@@ -108,7 +106,6 @@ class UndoablePoints:
         self._before.clear()
 
     def _changed(self, nodeId: str, before: list[PlacedPoint]) -> Any | None:
-        """Return a node whose points are different now."""
         node = self._scene.GetNodeByID(nodeId)
         return None if node is None or placedPoints(node) == before else node
 

@@ -71,7 +71,7 @@ def newPlanLine(scene: Any) -> Any:
 
 
 def removeLine(scene: Any, line: Any) -> int:
-    """Remove a line from the plan; return its place among the lines, for `restoreLine`."""
+    """Return the place that the line had, for `restoreLine`."""
     place = planLines(scene).index(line)
     scene.RemoveNode(line)
     return place

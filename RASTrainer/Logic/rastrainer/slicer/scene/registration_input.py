@@ -217,25 +217,14 @@ class SkinNormals:
             return None
 
 
-class SkinReader:
-    """Reads the surface of the scene's head, once for as long as it stays the same."""
+def readSkin(model: Any | None) -> SkinNormals | None:
+    """Return the skin of a `vtkMRMLModelNode`; None where there is no surface yet."""
+    from vtk.util.numpy_support import vtk_to_numpy
 
-    def __init__(self) -> None:
-        self._surface: tuple = ()
-        self._skin: SkinNormals | None = None
-
-    def read(self, model: Any | None) -> SkinNormals | None:
-        """Return the skin of a `vtkMRMLModelNode`; None where there is no surface yet."""
-        surface = surfaceOf(model)
-        if surface != self._surface:
-            from vtk.util.numpy_support import vtk_to_numpy
-
-            self._surface, self._skin = surface, None
-            if surface and model is not None:
-                mesh, cells = None, model.GetPolyData().GetPolys()
-                if cells.GetNumberOfCells() and cells.IsHomogeneous() == 3:
-                    triangles = vtk_to_numpy(cells.GetConnectivityArray()).reshape(-1, 3).copy()
-                    points = slicer.util.arrayFromModelPoints(model).astype(float)
-                    mesh = HeadMesh(points, triangles)
-                self._skin = SkinNormals(mesh)
-        return self._skin
+    if model is None or not surfaceOf(model):
+        return None
+    mesh, cells = None, model.GetPolyData().GetPolys()
+    if cells.GetNumberOfCells() and cells.IsHomogeneous() == 3:
+        triangles = vtk_to_numpy(cells.GetConnectivityArray()).reshape(-1, 3).copy()
+        mesh = HeadMesh(slicer.util.arrayFromModelPoints(model).astype(float), triangles)
+    return SkinNormals(mesh)

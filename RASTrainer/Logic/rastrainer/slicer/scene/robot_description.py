@@ -21,7 +21,6 @@ MAX_BYTES = 4 << 20
 
 
 def readUrdf(path: Path) -> Element:
-    """Return the root of a URDF file."""
     content = plain_xml(read_bytes(path, MAX_BYTES), f"The URDF {path}")
     try:
         return ElementTree.fromstring(content)

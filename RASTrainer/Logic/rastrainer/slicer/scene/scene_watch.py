@@ -40,12 +40,13 @@ class SceneWatch:
 
     Attributes:
         noticed: emits nothing, from inside VTK, whenever something is to be looked at soon.
+        hasChanged: whether what the panels show has changed; whoever has looked resets it.
     """
 
     def __init__(self, scene: Any) -> None:
         self.noticed = Signal()
         self._scene = scene
-        self._hasChanged = True
+        self.hasChanged = True
         self._tags: dict[str, list[int]] = {}
         self._sceneTags = [
             scene.AddObserver(scene.NodeAddedEvent, self._noteAdded),
@@ -60,11 +61,6 @@ class SceneWatch:
             self._scene.RemoveObserver(tag)
         for nodeId in list(self._tags):
             self._forget(self._scene.GetNodeByID(nodeId), nodeId)
-
-    def takeChange(self) -> bool:
-        """Return whether what the panels show has changed since the last call."""
-        hasChanged, self._hasChanged = self._hasChanged, False
-        return hasChanged
 
     @vtk.calldata_type(vtk.VTK_OBJECT)
     def _noteAdded(self, _scene: Any, _event: str, node: Any) -> None:
@@ -96,7 +92,7 @@ class SceneWatch:
                 node.RemoveObserver(tag)
 
     def _noteChange(self, *_event: Any) -> None:
-        self._hasChanged = True
+        self.hasChanged = True
         self.noticed.emit()
 
     def _noteIncoming(self, node: Any, _event: str) -> None:

@@ -51,7 +51,6 @@ class Row:
 
     @property
     def tip(self) -> str:
-        """The note with what goes beyond it."""
         return "\n".join(filter(None, (self.note, self.more)))
 
 

@@ -170,10 +170,6 @@ def showPlannedPlace(scene: Any, scenario: Scenario, moving: Any, fixed: Any) ->
     return node
 
 
-def isPlanned(transform: Any) -> bool:
-    return transform.GetAttribute(KIND_ATTRIBUTE) == PLANNED
-
-
 def followPlacement(scene: Any) -> None:
     """Show the robot where the touched points are shown: at the head, or in World."""
     node = findNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
