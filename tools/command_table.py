@@ -15,7 +15,6 @@ TABLE = re.compile(re.escape(HEAD) + r"(?:\|.*\n)*")
 
 
 def page() -> str:
-    """Return the page with the table as the entries have it."""
     rows = "".join(map(row, COMMANDS.values()))
     return TABLE.sub(lambda _: HEAD + rows, PAGE.read_text(encoding="utf-8"))
 

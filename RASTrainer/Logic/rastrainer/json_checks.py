@@ -163,7 +163,6 @@ def text(max_length: int = 64, min_length: int = 1) -> Callable[[Any], str]:
 
 
 def pseudonym(value: Any) -> str:
-    """Accept a trainee's pseudonym: short printable text without a space at either end."""
     if text()(value) != value.strip():
         raise ValueError("printable text without a space at its beginning or end")
     return value

@@ -70,7 +70,6 @@ class Presenter:
         self.updates: Subscribers[ViewUpdate] = Subscribers()
 
     def pictures(self, now: SimulationState) -> Pictures:
-        """Return the viewpoint of the pictures of a state."""
         raise NotImplementedError
 
     def ghost(self, now: SimulationState) -> tuple[np.ndarray, ...] | None:  # noqa: ARG002

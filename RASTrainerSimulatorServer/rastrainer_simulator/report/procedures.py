@@ -103,7 +103,6 @@ class ProcedureGroup:
 
     @property
     def trainees(self) -> dict[str, ProcedureGroup]:
-        """The procedures of each trainee, sorted by the pseudonym."""
         names = sorted({trial.trainee for trial, _found in self.done})
         return {name: ProcedureGroup.of(self.done, name=name) for name in names}
 

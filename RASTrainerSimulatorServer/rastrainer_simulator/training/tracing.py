@@ -39,7 +39,6 @@ def with_point(
 
 
 def point_event(state: TrainingState, now: TouchMoment) -> Event:
-    """Return the event of the point that was just traced."""
     assert state.trace is not None
     data = {**tip_data(now, state.trace.points[-1].position), "kept": len(state.trace.points)}
     return Event(EventKind.TRACE, now.sim_time, data)

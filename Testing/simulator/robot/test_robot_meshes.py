@@ -85,9 +85,11 @@ def test_the_comparison_finds_no_distance_between_equals_and_a_known_shift(tmp_p
 
 
 def _compared(official: Path) -> list[float]:
-    script = ROBOT.parent / "compare_meshes.py"
-    command = [sys.executable, script, "--official", official, "--samples", "800"]
-    output = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    module = "Testing.simulator.robot.compare_meshes"
+    command = [sys.executable, "-m", module, "--official", str(official), "--samples", "800"]
+    output = subprocess.run(
+        command, check=True, capture_output=True, text=True, cwd=Path(__file__).parents[3]
+    ).stdout
     means = re.findall(r"^\w+ to \w+: mean ([\d.]+) mm", output, re.MULTILINE)
     assert len(means) == 2
     return [float(mean) for mean in means]

@@ -195,7 +195,6 @@ def bind(widget: Any, name: str, settings: Settings, setting: Setting[Any]) -> N
 def bindChosen(
     combo: Any, entries: Sequence[tuple[str, str]], settings: Settings, setting: Setting[str]
 ) -> None:
-    """Let a combo box of these entries (text, data) keep the data of the chosen one."""
     offerEntries(combo, entries, settings.get(setting), setting.usual)
     combo.connect("activated(int)", lambda _index: settings.set(setting, chosenData(combo)))
 

@@ -126,7 +126,6 @@ class TraceFollower:
     """
 
     def __init__(self, scenario: Scenario) -> None:
-        """Read the head of a scenario."""
         self._scenario = scenario
         self._mesh = read_head_mesh(scenario.head_mesh)
         self._guide = trace_guide(scenario, self._mesh)

@@ -122,7 +122,6 @@ class TrainingSession:
 
     @property
     def trial_step(self) -> StudyStep | None:
-        """The same for the trainee of the present trial."""
         return self.services.assigned.steps.get(self.training.trainee)
 
     @property

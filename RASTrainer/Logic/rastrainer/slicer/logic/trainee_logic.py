@@ -112,7 +112,6 @@ class TraineeLogic:
         return trainee
 
     def change(self, **changes: bool) -> None:
-        """Change `consent` or `archived` of the chosen trainee."""
         self.study.change_trainee(self.chosen, **changes)
         self.changed.emit()
 

@@ -52,7 +52,6 @@ class TrialServices:
     run: Run = runHere
 
     def runWanted(self, name: str, *arguments: Any) -> Any:
-        """Return what `run` returns, in the background, as long as that is wanted."""
         return self.run(name, self.work.checkWanted, *arguments)
 
     def inStudy(self, do: Callable[[Study], T]) -> T:

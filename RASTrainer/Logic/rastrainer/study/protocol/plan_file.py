@@ -36,5 +36,4 @@ class PlanFile:
         return record_from_json(cls, others, what, only_known=True)
 
     def to_json(self) -> dict[str, Any]:
-        """Return the object that the file holds."""
         return {**self.VERSIONS, **record_to_json(self)}

@@ -1,6 +1,6 @@
 """Measure how far our iiwa 7 is from its official shape, in both directions.
 
-    python assets/robots/compare_meshes.py --official FOLDER [--samples N]
+    python -m Testing.simulator.robot.compare_meshes --official FOLDER [--samples N]
 
 FOLDER holds link_0.stl … link_7.stl, in meters, all in the base frame at q = 0 (or a folder
 `collision` with them). Points are drawn evenly over each robot's surface at q = 0 and kept where
@@ -10,15 +10,18 @@ taken. The tool is left out: it is ours.
 """
 
 import argparse
+import sys
 from pathlib import Path
 
 import numpy as np
 import trimesh
-from iiwa7_dimensions import LINK_NAMES, link_origins
-from make_iiwa7 import visual_parts
 
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.robot_shape import sphere_directions
+
+sys.path.insert(0, str(Path(__file__).parents[3] / "assets" / "robots"))
+from iiwa7_dimensions import LINK_NAMES, link_origins
+from make_iiwa7 import visual_parts
 
 DIRECTIONS = 128
 OPEN_FRACTION = 0.05
