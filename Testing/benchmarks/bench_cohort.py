@@ -31,7 +31,7 @@ def rows(quick: bool) -> list[dict]:
     finished = [trial for trial in played if trial.analysis is not None]
     success = len(finished) / len(jobs)
     faster = [
-        trial.record.completion_time_s / wall
+        trial.analysis.record.completion_time_s / wall
         for trial, wall in zip(played, seconds, strict=True)
         if trial.analysis is not None
     ]

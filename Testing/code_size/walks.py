@@ -133,7 +133,7 @@ def walk_from_trial_to_report(folder: Path) -> None:
 
     protocol = StudyProtocol("walk", "Walk", ("desktop", "hmd"), "balanced", ("task-1",), "fixed")
     jobs = trial_jobs(protocol, Population(), 1, 0)
-    trial = next(one for one in (play_job(job, PlaySettings()) for job in jobs) if one.analysis)
+    trial = next(one for one in (play_job(job, PlaySettings()).analysis for job in jobs) if one)
     path = folder / "study.db"
 
     def store(study: Study, number: int) -> None:
@@ -144,8 +144,7 @@ def walk_from_trial_to_report(folder: Path) -> None:
             mode=("desktop", "hmd")[number % 2],
             completion_time_s=trial.record.completion_time_s + number,
         )
-        found = trial.analysis
-        study.add_trial(record, found.fits.values(), found.target_errors, found.score)
+        study.add_trial(record, trial.fits.values(), trial.target_errors, trial.score)
 
     with Study.open(path) as study:
         for number in range(STUDY_TRIALS - 1):
