@@ -109,10 +109,19 @@ def accepted_value(each: RecordField) -> Any:
             each.read(candidate, "It", False)
         except InputError as error:
             words = re.search(r"must be (?:one of|a list of some of) (.+)\.$", str(error))
-            candidates += [words[1].split(", ")[0]] if words else []
+            offered = decoded(words[1].split(", ")[0]) if words else None
+            candidates += [offered] if offered not in (None, *candidates) else []
         else:
             return candidate
     raise AssertionError(f"no value for {each.key}: {each.hint}")
+
+
+def decoded(word: str) -> Any:
+    """Return an option that an error offers, as JSON or as text."""
+    try:
+        return json.loads(word)
+    except ValueError:
+        return word
 
 
 def nested(hint: Any) -> list[Any]:
