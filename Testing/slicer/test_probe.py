@@ -165,5 +165,5 @@ def test_probing_leaves_no_socket_open():
         probe.process()
         probe.close()
         probe.close()
-        probe._job._thread.join(60)
+        probe._job.thread.join(60)
         assert probe._socket.fileno() == -1

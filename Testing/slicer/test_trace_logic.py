@@ -16,6 +16,7 @@ from rastrainer.slicer.logic.trace_logic import DISTANCE_SCALARS, MODEL, TraceLo
 from rastrainer.slicer.logic.trial_services import TrialServices
 from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.scenario_nodes import SceneFileLoader
+from Testing.slicer.scene_bundle import load_bundle
 from Testing.slicer.simulator_double import run_logic_until, run_until_received
 from Testing.slicer.training_room import TRIAL, Room
 
@@ -190,7 +191,7 @@ def test_the_trace_is_kept_in_a_saved_scene(headless_scene, marked, tmp_path):
     places = tracing.shown.copy()
     tracing.close()
     headless_scene.save(tmp_path / "trace.mrb")
-    headless_scene.load(tmp_path / "trace.mrb")
+    load_bundle(headless_scene, tmp_path / "trace.mrb")
     tracing.scene = headless_scene.scene
     np.testing.assert_allclose(tracing.shown, places, atol=1e-3)
     assert tracing.node(Role.NEXT_PLACE).GetNumberOfControlPoints() == 1

@@ -99,7 +99,8 @@ def test_the_most_recently_started_trial_is_resumed_even_if_the_clock_was_set_ba
     assert last in names[0].name
     reading, interrupted = find_interrupted(tmp_path)
     assert reading.path == names[0]
-    assert interrupted.header["trainee"] == "P02"
+    assert interrupted is not None
+    assert reading.header["trainee"] == "P02"
     assert [read_journal(path).header["number"] for path in names] == [2, 1]
 
 

@@ -66,7 +66,7 @@ def test_the_tool_is_where_the_simulators_kinematics_place_it():
     robot = load_robot()
     kinematics, chain = make_kinematics(robot, "numpy"), readArmChain(URDF)
     postures = np.random.default_rng(5).uniform(robot.lower, robot.upper, (200, 7))
-    assert chain.moving == 7
+    assert chain.axes.any(axis=1).sum() == 7
     for q, pose in zip(postures, chain.toolToWorld(postures), strict=True):
         expected = kinematics.tip(q)
         np.testing.assert_allclose(pose[:3, :3], expected[:3, :3], atol=1e-9)

@@ -25,7 +25,10 @@ def exponent(learning, numbers, seeds):
     """Return the fitted b of the completion times of the same heads and hands."""
     population = Population(Skill(slip_at=None), 0.0, 0.0, learning)
     times = [
-        [played(population, "desktop", number, seed).record.completion_time_s for seed in seeds]
+        [
+            played(population, "desktop", number, seed).analysis.record.completion_time_s
+            for seed in seeds
+        ]
         for number in numbers
     ]
     return -np.polyfit(np.log(numbers), np.log(times).mean(axis=1), 1)[0]
