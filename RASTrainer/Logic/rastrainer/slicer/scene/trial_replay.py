@@ -106,7 +106,7 @@ def _fillScene(
     browser.SetIndexDisplayMode(browser.IndexDisplayAsIndexValue)
     browser.SetPlaybackRateFps(SAMPLE_HZ)
     rest(0.0)
-    _checkIsThere(browser)
+    _checkIsThere(placed, tool, touches, clearance, browser)
     times = trajectory.times_s[rows]
     total, done = 2 * len(rows) + len(trajectory.touches) + 1, 0
     shown = [
