@@ -153,7 +153,7 @@ export class ElementPanel extends Panel {
     // The tones of the root, whose background would be the picture's.
     picture.setAttribute("style", `${document.documentElement.style.cssText}; background: none`);
     const style = document.createElementNS(SVG, "style");
-    style.textContent = [...document.styleSheets].flatMap((sheet) => [...sheet.cssRules].map((rule) => rule.cssText)).join("\n");
+    style.textContent = styleSheet ||= pageStyle();
     const frame = document.createElementNS(SVG, "foreignObject");
     frame.setAttribute("width", "100%");
     frame.setAttribute("height", "100%");
@@ -228,6 +228,13 @@ export class ElementPanel extends Panel {
     context.textBaseline = "middle";
     context.fillText(clock.textContent!, x, y + height / 2);
   }
+}
+
+/** The page's style as text: put together once, as every picture holds it. */
+let styleSheet = "";
+
+function pageStyle(): string {
+  return [...document.styleSheets].flatMap((sheet) => [...sheet.cssRules].map((rule) => rule.cssText)).join("\n");
 }
 
 function clocksIn(parent: HTMLElement): HTMLElement[] {
