@@ -12,13 +12,13 @@ import vtk
 
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.registration.registration import Registration
+from rastrainer.slicer.polydata import meshPolyData
 from rastrainer.slicer.scene.error_colors import (
     RESIDUAL_SCALARS,
     arrowTips,
     glyphsPolyData,
     residualRange,
 )
-from rastrainer.slicer.scene.scenario_nodes import meshPolyData
 
 WIDTH, HEIGHT = 1800, 1080
 _VIEWS = ((0.0, 0.09, 0.45, 0.92), (0.45, 0.09, 0.9, 0.92))
