@@ -1,4 +1,4 @@
-"""A training place: the simulator with a gamepad, its window, and Slicer's side beside it."""
+"""A training place: the simulator with a gamepad, its window, and Slicer's side."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from Testing.simulator.net.views.served import ViewClient
 SLICER = (sys.executable, "-m", "rastrainer_headless.main")
 TIMEOUT_S = 600
 PATIENT = {"views": {"silentS": 10, "lostS": TIMEOUT_S}}
-"""A machine that is too busy to draw neither releases what is held nor pauses the trial."""
+"""A machine that is too busy to draw neither releases held keys nor pauses the trial."""
 
 
 class Lab:
@@ -32,11 +32,11 @@ class Lab:
 
     Attributes:
         simulator: the process, and its gamepad.
-        display, keyboard: those of the window.
+        display, keyboard: the window's display and keyboard.
         records: folder of the journals.
-        url: of the page.
-        code, key: by which a browser and other views join.
-        view: one that watches.
+        url: address of the page.
+        code, key: admit a browser and other views.
+        view: a spectator.
     """
 
     def __init__(self, folder: Path, *arguments: str, **preferences: str):

@@ -56,7 +56,7 @@ class Desk:
 
     @property
     def profiles(self) -> list[Path]:
-        """What the windows of this user have kept."""
+        """Files that the windows of this user have kept."""
         return list((self.home / "RASTrainer" / "window").iterdir())
 
 

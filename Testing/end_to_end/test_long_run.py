@@ -35,12 +35,12 @@ pytestmark = pytest.mark.skipif(
 TROUBLE = re.compile(r"error|traceback|critical", re.IGNORECASE)
 KEY = "the-views-key-of-this-long-run-only"
 MAX_GROWTH_MB = 8.0
-"""Growth of either process between the first fifth and the last: that of caches and studies."""
+"""Allowed growth of either process between the first fifth and the last, for caches and studies."""
 
 
 @dataclass(frozen=True)
 class Usage:
-    """Of a process at one moment: MB of memory in use and open descriptors."""
+    """A process at one moment: MB of memory in use and open descriptors."""
 
     resident_mb: float
     descriptors: int
@@ -69,7 +69,7 @@ class Run:
 
 
 def train(folder: Path, is_enough: Callable[[int], bool], speed: float) -> Run:
-    """Play trial after trial, each over a separate connection, a view and Slicer's side beside.
+    """Play trial after trial, each over a separate connection, with a view and Slicer's side.
 
     `is_enough` is asked with the number of trials played, before each trial.
     """

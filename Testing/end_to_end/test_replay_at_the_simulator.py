@@ -1,6 +1,6 @@
 """A trial that was played and scored over OpenIGTLink, shown again by the simulator's process.
 
-First by itself, then as the ghost beside the arm in the next trial.
+First alone, then as a ghost next to the arm in the next trial.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ def views(loop_thread, simulator, key):
 
 
 def shown(view):
-    """Return the name of the menu; None where none is open."""
+    """Return the name of the menu; None if none is open."""
     menu = view.screen.menu
     return menu and menu.name
 

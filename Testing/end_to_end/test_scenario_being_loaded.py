@@ -1,4 +1,4 @@
-"""While the simulator loads a head or settings, no trial starts on what is about to be replaced."""
+"""While the simulator loads a head or settings, no trial starts on the old ones."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ pytestmark = pytest.mark.skipif(os.name == "nt", reason="Windows has no named pi
 LOADING = ENGLISH["being set up"]
 PATIENCE_S = 120.0
 MORE_THAN_AT_ONCE = 6
-"""Trials that may not be started at once: refused ones do not count."""
+"""Starts that must not all succeed; refused starts do not count."""
 HELD = """
 import sys
 from pathlib import Path
@@ -185,7 +185,7 @@ def test_a_trial_waits_until_the_head_is_loaded_no_matter_who_starts_it(
     assert other.ask("MoveTipTo", positionMm=[450.0, 30.0, 420.0]).ok
     assert other.ask("Abort").ok
     assert simulator.stop()[0] == 0
-    # What was refused before left nothing behind that the trial depends on.
+    # The refused starts left nothing behind that the trial depends on.
     (journal,) = simulator.records.glob(f"*{SUFFIX}")
     assert replay(read_journal(journal), load_setup(ball)).difference is None
 

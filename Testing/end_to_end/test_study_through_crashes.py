@@ -85,7 +85,7 @@ class Lab:
 
 
 class View(ViewClient):
-    """What the trainee sees and clicks; it must be read all the time, like a view."""
+    """The trainee's view, in which they click; it must be read all the time."""
 
     def __enter__(self):
         self.join(kind="desktop")
@@ -182,7 +182,7 @@ def test_a_study_is_completed_although_slicer_and_the_simulator_are_killed_durin
 
 
 def check_study(progress, player):
-    """Everything was done once, in its order, with what was played and answered."""
+    """Every step was done once, in order, with the trials played and the answers given."""
     assert [(entry.step, entry.outcome) for entry in progress.entries] == [
         (name, "done")
         for name in (

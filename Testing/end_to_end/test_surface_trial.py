@@ -35,7 +35,7 @@ TIMEOUT_S = 120.0
 
 @pytest.fixture(scope="module")
 def seen(tmp_path_factory) -> dict:
-    """What was seen of the trial: its simulator is killed amid the second stroke."""
+    """Observations of a trial whose simulator is killed during the second stroke."""
     folder = tmp_path_factory.mktemp("surface")
     records, scenario_folder = folder / "records", write_landmarked(folder / "scenario")
     options = ("--scenario", str(scenario_folder), "--speed", SPEED)

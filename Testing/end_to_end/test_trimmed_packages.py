@@ -1,4 +1,4 @@
-"""What a set-up from Slicer keeps is enough: trials and planning run on it."""
+"""The packages that a set-up from Slicer keeps are enough for trials and planning."""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Whatever a view sends ends at worst that view."""
+"""Any message of a view ends at worst that view."""
 
 import secrets
 

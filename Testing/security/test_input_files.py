@@ -1,4 +1,4 @@
-"""Malicious input files are refused with a sentence, whichever loader gets them."""
+"""Every loader refuses malicious input files with a sentence."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Ways around the score that were tried on the real simulator, and what comes of each."""
+"""Cheats that were tried on the real simulator, and the outcome of each."""
 
 from __future__ import annotations
 
@@ -167,7 +167,7 @@ def test_neither_a_ghost_nor_a_replay_tells_a_client_where_the_head_is(place):
         if type(message.content) is Transform:
             poses.setdefault(message.device, []).append(np.array(message.content.matrix))
     assert poses.keys() <= POSES
-    # What moves on the screen is not the arm, which is at rest.
+    # The screen moves, not the arm, which is at rest.
     assert all(np.allclose(pose, each[0], atol=1e-3) for each in poses.values() for pose in each)
 
 

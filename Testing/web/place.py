@@ -47,7 +47,7 @@ class Place:
 
     Attributes:
         simulator: the process; its `url` is where the page is, its `code` pairs a browser.
-        view: one that watches.
+        view: a spectator.
         records: folder of the journals.
     """
 
@@ -142,7 +142,7 @@ class Trainee(StreamTrainee):
     def focus(self, item: str) -> None:
         """Move the focus to an item, and see that it stays there.
 
-        What is tapped is held until the next picture: where that takes long, the focus moves on.
+        A tapped key is held until the next picture: if that takes long, the focus moves on.
         """
         settled = 0
         while settled < SETTLED_STATES:
