@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import secrets
 import subprocess
 import sys
 from contextlib import ExitStack
@@ -13,7 +11,7 @@ from typing import IO
 
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.net.limits import LIMITS_FILE
-from Testing.end_to_end.simulator_process import SERVES
+from Testing.end_to_end.simulator_process import SERVES, paired_key
 from Testing.end_to_end.stream_trainee import WatchingView
 from Testing.end_to_end.virtual_display import VirtualDisplay, VirtualKeyboard
 from Testing.end_to_end.virtual_gamepad import SimulatorWithGamepad
@@ -43,10 +41,10 @@ class Lab:
         self._folder = folder
         self._preferences = {"order": "any", **preferences}
         self.records = folder / "records"
-        self.key = secrets.token_urlsafe(32)
         with ExitStack() as stack:
             self.simulator = stack.enter_context(self._start(*arguments))
             self.url, self.code = SERVES.search(self.simulator.next_line()).groups()
+            self.key = paired_key(self.url, self.code)
             thread = stack.enter_context(LoopThread())
             client = stack.enter_context(ViewClient(thread, self.url, self.key))
             self.view = WatchingView(client)
@@ -60,11 +58,7 @@ class Lab:
         config.mkdir(parents=True)
         (config / LIMITS_FILE).write_text(json.dumps(PATIENT))
         (config / "preferences.json").write_text(json.dumps(self._preferences))
-        os.environ["RASTRAINER_VIEW_KEY"] = self.key
-        try:
-            return SimulatorWithGamepad(self.records, "--view-port", "0", *arguments)
-        finally:
-            del os.environ["RASTRAINER_VIEW_KEY"]
+        return SimulatorWithGamepad(self.records, "--view-port", "0", *arguments)
 
     def __enter__(self) -> Lab:
         return self

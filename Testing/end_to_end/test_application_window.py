@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from Testing.end_to_end.simulator_process import SERVES, SimulatorProcess
+from Testing.end_to_end.simulator_process import SERVES, SimulatorProcess, paired_key
 from Testing.end_to_end.stream_trainee import WatchingView
 from Testing.end_to_end.virtual_display import VirtualDisplay, VirtualKeyboard
 from Testing.end_to_end.window_process import wait_until
@@ -16,7 +16,6 @@ from Testing.running_process import runs, started_by
 from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.simulator.net.views.served import ViewClient
 
-KEY = "k" * 32
 SIZE = (1280, 720)
 
 
@@ -30,13 +29,13 @@ class Desk:
             **os.environ,
             "HOME": str(self.home),
             "DISPLAY": display.name,
-            "RASTRAINER_VIEW_KEY": KEY,
         }
         options = ("--view-port", "0", "--no-gamepad", "--desktop")
         self.simulator = SimulatorProcess(folder / "records", *options, env=environment)
         self.url, self.code = SERVES.search(self.simulator.next_line()).groups()
         self.keyboard = VirtualKeyboard(display)
-        self.view = WatchingView(ViewClient(thread, self.url, KEY))
+        key = paired_key(self.url, self.code)
+        self.view = WatchingView(ViewClient(thread, self.url, key))
 
     def open_menu(self) -> None:
         """Press Enter in the window until the first menu has led to another."""

@@ -1,5 +1,4 @@
-"""A session by the keyboard alone, from the start menu to the result; the window crashes once.
-"""
+"""A session by the keyboard alone, from the start menu to the result; the window crashes once."""
 
 from __future__ import annotations
 

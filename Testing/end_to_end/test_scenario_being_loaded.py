@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import secrets
 import sys
 from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -52,12 +51,11 @@ class HeldSimulator(ViewedSimulator):
     """A simulator that loads a scenario only when a test lets it."""
 
     def __init__(self, folder):
-        self.key = secrets.token_hex(32)
         self._pipe = folder / "pipe"
         os.mkfifo(self._pipe)
         self.records = folder / "records"
         self.command = (sys.executable, "-c", HELD.format(pipe=str(self._pipe)))
-        super().__init__(self.records, key=self.key)
+        super().__init__(self.records)
 
     @contextmanager
     def being_loaded(self) -> Iterator[None]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import random
-import secrets
 import time
 
 import pytest
@@ -45,7 +44,7 @@ class Lab:
 
     def __init__(self, folder, thread):
         self.folder, self.port = folder, free_port()
-        self._thread, self._key = thread, secrets.token_hex(32)
+        self._thread = thread
         with Study.open(folder / STUDY) as study:
             study.create_trainee(TRAINEE, True)
             progress = StudyProgress(study)
@@ -62,14 +61,14 @@ class Lab:
     def start_simulator(self):
         """Start it on the port of the previous one."""
         words = ("--speed", "10", "--port", str(self.port))
-        self.simulator = ViewedSimulator(self.folder / RECORDS, *words, key=self._key)
+        self.simulator = ViewedSimulator(self.folder / RECORDS, *words)
         self.port = self.simulator.port
 
     def start_slicer(self):
         self.slicer = StudySide(self.folder, self.port)
 
     def view(self):
-        return View(self._thread, self.simulator.url, self._key)
+        return View(self._thread, self.simulator.url, self.simulator.key)
 
     def progress(self):
         with Study.open(self.folder / STUDY) as study:

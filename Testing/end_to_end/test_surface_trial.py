@@ -29,7 +29,6 @@ from Testing.simulator.landmarked import LANDMARKS, OVER_THE_FACE, write_landmar
 pytestmark = pytest.mark.soak
 
 SEED = 5
-KEY = "5" * 64
 TIMEOUT_S = 120.0
 
 
@@ -53,7 +52,7 @@ def seen(tmp_path_factory) -> dict:
         traced = trainee.state()["trace"]["kept"]
         wait_until(lambda: _written(records) >= traced, "the points of the stroke on the disk")
         simulator.kill()
-    with ViewedSimulator(records, *options, key=KEY) as simulator:
+    with ViewedSimulator(records, *options) as simulator:
         with Player(simulator.port) as player:
             trainee = TracingTrainee(player, scenario, SEED)
             seen["traced"], seen["paused"] = traced, trainee.state()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import secrets
 import signal
 import time
 from types import SimpleNamespace
@@ -108,10 +107,10 @@ def place(loop_thread, tmp_path_factory):
     config.mkdir()
     (config / "preferences.json").write_text('{"order": "any", "ghost": "own best"}')
     InstructorPin(config).set(PIN)
-    scenario, key, heard = load_scenario(COLIN), secrets.token_hex(32), []
+    scenario, heard = load_scenario(COLIN), []
     with (
-        ViewedSimulator(records, key=key) as simulator,
-        ViewClient(loop_thread, simulator.url, key) as client,
+        ViewedSimulator(records) as simulator,
+        ViewClient(loop_thread, simulator.url, simulator.key) as client,
         Board(loop_thread, simulator) as board,
         SlowPlayer(simulator) as player,
         Client(port=simulator.port, on_message=heard.append) as listener,

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import secrets
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -22,7 +20,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.flow.session.chosen_trial import FIRST_ID
 from Testing.end_to_end.onto_skin import lowered
-from Testing.end_to_end.simulator_process import SERVES, SimulatorProcess
+from Testing.end_to_end.simulator_process import SERVES, SimulatorProcess, paired_key
 from Testing.end_to_end.stream_trainee import StreamTrainee, WatchingView
 from Testing.end_to_end.virtual_gamepad import SimulatorWithGamepad
 from Testing.simulator.net.igtl.servers import LoopThread
@@ -68,18 +66,14 @@ class Place:
         (config / "preferences.json").write_text(json.dumps(preferences), encoding="utf-8")
         views = {camel_case(name): value for name, value in limits.items()}
         (config / "limits.json").write_text(json.dumps({"views": views}), encoding="utf-8")
-        key = secrets.token_urlsafe(32)
         options = ["--view-port", "0", "--seed", "7", *arguments]
         if not has_gamepad:
             options.append("--no-gamepad")
         process = SimulatorWithGamepad if has_gamepad else SimulatorProcess
-        os.environ["RASTRAINER_VIEW_KEY"] = key
-        try:
-            self.simulator = self._stack.enter_context(process(self.records, *options))
-        finally:
-            del os.environ["RASTRAINER_VIEW_KEY"]
+        self.simulator = self._stack.enter_context(process(self.records, *options))
         served = SERVES.search(self.simulator.next_line())
         self.simulator.url, self.simulator.code = served.groups()
+        key = paired_key(*served.groups())
         thread = self._stack.enter_context(LoopThread())
         watcher = self._stack.enter_context(ViewClient(thread, self.simulator.url, key))
         self.view = WatchingView(watcher)

@@ -15,7 +15,6 @@ from pathlib import Path
 
 from rastrainer.files.writing import make_private_folder, write_text
 from rastrainer.home_folder import home_folder
-from rastrainer_simulator.ops.processes import environment_without_secrets
 
 PROGRAMS = (
     *("google-chrome-stable", "google-chrome", "chromium", "chromium-browser"),
@@ -121,7 +120,6 @@ class ApplicationWindow:
             # It ends when this process does, even by a crash; only Linux has that.
             *([] if shutil.which("setpriv") is None else ["setpriv", "--pdeathsig", "TERM"]),
             *application_command(browser, page.as_uri(), page.parent / "profile"),
-            env=environment_without_secrets(),
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )

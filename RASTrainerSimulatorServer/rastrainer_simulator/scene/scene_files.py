@@ -22,7 +22,7 @@ from rastrainer.errors import InputError
 from rastrainer.home_folder import home_folder
 from rastrainer.python_environment import python_command
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.ops.processes import BELOW_NORMAL, environment_without_secrets
+from rastrainer_simulator.ops.processes import BELOW_NORMAL
 
 
 def setup_digest(setup: SimulationSetup) -> bytes:
@@ -164,7 +164,6 @@ class SceneFiles:
                 stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.PIPE,
-                env=environment_without_secrets(),
                 creationflags=BELOW_NORMAL,
             )
         except OSError as error:

@@ -70,10 +70,6 @@ class Sessions:
             write_private_json(self._boards, [each.hex() for each in self._hashes[role]])
         return key
 
-    def admit(self, key: str) -> None:
-        """Accept a view's key that was agreed on before the simulator was started."""
-        self._hashes[ViewRole.VIEW].append(_hash(key))
-
     def role(self, key: str) -> ViewRole | None:
         """Return what a key was given out for, None for no key; it takes the same time for all."""
         if not SHORTEST_KEY <= len(key) <= LONGEST_KEY:
