@@ -108,8 +108,8 @@ class ViewServer:
     async def start(self, port: int | None, certificates: Path | None = None) -> None:
         """Listen on this computer, and with a folder for certificates to the local network.
 
-        To the network by TLS: on the next port or, where that is taken, any free one. `port` 0 is
-        any free one, None the usual one or, where that is taken, any free one.
+        The network is served by TLS, on the next port or, if that is taken, any free one. `port` 0
+        is any free one, None the usual one or, where that is taken, any free one.
         """
         usual = DEFAULT_VIEW_PORT if port is None else port
         local = await _or_any_port(lambda one: self.listen(DEFAULT_HOST, one), usual, port is None)
