@@ -241,14 +241,14 @@ class CarriedTrainee(Trainee):
 
     def __init__(self, view: WatchingView, hands: object, client: Client):
         super().__init__(view, hands)
-        self._client = client
+        self.client = client
 
     def steer_to(self, place: np.ndarray, near: float, fine: bool = False) -> None:  # noqa: ARG002
         if self.menu is not None:
             # A machine that is too busy to draw counts as a headset that is not worn.
             self.choose("resume")
         target = {"positionMm": (MM_PER_M * place).tolist(), "speedMmS": 400}
-        reply = self._client.send_command("MoveTipTo", target, timeout=60)
+        reply = self.client.send_command("MoveTipTo", target, timeout=60)
         assert reply.ok, reply.error
         give_up = self.view.state["timeS"] + 4.0
         while np.linalg.norm(place - self.tip) > 0.002 and self.view.state["timeS"] < give_up:
@@ -266,7 +266,7 @@ class CarriedTrainee(Trainee):
         self.steer_to(place, 0.002)
         below = lowered(MM_PER_M * place, MM_PER_M * self.head_center)
         target = {"positionMm": below, "speedMmS": 400}
-        assert self._client.send_command("MoveTipTo", target, timeout=60).ok
+        assert self.client.send_command("MoveTipTo", target, timeout=60).ok
         self.until(lambda: self.view.state["proximity"] == "contact", f"contact at {label}")
         return True
 
@@ -276,7 +276,7 @@ class CarriedTrainee(Trainee):
             label = self.view.state["next"]
             self.approach(label, 0.004)
             self.lower_onto(label)
-            assert self._client.send_command("Capture", {}, timeout=60).ok
+            assert self.client.send_command("Capture", {}, timeout=60).ok
             self.until(lambda k=kept: self.touched > k, f"touch {label}")
 
 
