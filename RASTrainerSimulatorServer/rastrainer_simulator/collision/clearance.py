@@ -147,11 +147,9 @@ class HeadClearance:
     def set_pose(self, head_to_world: np.ndarray) -> None:
         """Set the head's pose, HeadToWorld (4, 4) float, m."""
         pose = np.array(head_to_world, dtype=float)
-        if pose.shape != (4, 4) or not np.isfinite(pose).all():
-            raise InputError("HeadToWorld should be a 4 × 4 matrix of finite numbers.")
         rotation = pose[:3, :3]
-        bent = np.abs(rotation @ rotation.T - np.eye(3)).max()
-        if bent > _RIGID or np.linalg.det(rotation) < 0.0 or (pose[3] != [0, 0, 0, 1]).any():
+        is_orthogonal = np.abs(rotation @ rotation.T - np.eye(3)).max() <= _RIGID
+        if not is_orthogonal or np.linalg.det(rotation) < 0.0:
             raise InputError("HeadToWorld should be rigid: a rotation and a translation only.")
         self._world_to_head = np.eye(4)
         self._world_to_head[:3, :3] = rotation.T
@@ -225,28 +223,24 @@ class HeadClearance:
     ) -> Nearest | None:
         """Return the point nearest to some capsules, if nearer than `limit`."""
         best, best_row = None, -1
+        to_head = self._world_to_head_rows
         for bound, row in sorted(zip(bounds, rows, strict=True)):
             if bound >= limit:
                 break
-            found = self._query(posed, row)
+            segment, radius = self._segments[row], self._arm.capsules[row].radius
+            pose = self._world_to_head @ posed.poses[self._bodies[row]]
+            segment.setRotation(pose[:3, :3])
+            segment.setTranslation(pose[:3, 3])
+            start, end = posed.ends[row].tolist()
+            found = self._head.nearest_to_segment(
+                segment, _moved(to_head, start), _moved(to_head, end), radius
+            )
             distance = found.distance_m
+            self._known[row] = (distance - _QUERY_ROUNDING, start, end)
             # Of two equally near capsules the first counts, whatever the order of the queries.
             if distance < limit or (distance == limit and row < best_row):
                 best, best_row, limit = found, row, distance
         return best
-
-    def _query(self, posed: PosedArm, row: int) -> Nearest:
-        segment, radius = self._segments[row], self._arm.capsules[row].radius
-        pose = self._world_to_head @ posed.poses[self._bodies[row]]
-        segment.setRotation(pose[:3, :3])
-        segment.setTranslation(pose[:3, 3])
-        start, end = posed.ends[row].tolist()
-        rows = self._world_to_head_rows
-        found = self._head.nearest_to_segment(
-            segment, _moved(rows, start), _moved(rows, end), radius
-        )
-        self._known[row] = (found.distance_m - _QUERY_ROUNDING, start, end)
-        return found
 
     def _in_world(self, nearest: Nearest) -> Nearest:
         x, y, z = nearest.normal

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -24,19 +23,6 @@ from rastrainer_simulator.collision.robot_shape import ArmCapsules, PosedArm, Ro
 from rastrainer_simulator.vectors import segment_distance
 
 
-@dataclass(frozen=True)
-class Surroundings:
-    """The table and the stand: lengths in m, World.
-
-    Attributes:
-        table_height: of the table top; the robot's base is fixed to it and is not checked.
-        stand_radius: of the upright column under the middle of the head's base; 0: no stand.
-    """
-
-    table_height: float = 0.0
-    stand_radius: float = 0.04
-
-
 def stand_pose(head_to_world: np.ndarray, base: np.ndarray) -> np.ndarray:
     """Return StandToWorld, (4, 4) float, m; `base` is the middle of the head's base, (3,) float."""
     stand_to_world = np.eye(4)
@@ -47,15 +33,15 @@ def stand_pose(head_to_world: np.ndarray, base: np.ndarray) -> np.ndarray:
 class TableClearance:
     """The least distance of the moving links and the tool to the table and to the stand."""
 
-    def __init__(self, arm: ArmCapsules, surroundings: Surroundings) -> None:
+    def __init__(self, arm: ArmCapsules, stand_radius: float, table_height: float) -> None:
         self._arm = arm
-        self._table = surroundings.table_height
-        self._stand_radius = surroundings.stand_radius
+        self._table = table_height
+        self._stand_radius = stand_radius
         self._stand: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
         self._distance_bounds = DistanceBounds(len(arm.capsules))
         fixed = np.where(arm.joints > 0, 0.0, -math.inf)
-        self._below = arm.radii + surroundings.table_height + fixed
-        self._around = arm.reach + surroundings.stand_radius + fixed
+        self._below = arm.radii + table_height + fixed
+        self._around = arm.reach + stand_radius + fixed
 
     def put_stand_under(self, base: np.ndarray) -> None:
         """Put the stand under the middle of the head's base (3,) float, World."""
@@ -144,21 +130,23 @@ class Collision:
         shape: RobotShape,
         head_vertices: np.ndarray,
         head_triangles: np.ndarray,
-        surroundings: Surroundings | None = None,
+        stand_radius: float = 0.04,
+        table_height: float = 0.0,
     ) -> None:
         """Build the shapes; takes about half a second for a head of 60,000 triangles.
 
         Args:
             head_vertices: (n, 3) float, m, head frame, whose z points to the head's top.
             head_triangles: (m, 3) int, a closed surface.
+            stand_radius: of the upright column under the middle of the head's base, m; 0: no stand.
+            table_height: of the table top, m; the robot's base is fixed to it and is not checked.
         """
         self._arm = ArmCapsules(shape)
         self._head = HeadClearance(HeadSurface(head_vertices, head_triangles), self._arm)
         self.nearest_to_point = self._head.nearest_to_point
         self._self = SelfClearance(self._arm)
-        surroundings = surroundings or Surroundings()
-        self.table_height = surroundings.table_height
-        self._table = TableClearance(self._arm, surroundings)
+        self.table_height = table_height
+        self._table = TableClearance(self._arm, stand_radius, table_height)
         self._ends = np.zeros((len(self._arm.capsules), 2, 3))
         self._traveled = 0.0
         self.set_head_pose(np.eye(4))
@@ -221,5 +209,5 @@ class Collision:
 
 def head_collision(shape: RobotShape, head: HeadMesh, furniture: Furniture) -> Collision:
     """Return what measures a robot against a head, RAS mm, and the table and stand around it."""
-    surroundings = Surroundings(stand_radius=furniture.stand.diameter_mm / 2.0 / MM_PER_M)
-    return Collision(shape, head.vertices / MM_PER_M, head.triangles, surroundings)
+    stand_radius = furniture.stand.diameter_mm / 2.0 / MM_PER_M
+    return Collision(shape, head.vertices / MM_PER_M, head.triangles, stand_radius)

@@ -107,14 +107,21 @@ class Contact:
             gap = min(REST, getattr(start.clearance, f"{broken}_m") + RECOVERY) - nearest.distance_m
             planes = (*path.half_spaces, _shifted(nearest.normal, gap, path.position))
             position = nearest_inside(path.position, planes)
-            corrected = None if position is None else Slide(position, planes)
-            if corrected is None:
+            if position is None:
                 break
-            path = corrected
+            path = Slide(position, planes)
         if not broken:
             return end
-        self._last = self._shortened(start, end, broken)
-        return replace(self._last, stopped_by=broken)
+        # The part of the motion that ends before the overlap, or the start.
+        before = max(getattr(start.clearance, f"{broken}_m"), 0.0)
+        share = _CAUTION * before / (before - getattr(end.clearance, f"{broken}_m"))
+        part = start
+        if share > _SHORTEST_SHARE:
+            part = self.at([a + share * (b - a) for a, b in zip(start.q, end.q, strict=True)])
+            if _broken(start.clearance, part.clearance):
+                part = start
+        self._last = part
+        return replace(part, stopped_by=broken)
 
     def _slide(self, start: Moved, tip: Vector, displacement: Vector) -> Slide:
         clearance, reach = start.clearance, length(displacement) + REST
@@ -129,17 +136,6 @@ class Contact:
         if above < reach:
             others.append(_shifted((0.0, 0.0, 1.0), min(REST - above, RECOVERY), tip))
         return slide(self._collision.nearest_to_point, tip, clearance.tip, displacement, others)
-
-    def _shortened(self, start: Moved, end: Moved, broken: str) -> Moved:
-        """Return the part of a motion that ends before the overlap, or the start."""
-        part_m = f"{broken}_m"
-        before = max(getattr(start.clearance, part_m), 0.0)
-        share = _CAUTION * before / (before - getattr(end.clearance, part_m))
-        if share > _SHORTEST_SHARE:
-            part = self.at([a + share * (b - a) for a, b in zip(start.q, end.q, strict=True)])
-            if not _broken(start.clearance, part.clearance):
-                return part
-        return start
 
 
 def _broken(start: Clearance, end: Clearance) -> str:
@@ -229,8 +225,7 @@ _STANDSTILL = 1e-9
 _EXACT = 1e-8
 
 
-@dataclass(frozen=True)
-class Slide:
+class Slide(NamedTuple):
     """Where the tip may go, and the planes (World) that limit it there."""
 
     position: Vector

@@ -13,7 +13,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.transforms import apply, rigid
 from rastrainer_simulator.robot.meshes import load_meshes
-from rastrainer_simulator.robot.model import RobotLink, RobotModel
+from rastrainer_simulator.robot.model import RobotLink, RobotModel, read_prepared
 from rastrainer_simulator.vectors import Vector
 
 _LONG = 1.35  # A solid longer than this times its width gets a capsule for each half.
@@ -153,6 +153,25 @@ class RobotShape:
     links: tuple[LinkShape, ...]
     tool: LinkShape
     tip_name: str
+
+
+def load_shape(model: RobotModel) -> RobotShape:
+    """Return the prepared shape of the robot, computed anew where its meshes are replaced."""
+    if any(part.replaced for part in model.meshes):
+        return robot_shape(model)
+    prepared = read_prepared()["shape"]
+    tool, *links = (
+        LinkShape(
+            body["name"],
+            body["joint"],
+            tuple(
+                Capsule(np.array(each["start"]), np.array(each["end"]), each["radius"])
+                for each in body["capsules"]
+            ),
+        )
+        for body in (prepared["tool"], *prepared["links"])
+    )
+    return RobotShape(tuple(links), tool, prepared["tip_name"])
 
 
 def robot_shape(model: RobotModel) -> RobotShape:

@@ -33,14 +33,13 @@ _EXAMPLES = {
 }
 
 
-def _is_input(device: InputDevice, name: object) -> bool:
-    if device is InputDevice.KEYBOARD:
-        return isinstance(name, str) and _KEY.fullmatch(name) is not None
-    return name in GAMEPAD_INPUTS
-
-
 def _table(device: InputDevice, usual: Table) -> Callable[[Any], Table]:
     """Accept an object of controls, each with its inputs; missing ones have their usual."""
+
+    def is_input(name: object) -> bool:
+        if device is InputDevice.GAMEPAD:
+            return name in GAMEPAD_INPUTS
+        return isinstance(name, str) and _KEY.fullmatch(name) is not None
 
     def check(value: Any) -> Table:
         if not isinstance(value, Mapping):
@@ -50,7 +49,7 @@ def _table(device: InputDevice, usual: Table) -> Callable[[Any], Table]:
             raise ValueError(f"an object without {min(unknown)[:40]!r}; its names are {known}")
         for name, inputs in value.items():
             is_list = isinstance(inputs, (list, tuple)) and 1 <= len(inputs) <= MAX_INPUTS
-            if not is_list or not all(_is_input(device, each) for each in inputs):
+            if not is_list or not all(map(is_input, inputs)):
                 raise ValueError(
                     f"an object, its {name} a list of 1 to {MAX_INPUTS} inputs, such as "
                     f"{_EXAMPLES[device]}"

@@ -155,10 +155,10 @@ class Controls:
     def allows(self, source: Source, control: ControlName | None = None) -> bool:
         """Return whether a source may act, and give it control if so."""
         if self.is_operator(source):
-            self._hold(source)
+            self.holder, self._idle = source, 0.0
             return True
         if control is ControlName.MENU and self._idle >= IDLE_S and self._may_be_taken():
-            self._hold(source)
+            self.holder, self._idle = source, 0.0
             self._listener.taken_over(source)
             return False
         self._listener.refused(source)
@@ -197,7 +197,7 @@ class Controls:
         if self.holder is None or (
             self.holder.station == source.station and (holding is None or holding.is_at_rest)
         ):
-            self._hold(source)
+            self.holder, self._idle = source, 0.0
 
     def _press_all(self, source: Source, state: InputState, names: list[str]) -> None:
         for name in names:
@@ -210,10 +210,6 @@ class Controls:
                 self._repeating = source, name, control
                 self._repeat_in = REPEAT_AFTER_S
             self._listener.pressed(control)
-
-    def _hold(self, source: Source) -> None:
-        self.holder = source
-        self._idle = 0.0
 
 
 DOWN_FROM = 0.6
@@ -234,8 +230,6 @@ down onto the skin, of 0.1 mm."""
 HOLD_AFTER_S, RAMP_S = 0.15, 0.6
 """What is held for longer speeds up, from the first on until the second."""
 
-_UNUSED = OperatorInput()
-
 
 class InputState:
     """What a source is doing.
@@ -253,14 +247,14 @@ class InputState:
         self.down: set[str] = set()
         self._again: set[str] = set()
         self._blocked: dict[str, float] = {}
-        self._sticks = _UNUSED
+        self._sticks = NEUTRAL_STICKS
         self._sticks_blocked = False
 
     @property
     def is_at_rest(self) -> bool:
         """Whether nothing is pressed or pushed."""
-        is_pushed = any(map(_is_pushed, self._inputs.values()))
-        return not self.down and self._sticks == _UNUSED and not is_pushed
+        is_pushed = any(value >= AT_REST_BELOW for value in self._inputs.values())
+        return not self.down and self._sticks == NEUTRAL_STICKS and not is_pushed
 
     def is_still_held(self, name: str) -> bool:
         """Return whether an input that is pressed is known to be held still.
@@ -280,16 +274,16 @@ class InputState:
         pressed = []
         for name, value in self._inputs.items():
             held = self._blocked.get(name, 1.0)
-            if not _is_pushed(value) or (held < DRIFT_BELOW and value > held + FURTHER):
+            if value < AT_REST_BELOW or (held < DRIFT_BELOW and value > held + FURTHER):
                 self._blocked.pop(name, None)
             if value >= DOWN_FROM and name not in self.down:
                 self.down.add(name)
                 pressed.append(name)
-                if self._is_key_or_button(name):
+                if self.device is InputDevice.KEYBOARD or name in BUTTONS:
                     self._pressed_s[name] = 0.0
             elif value < UP_BELOW:
                 self.down.discard(name)
-        self._end_presses()
+        self.advance(0.0)
         return pressed
 
     def set_key(self, code: str, is_down: bool) -> list[str]:
@@ -310,19 +304,22 @@ class InputState:
 
     def block(self) -> None:
         """Ignore what is held now until it is released."""
-        self._blocked = {name: value for name, value in self._inputs.items() if _is_pushed(value)}
+        self._blocked = {
+            name: value for name, value in self._inputs.items() if value >= AT_REST_BELOW
+        }
         self._pressed_s.clear()
         self._sticks_blocked = _are_pushed(self._sticks)
 
     def advance(self, dt: float) -> None:
         """Advance what is pressed by `dt` seconds, and end the steps of taps."""
-        for name in self._pressed_s:
+        for name in tuple(self._pressed_s):
             self._pressed_s[name] += dt
-        self._end_presses()
+            if self._pressed_s[name] >= STEP_S and name not in self.down:
+                del self._pressed_s[name]
 
     def sticks(self, bindings: Bindings) -> OperatorInput:
         table = bindings.table(self.device)
-        direct = _UNUSED if self._sticks_blocked else self._sticks
+        direct = NEUTRAL_STICKS if self._sticks_blocked else self._sticks
         is_fine = direct.fine or any(name in self.down for name in table[ControlName.FINE])
         step = FINE_STEP_PUSH if is_fine else STEP_PUSH
         right, forward, up = map(add, self.pushed(table, TRANSLATION, step), direct.translation)
@@ -344,7 +341,7 @@ class InputState:
             self._value(table[above], step) - self._value(table[below], step)
             for below, above in axes
         ]
-        is_pushed = any(_is_pushed(abs(value)) for value in pushed)
+        is_pushed = any(abs(value) >= AT_REST_BELOW for value in pushed)
         if self.device is InputDevice.GAMEPAD and not is_pushed:
             return (0.0,) * len(pushed)
         return tuple(pushed)
@@ -355,7 +352,7 @@ class InputState:
         for name in names:
             if name in self._blocked:
                 continue
-            if not self._is_key_or_button(name):
+            if self.device is InputDevice.GAMEPAD and name not in BUTTONS:
                 pushed = self._inputs.get(name, 0.0)
             elif name in self._pressed_s:
                 share = (self._pressed_s[name] - HOLD_AFTER_S) / (RAMP_S - HOLD_AFTER_S)
@@ -365,19 +362,6 @@ class InputState:
                 continue
             farthest = max(farthest, pushed)
         return farthest
-
-    def _end_presses(self) -> None:
-        """End the presses of what is released, but the steps of taps."""
-        for name, seconds in tuple(self._pressed_s.items()):
-            if seconds >= STEP_S and name not in self.down:
-                del self._pressed_s[name]
-
-    def _is_key_or_button(self, name: str) -> bool:
-        return self.device is InputDevice.KEYBOARD or name in BUTTONS
-
-
-def _is_pushed(value: float) -> bool:
-    return value >= AT_REST_BELOW
 
 
 def _are_pushed(sticks: OperatorInput) -> bool:

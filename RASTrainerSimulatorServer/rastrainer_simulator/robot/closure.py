@@ -105,7 +105,19 @@ def nearest_elbow(
     arm: CanonicalArm, circle: ElbowCircle, wrist: Vector, tool: Vector
 ) -> Vector | None:
     """Return the elbow nearest to φ = 0 that the tilts allow, or None."""
-    waves = _tilt_waves(arm, circle, wrist, tool)
+    # Values that are negative where the tilt of shoulder or wrist exceeds its limits.
+    up, back, out = (0.0, 0.0, 1.0), scale(tool, -1.0), dot(wrist, tool)
+    waves = []
+    low, high = arm.shoulder_cosines
+    if low > -1.0:
+        waves.append(circle.wave(up, -low * arm.upper))
+    if high < 1.0:
+        waves.append(circle.wave((0.0, 0.0, -1.0), high * arm.upper))
+    low, high = arm.wrist_cosines
+    if low > -1.0:
+        waves.append(circle.wave(back, out - low * arm.fore))
+    if high < 1.0:
+        waves.append(circle.wave(tool, high * arm.fore - out))
     if any(c + hypot(a, b) < 0.0 for a, b, c in waves):
         return None
     for angle in _nearest_first(waves):
@@ -147,23 +159,6 @@ def _pans_at(pans: dict[int, tuple[Wave, Wave]], angles: Sequence[tuple[float, .
             c, s = cos(angle), sin(angle)
             (ax, ay, az), (bx, by, bz) = sine, cosine
             waves.append((ax * c - bx * s, ay * c - by * s, az * c - bz * s))
-    return waves
-
-
-def _tilt_waves(arm: CanonicalArm, circle: ElbowCircle, wrist: Vector, tool: Vector) -> list[Wave]:
-    """Return values that are negative where the tilt of shoulder or wrist exceeds its limits."""
-    up, back, out = (0.0, 0.0, 1.0), scale(tool, -1.0), dot(wrist, tool)
-    waves = []
-    low, high = arm.shoulder_cosines
-    if low > -1.0:
-        waves.append(circle.wave(up, -low * arm.upper))
-    if high < 1.0:
-        waves.append(circle.wave((0.0, 0.0, -1.0), high * arm.upper))
-    low, high = arm.wrist_cosines
-    if low > -1.0:
-        waves.append(circle.wave(back, out - low * arm.fore))
-    if high < 1.0:
-        waves.append(circle.wave(tool, high * arm.fore - out))
     return waves
 
 

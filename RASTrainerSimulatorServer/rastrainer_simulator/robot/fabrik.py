@@ -16,7 +16,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import cos, dist, inf, sin, sqrt
 
-from rastrainer.errors import InputError
 from rastrainer_simulator.robot.closure import elbow_circle
 from rastrainer_simulator.robot.elbow_slide import LEAP, close_at, self_motion, squared_motion
 from rastrainer_simulator.robot.goal import (
@@ -27,9 +26,7 @@ from rastrainer_simulator.robot.goal import (
     FabrikSettings,
     Goal,
     Solution,
-    solve_rounded,
 )
-from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import RobotModel
 from rastrainer_simulator.robot.reaching import Reached, Start, reach_position, reach_wrist
 from rastrainer_simulator.robot.srs_arm import (
@@ -47,8 +44,6 @@ from rastrainer_simulator.vectors import ZERO, Vector, scale, subtract, unit
 # A warm start that would move a joint farther than this (rad) looks for an elbow that avoids it.
 _JUMP = 0.5
 _BENT = 1e-6
-# Rounding error of an exact S-R-S arm, m.
-_ROUNDING = 1e-12
 
 
 class Fabrik:
@@ -58,8 +53,6 @@ class Fabrik:
         self.settings = settings or FabrikSettings()
         self._frame = ArmFrame(model.geometry)
         self._arm = CanonicalArm.of(model.geometry)
-        exact = model.geometry.misfit < _ROUNDING
-        self._true = None if exact else make_kinematics(model)
 
     def solve(
         self,
@@ -72,30 +65,18 @@ class Fabrik:
         """Return joint angles inside the limits that bring the tool to a target in World.
 
         `target_position` (3,) is that of the tip, m; `target_direction` (3,) that of the tool, from
-        the wrist to the tip; `target_rotation` (3, 3) that of the tip's frame. Without direction
-        and rotation only the position counts. The posture is near to `q_start` (7,) rad.
+        the wrist to the tip; `target_rotation` (3, 3) that of the tip's frame, which takes
+        precedence. Without both only the position counts. The posture is near to `q_start` (7,)
+        rad.
         """
-        target = (target_position, target_direction, target_rotation, q_start)
-        if self._true:
-            return solve_rounded(self._solve, self._true, self.settings, *target)
-        return self._solve(*target)
-
-    def _solve(
-        self,
-        position: Sequence[float],
-        direction: Sequence[float] | None,
-        rotation: Sequence[Sequence[float]] | None,
-        q_start: Sequence[float],
-    ) -> Solution:
-        target = self._frame.position(position)
-        if rotation is None:
-            tool = None if direction is None else self._frame.direction(direction)
-            goal = Goal(target, tool, None)
-        elif direction is None:
-            x, y, z = self._frame.rotation(rotation)
-            goal = Goal(target, z, (x, y))
+        position = self._frame.position(target_position)
+        if target_rotation is not None:
+            x, y, z = self._frame.rotation(target_rotation)
+            goal = Goal(position, z, (x, y))
+        elif target_direction is not None:
+            goal = Goal(position, self._frame.direction(target_direction), None)
         else:
-            raise InputError("Give the tool a direction or a rotation, not both.")
+            goal = Goal(position, None, None)
         aim = goal.within_lengths(self._arm)
         start: Angles = self._frame.theta(q_start)
         links = chain(start)
@@ -113,13 +94,14 @@ class Fabrik:
 
     def _solution(self, goal: Goal, theta: Angles, passes: int, blocked: bool = False) -> Solution:
         off, turned = goal.errors(self._arm, theta, chain(theta))
-        converged = self.settings.met(off, turned)
+        settings = self.settings
+        converged = off <= settings.tolerance_m and turned <= settings.tolerance_rad
         if converged:
             reason = ""
         elif blocked:
             reason = BLOCKED
         else:
-            reason = OUT_OF_REACH if off > self.settings.tolerance_m else ROLL_BLOCKED
+            reason = OUT_OF_REACH if off > settings.tolerance_m else ROLL_BLOCKED
         return Solution(self._frame.q(theta), off, turned, converged, passes, reason)
 
     def _reach(
@@ -158,37 +140,30 @@ def _predicted(
     joint motion (damped pseudo-inverse, Nakamura & Hanafusa 1986, 10.1115/1.3143764) spreads it
     evenly, and the exact closure has only its second-order error to remove.
     """
+    a, b, c = arm.upper, arm.fore, arm.tool
     for _ in range(_MAX_STEPS):
-        columns, error = _equations(arm, links, target)
-        theta, free = _step_inside_limits(arm, theta, columns, error)
+        (ux, uy, uz), (fx, fy, fz), (tx, ty, tz), (ax, ay, _), (bx, by, bz), (cx, cy, cz) = links
+        # The tip as seen from wrist, elbow and shoulder.
+        tx, ty, tz = c * tx, c * ty, c * tz
+        ex, ey, ez = tx + b * fx, ty + b * fy, tz + b * fz
+        px, py, pz = ex + a * ux, ey + a * uy, ez + a * uz
+        # The tip's Jacobian, axis × arm; joint 7 does not move a tip on its axis.
+        columns = (
+            (-py, px, 0.0),
+            (ay * pz, -ax * pz, ax * py - ay * px),
+            (uy * ez - uz * ey, uz * ex - ux * ez, ux * ey - uy * ex),
+            (by * ez - bz * ey, bz * ex - bx * ez, bx * ey - by * ex),
+            (fy * tz - fz * ty, fz * tx - fx * tz, fx * ty - fy * tx),
+            (cy * tz - cz * ty, cz * tx - cx * tz, cx * ty - cy * tx),
+        )
+        missing = (target[0] - px, target[1] - py, target[2] - pz)
+        theta, free = _step_inside_limits(arm, theta, columns, missing)
         links = chain(theta)
         # What a step leaves over is removed by the closure; close to a singularity or a limit
         # that little would still turn a pan far or leave the limits, so there it is refined.
         if (free and clear(theta)) or dist(tip(arm, links), target) < _EXACT:
             break
     return theta, links
-
-
-def _equations(arm: CanonicalArm, links: Chain, target: Vector) -> tuple[Columns, Vector]:
-    """Return the tip's Jacobian for joints 1 to 6 by columns, axis × arm, and what the tip misses.
-
-    Joint 7 does not move a tip on its axis.
-    """
-    (ux, uy, uz), (fx, fy, fz), (tx, ty, tz), (ax, ay, _), (bx, by, bz), (cx, cy, cz) = links
-    a, b, c = arm.upper, arm.fore, arm.tool
-    # The tip as seen from wrist, elbow and shoulder.
-    tx, ty, tz = c * tx, c * ty, c * tz
-    ex, ey, ez = tx + b * fx, ty + b * fy, tz + b * fz
-    px, py, pz = ex + a * ux, ey + a * uy, ez + a * uz
-    columns = (
-        (-py, px, 0.0),
-        (ay * pz, -ax * pz, ax * py - ay * px),
-        (uy * ez - uz * ey, uz * ex - ux * ez, ux * ey - uy * ex),
-        (by * ez - bz * ey, bz * ex - bx * ez, bx * ey - by * ex),
-        (fy * tz - fz * ty, fz * tx - fx * tz, fx * ty - fy * tx),
-        (cy * tz - cz * ty, cz * tx - cx * tz, cx * ty - cy * tx),
-    )
-    return columns, (target[0] - px, target[1] - py, target[2] - pz)
 
 
 def _step(theta: Angles, columns: Columns, error: Vector) -> Angles:

@@ -19,7 +19,7 @@ from rastrainer_simulator.robot.closure import TURN, elbow_circle, fit, joint_an
 from rastrainer_simulator.robot.elbow_slide import close, with_least_motion
 from rastrainer_simulator.robot.goal import Goal
 from rastrainer_simulator.robot.srs_arm import Angles, CanonicalArm, chain, tilt_range
-from rastrainer_simulator.vectors import Vector, any_perpendicular, dot
+from rastrainer_simulator.vectors import Vector, any_perpendicular, dot, scale, subtract
 
 # Passes that change the gap between them by less than this share of it do not converge.
 _STALLED = 1e-3
@@ -135,21 +135,16 @@ def _planar_starts(
     largest = tilt_range(*arm.limits[1])[1]
     for part in (1.0, -1.0, 0.6, -0.6, 0.2, -0.2):
         r, h = arm.upper * sin(part * largest), arm.upper * cos(part * largest)
-        for wrist_r, wrist_h in _third_corners(arm, beside - r, z - h):
-            along = r + wrist_r
-            yield (c * along, s * along, h + wrist_h), (c * r, s * r, h)
-
-
-def _third_corners(arm: CanonicalArm, r: float, h: float) -> Iterator[tuple[float, float]]:
-    """Yield where the wrist can be, from the elbow, if the target is at (r, h) from it."""
-    square = r * r + h * h
-    if square < _TINY:
-        return
-    along = (square + arm.fore * arm.fore - arm.tool * arm.tool) / (2.0 * square)
-    across = arm.fore * arm.fore / square - along * along
-    if across >= 0.0:
-        for side in (sqrt(across), -sqrt(across)):
-            yield along * r + side * h, along * h - side * r
+        # Where the wrist can be, from the elbow, if the target is at (dr, dh) from it.
+        dr, dh = beside - r, z - h
+        square = dr * dr + dh * dh
+        if square < _TINY:
+            continue
+        along = (square + arm.fore * arm.fore - arm.tool * arm.tool) / (2.0 * square)
+        across = arm.fore * arm.fore / square - along * along
+        for side in (sqrt(across), -sqrt(across)) if across >= 0.0 else ():
+            out, up = r + (along * dr + side * dh), h + (along * dh - side * dr)
+            yield (c * out, s * out, up), (c * r, s * r, h)
 
 
 _SLACK = 1e-12
@@ -284,7 +279,7 @@ def backward(
     leaves it. None where no wrist in the band is a tool's length from the target.
     """
     tool = _inside(_toward(wrist, target), _toward(elbow, wrist), arm.wrist_cosines)
-    wx, wy, wz = _minus(target, arm.tool, tool)
+    wx, wy, wz = subtract(target, scale(tool, arm.tool))
     square = wx * wx + wy * wy + wz * wz
     if arm.nearest * arm.nearest <= square <= arm.farthest * arm.farthest:
         return (wx, wy, wz), tool
@@ -295,9 +290,9 @@ def backward(
 def forward(arm: CanonicalArm, wrist: Vector, elbow: Vector) -> tuple[Vector, Vector]:
     """Reach from the shoulder to the wrist inside the cones; return wrist and elbow."""
     upper = _inside(_toward(_SHOULDER, elbow), _UP, arm.shoulder_cosines)
-    elbow = _minus(_SHOULDER, -arm.upper, upper)
+    elbow = subtract(_SHOULDER, scale(upper, -arm.upper))
     fore = _inside(_toward(elbow, wrist), upper, arm.elbow_cosines)
-    return _minus(elbow, -arm.fore, fore), elbow
+    return subtract(elbow, scale(fore, -arm.fore)), elbow
 
 
 def settle(
@@ -311,9 +306,9 @@ def settle(
     for _ in range(passes):
         before = wrist
         fore = _inside(_toward(elbow, wanted), tool, arm.wrist_cosines)
-        wrist, elbow = forward(arm, wanted, _minus(wanted, arm.fore, fore))
+        wrist, elbow = forward(arm, wanted, subtract(wanted, scale(fore, arm.fore)))
         fore = _inside(_toward(elbow, wrist), tool, arm.wrist_cosines)
-        wrist = _minus(elbow, -arm.fore, fore)
+        wrist = subtract(elbow, scale(fore, -arm.fore))
         if dist(before, wrist) < _SETTLED:
             break
     return wrist, elbow
@@ -348,14 +343,6 @@ def _toward(start: Vector, end: Vector) -> Vector:
     x, y, z = end[0] - start[0], end[1] - start[1], end[2] - start[2]
     size = sqrt(x * x + y * y + z * z)
     return (x / size, y / size, z / size) if size > _TINY else _UP
-
-
-def _minus(point: Vector, length: float, direction: Vector) -> Vector:
-    return (
-        point[0] - length * direction[0],
-        point[1] - length * direction[1],
-        point[2] - length * direction[2],
-    )
 
 
 def _inside(direction: Vector, axis: Vector, cosines: tuple[float, float]) -> Vector:

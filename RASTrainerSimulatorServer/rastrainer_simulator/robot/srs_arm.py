@@ -20,12 +20,10 @@ from math import cos, sin
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.vectors import Vector
 
-# URDFs often round π/2 to a few digits; the solver corrects what such rounding leaves.
-_MEETING_TOLERANCE = 1e-3
-_ANGLE_TOLERANCE = 2e-3
+# How far an arm may be from an exact S-R-S arm: m, or the cosine of the angle between two axes.
+_MISFIT = 1e-9
 _HOME = tuple(math.radians(angle) for angle in (0.0, 30.0, 0.0, 90.0, 0.0, 60.0, 0.0))
 
 
@@ -55,7 +53,6 @@ class SrsGeometry:
     q_lower: tuple[float, ...]
     q_upper: tuple[float, ...]
     tip_rotation: np.ndarray  # (3, 3) float: rotates the tip's frame into the last canonical frame
-    misfit: float  # how far the URDF is from an exact S-R-S arm (m, or rad · m)
 
     @property
     def canonical_limits(self) -> tuple[tuple[float, float], ...]:
@@ -77,23 +74,18 @@ class SrsGeometry:
 
 
 def srs_geometry(joints: Sequence[Joint], tip_offset: np.ndarray) -> SrsGeometry:
-    """Return the canonical chain of seven joints with a tip fixed at `tip_offset` (4, 4).
-
-    Raises InputError, saying which axes do not fit, where the arm is not S-R-S.
-    """
+    """Return the canonical chain of seven joints with a tip fixed at `tip_offset` (4, 4)."""
     pose, places, directions = np.eye(4), [], []
     for joint in joints:
         pose = pose @ joint.origin
         places.append(pose[:3, 3])
         directions.append(pose[:3, :3] @ joint.axis)
     points, axes, tip = np.array(places), np.array(directions), pose @ tip_offset
-    shoulder, elbow, wrist, misfit = _centers(points, axes, tip[:3, 3])
+    shoulder, elbow, wrist = _centers(points, axes, tip[:3, 3])
     upper, fore, tool = (
         float(np.linalg.norm(b - a))
         for a, b in ((shoulder, elbow), (elbow, wrist), (wrist, tip[:3, 3]))
     )
-    if min(upper, fore, tool) < 1e-3:
-        raise InputError("The shoulder, elbow, wrist and tool tip must be four different points.")
     along = [(elbow - shoulder) / upper, (wrist - elbow) / fore, (tip[:3, 3] - wrist) / tool]
     base, signs, offsets = _conventions(joints, axes, along)
     turned = np.eye(3)  # The rotation of the canonical chain's end, Rz(θ1) Ry(θ2) … Rz(θ7).
@@ -113,22 +105,14 @@ def srs_geometry(joints: Sequence[Joint], tip_offset: np.ndarray) -> SrsGeometry
         q_lower=tuple(joint.lower for joint in joints),
         q_upper=tuple(joint.upper for joint in joints),
         tip_rotation=turned.T @ base @ tip[:3, :3],
-        misfit=misfit,
     )
 
 
-def _centers(
-    points: np.ndarray, axes: np.ndarray, tip: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-    bent = [abs(float(axes[i] @ axes[i + 1])) for i in range(6)]
-    if max(bent) > _ANGLE_TOLERANCE:
-        worst = bent.index(max(bent)) + 1
-        raise InputError(
-            f"This is not an S-R-S arm: the axes of joints {worst} and {worst + 1} "
-            "should be perpendicular."
-        )
-    centers, misfits = [], [max(bent)]
-    for name, first in (("shoulder", 0), ("elbow", 2), ("wrist", 4)):
+def _centers(points: np.ndarray, axes: np.ndarray, tip: np.ndarray) -> list[np.ndarray]:
+    """Return shoulder, elbow and wrist, (3,) float each: where three axes meet."""
+    misfits = [abs(float(axes[i] @ axes[i + 1])) for i in range(6)]
+    centers = []
+    for first in (0, 2, 4):
         # The point nearest to three lines (least squares), and its distance to the farthest.
         places, directions = points[first : first + 3], axes[first : first + 3]
         projectors = np.eye(3) - directions[:, :, None] * directions[:, None, :]
@@ -136,22 +120,16 @@ def _centers(
         # Parallel lines have no such point; the least-norm solution is then off them.
         center = np.linalg.lstsq(projectors.sum(axis=0), right, rcond=None)[0]
         misses = (projectors @ (center - places)[:, :, None])[:, :, 0]
-        distance = float(np.linalg.norm(misses, axis=1).max())
-        if distance > _MEETING_TOLERANCE:
-            raise InputError(
-                f"This is not an S-R-S arm: the axes of joints {first + 1}, {first + 2} and "
-                f"{first + 3} should meet in one point, the {name}; they miss it by "
-                f"{MM_PER_M * distance:.1f} mm."
-            )
+        misfits.append(float(np.linalg.norm(misses, axis=1).max()))
         centers.append(center)
-        misfits.append(distance)
-    beside = float(np.linalg.norm(np.cross(tip - centers[2], axes[6])))
-    if beside > _MEETING_TOLERANCE:
+    misfits.append(float(np.linalg.norm(np.cross(tip - centers[2], axes[6]))))
+    if max(misfits) > _MISFIT:
         raise InputError(
-            f"The tool tip should lie on the axis of joint 7; it is {MM_PER_M * beside:.1f} mm off."
+            "This is not an S-R-S arm: neighboring axes should be perpendicular, three of them "
+            "should meet in the shoulder, the elbow and the wrist each, and the tool tip should "
+            f"lie on the last one; they are off by up to {max(misfits):.3g}."
         )
-    shoulder, elbow, wrist = centers
-    return shoulder, elbow, wrist, max(*misfits, beside)
+    return centers
 
 
 def _conventions(

@@ -41,7 +41,8 @@ class ScenarioLoader:
         self._make_simulation = make_simulation
         self._may_be_anywhere = may_be_anywhere
         self._library = library or user_library()
-        self._pictures: dict[str, Path] = {}
+        self.pictures: dict[str, Path] = {}
+        """Of the scenarios that have been listed, by name."""
         self._worker = ThreadPoolExecutor(max_workers=1, thread_name_prefix="scenario")
         self._loading: Future[Answer] | None = None
 
@@ -62,7 +63,7 @@ class ScenarioLoader:
         present = self._control_loop.setup.scenario
         if name in ("", present.name):
             return present
-        for entry in self._known():
+        for entry in list_scenarios([asset_path("scenarios"), self._library]):
             if entry.name == name:
                 return load_scenario(entry.folder)
         raise InputError(f"There is no scenario {name} here, in which the trial was played.")
@@ -70,10 +71,6 @@ class ScenarioLoader:
     def listed(self) -> Future[list[ListedScenario]]:
         """Return the scenarios that can be loaded by their names, and those with a problem."""
         return self._worker.submit(self._listed)
-
-    def picture(self, name: str) -> Path | None:
-        """Return the picture of a scenario that has been listed, None where it has none."""
-        return self._pictures.get(name)
 
     def close(self) -> None:
         """Wait for the scenario that is being loaded, and load no other."""
@@ -111,12 +108,9 @@ class ScenarioLoader:
             self._control_loop.end_replacement()
 
     def _listed(self) -> list[ListedScenario]:
-        found = self._known()
-        self._pictures = {entry.name: entry.preview for entry in found if entry.preview}
+        found = list_scenarios([asset_path("scenarios"), self._library])
+        self.pictures = {entry.name: entry.preview for entry in found if entry.preview}
         return found
-
-    def _known(self) -> list[ListedScenario]:
-        return list_scenarios([asset_path("scenarios"), self._library])
 
     def _found(self, folder: str) -> Path:
         if is_identifier(folder):

@@ -253,7 +253,7 @@ class SimulatorServer:
             announce,
             self._options.robot_meshes,
             self._limits.views,
-            self._scenarios.picture,
+            lambda name: self._scenarios.pictures.get(name),
             self._config,
             self._pin,
         )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from rastrainer.json_checks import Setting
 from rastrainer_simulator.state import Motion, OperatorInput
@@ -12,7 +12,6 @@ from rastrainer_simulator.teleoperation.steering import (
     Axes,
     NearestSurface,
     SteeringSettings,
-    ToolDirection,
     ToolSteering,
 )
 from rastrainer_simulator.vectors import (
@@ -126,18 +125,9 @@ class Teleoperation:
 
     def __init__(self, settings: TeleoperationSettings) -> None:
         self._settings = settings
-        self._as_set = ToolSteering(settings.steering)
-        self._held = ToolSteering(replace(settings.steering, choice=ToolDirection.HELD))
-        self._steering = self._as_set
+        self.steering = ToolSteering(settings.steering)
         self._velocity = ZERO
         self._running: CommandedMotion | None = None
-
-    def hold_direction(self, is_held: bool) -> None:
-        """Have the operator hold and steer the tool's direction, whatever is set."""
-        steering = self._held if is_held else self._as_set
-        if steering is not self._steering:
-            steering.reset()
-            self._steering = steering
 
     def start(self, motion: CommandedMotion) -> None:
         self._running = motion
@@ -147,7 +137,7 @@ class Teleoperation:
         was_running = self._running is not None
         self._running = None
         self._velocity = ZERO
-        self._steering.reset()
+        self.steering.reset()
         return was_running
 
     def step(
@@ -163,74 +153,59 @@ class Teleoperation:
         The sticks override a commanded motion. `surface` is the head near the tip, for a tool that
         comes down along the surface normal.
         """
-        response = self._settings.response
-        push = vector(response(operator_input.translation))
+        settings, steering, running = self._settings, self.steering, self._running
+        push = vector(settings.response(operator_input.translation))
         turn = STRAIGHT
-        if self._steering.is_steered:
-            sideways, ahead = response(operator_input.rotation)
+        if steering.is_steered:
+            sideways, ahead = settings.response(operator_input.rotation)
             turn = (sideways, ahead)
-        if push != ZERO or turn != STRAIGHT:
-            ended = MotionOutcome.OVERRIDDEN if self._running else None
-            self._running = None
-            settings = self._settings
-            fastest = settings.fine_speed if operator_input.fine else settings.coarse_speed
-            wanted = axes.to_world(scale(push, fastest))
-            if operator_input.fine and surface is not None:
-                wanted = self._slowed(wanted, surface)
-            faster = accelerated(self._velocity, wanted, settings.acceleration * dt)
-            self._velocity = ZERO if push == ZERO else faster
-            is_fine = operator_input.fine
-            direction = self._steering.steer(dt, turn, is_fine, axes, tip.direction, surface)
-            return self._toward(Motion.STICK, scale(self._velocity, dt), direction, tip, ended)
-        if self._running is None:
-            self._velocity = ZERO
-            return MotionRequest(Motion.NONE)
-        outcome = self._running.outcome(dt, tip.position, tip.direction)
-        if outcome is not None:
-            self._running = None
-            self._velocity = ZERO
-            return MotionRequest(Motion.NONE, ended=outcome)
-        return self._by_command(self._running, dt, tip, axes, surface)
-
-    def _slowed(self, wanted: Vector, surface: NearestSurface) -> Vector:
-        """Return the velocity of slow motion (m/s) near the skin; its direction is kept."""
-        settings, above = self._settings, surface.clearance
-        limit = _between(settings.skin_speed, settings.fine_speed, above, AT_SKIN_M)
-        landing = _between(settings.landing_speed, settings.fine_speed, above, LANDING_M)
-        inward = max(0.0, -dot(unit(wanted), surface.normal))
-        return shortened(wanted, min(limit, landing / max(inward, 1e-9)))
-
-    def _by_command(
-        self,
-        running: CommandedMotion,
-        dt: float,
-        tip: Tip,
-        axes: Axes,
-        surface: NearestSurface | None,
-    ) -> MotionRequest:
-        displacement = running.displacement(
-            dt, tip.position, self._velocity, self._settings.acceleration
-        )
-        self._velocity = scale(displacement, 1.0 / dt)
+        is_fine = operator_input.fine
         direction: Vector | None
-        if running.direction is not None:
-            direction = self._steering.turn_to(tip.direction, running.direction, dt)
+        if push != ZERO or turn != STRAIGHT:
+            self._running = None
+            motion, goal = Motion.STICK, None
+            ended = MotionOutcome.OVERRIDDEN if running else None
+            self._push(dt, push, is_fine, axes, surface)
+            displacement = scale(self._velocity, dt)
+            direction = steering.steer(dt, turn, is_fine, axes, tip.direction, surface)
         else:
-            direction = self._steering.steer(dt, STRAIGHT, False, axes, tip.direction, surface)
-        return self._toward(running.motion, displacement, direction, tip, goal=running.goal)
-
-    def _toward(
-        self,
-        motion: Motion,
-        displacement: Vector,
-        direction: Vector | None,
-        tip: Tip,
-        ended: MotionOutcome | None = None,
-        goal: Vector | None = None,
-    ) -> MotionRequest:
-        steering = self._steering
+            ended = running.outcome(dt, tip.position, tip.direction) if running else None
+            if running is None or ended is not None:
+                self._running = None
+                self._velocity = ZERO
+                return MotionRequest(Motion.NONE, ended=ended)
+            motion, goal = running.motion, running.goal
+            displacement = running.displacement(
+                dt, tip.position, self._velocity, settings.acceleration
+            )
+            self._velocity = scale(displacement, 1.0 / dt)
+            if running.direction is not None:
+                direction = steering.turn_to(tip.direction, running.direction, dt)
+            else:
+                direction = steering.steer(dt, STRAIGHT, False, axes, tip.direction, surface)
         across = steering.across(direction, tip.direction, tip.across) if direction else None
         return MotionRequest(motion, displacement, direction, across, ended, goal)
+
+    def _push(
+        self,
+        dt: float,
+        push: Vector,
+        is_fine: bool,
+        axes: Axes,
+        surface: NearestSurface | None,
+    ) -> None:
+        """Change the velocity by the stick's response; slow motion is limited near the skin."""
+        settings = self._settings
+        fastest = settings.fine_speed if is_fine else settings.coarse_speed
+        wanted = axes.to_world(scale(push, fastest))
+        if is_fine and surface is not None:
+            above = surface.clearance
+            limit = _between(settings.skin_speed, settings.fine_speed, above, AT_SKIN_M)
+            landing = _between(settings.landing_speed, settings.fine_speed, above, LANDING_M)
+            inward = max(0.0, -dot(unit(wanted), surface.normal))
+            wanted = shortened(wanted, min(limit, landing / max(inward, 1e-9)))
+        faster = accelerated(self._velocity, wanted, settings.acceleration * dt)
+        self._velocity = ZERO if push == ZERO else faster
 
 
 def _between(slowest: float, fastest: float, clearance: float, at: float) -> float:

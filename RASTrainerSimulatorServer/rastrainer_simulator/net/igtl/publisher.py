@@ -19,10 +19,42 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.loop.timing import Pacer
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
 from rastrainer_simulator.net.igtl.server import ClientConnection
-from rastrainer_simulator.net.igtl.told import told
 from rastrainer_simulator.state import SimulationState, TrainingState
+from rastrainer_simulator.texts.texts import LocalizedText, Texts
 from rastrainer_simulator.training.tracing import stroke_data
 from rastrainer_simulator.trial_state import ProcedureState, Tool
+
+_WITHOUT_DISTANCE: Mapping[str, tuple[str, tuple[str, ...]]] = {
+    "too far": (
+        "Too far from point {point}: a touch counts within {radius:g} mm.",
+        ("point", "radius"),
+    ),
+    "above the skin": ("The tip is above the skin: lower it onto point {point}.", ("point",)),
+    "wrong point": (
+        "Wrong point: that is point {label}; point {point} is next.",
+        ("point", "label"),
+    ),
+    "above a checkpoint": ("The tip is above the skin: lower it onto the checkpoint.", ()),
+    "too far to lock": (
+        "The guide's tip is too far from the skin along its axis: lock it within {limit:.0f} mm.",
+        ("limit",),
+    ),
+}
+_TOLD = Texts({key: text for key, (text, _values) in _WITHOUT_DISTANCE.items()})
+_SAME = {"much too far": "too far"}
+
+
+def told(sentence: str) -> str:
+    """Return a trial's sentence in English, without the distances that the trainee reads.
+
+    Beside the exact pose of the tip, they would give the secret pose of the head
+    (`Testing/security/pose_leak.py`).
+    """
+    if not isinstance(sentence, LocalizedText):
+        return sentence
+    key = _SAME.get(sentence.key, sentence.key)
+    kept = _WITHOUT_DISTANCE[key][1] if key in _WITHOUT_DISTANCE else tuple(sentence.values)
+    return _TOLD.say(key, **{name: sentence.values[name] for name in kept})
 
 
 def tips(state: SimulationState, seq: int) -> tuple[Message, ...]:

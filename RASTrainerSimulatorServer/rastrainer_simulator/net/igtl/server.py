@@ -11,7 +11,6 @@ import logging
 import socket
 import time
 from collections import Counter
-from collections.abc import Collection
 from typing import Protocol
 
 from rastrainer.errors import InputError
@@ -239,13 +238,9 @@ class IgtlServer:
         self.handler = handler
         self.log = LinkLog()
         self.connections: dict[ClientConnection, None] = {}
-        self._opened: set[ClientConnection] = set()
+        self.clients: set[ClientConnection] = set()
+        """The connections that may be sent to."""
         self._listening: list[asyncio.Server] = []
-
-    @property
-    def clients(self) -> Collection[ClientConnection]:
-        """The connections that may be sent to, at this moment."""
-        return tuple(self._opened)
 
     async def listen(self, host: str, port: int) -> int:
         """Listen and return the port, which is any free one where `port` is 0."""
@@ -302,15 +297,15 @@ class IgtlServer:
         self.connections[connection] = None
 
     def opened(self, connection: ClientConnection) -> None:
-        self._opened.add(connection)
+        self.clients.add(connection)
         self.handler.connected(connection)
 
     def disconnected(self, connection: ClientConnection, reason: str) -> None:
         if reason:
             self.log.note(f"{connection.host} was disconnected: {reason}")
         self.connections.pop(connection, None)
-        if connection in self._opened:
-            self._opened.discard(connection)
+        if connection in self.clients:
+            self.clients.discard(connection)
             self.handler.disconnected(connection)
 
 

@@ -37,14 +37,13 @@ from rastrainer.study.protocol.steps import StepAnswers
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
-from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher
+from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher, told
 from rastrainer_simulator.net.igtl.registration_check import (
     CHECKED,
     RegistrationCheck,
     SubmitCommand,
 )
 from rastrainer_simulator.net.igtl.server import ClientConnection, IgtlServer
-from rastrainer_simulator.net.igtl.told import told
 from rastrainer_simulator.net.limits import LinkLimits
 from rastrainer_simulator.state import Answer, SimulationState, answered
 from rastrainer_simulator.texts.texts import LocalizedText
