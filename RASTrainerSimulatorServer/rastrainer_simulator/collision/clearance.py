@@ -46,7 +46,7 @@ class Clearance(NamedTuple):
 
     @property
     def shaft_m(self) -> float:
-        """Signed clearance of the tool without its tip to the head, m; a lower bound if far."""
+        """Signed clearance of the tool without its tip, m; a lower bound if far."""
         return max(self.tip_m, SHAFT_NEAR) if self.shaft is None else self.shaft.distance_m
 
     @property
@@ -91,7 +91,7 @@ class DistanceBounds:
         while due and due[0][0] <= traveled:
             rows.append(heappop(due)[1])
             if rough is not None and len(rows) > _FEW:
-                # Put off those of all due rows that are far.
+                # Put off the far ones among all due rows.
                 rows += [row for moment, row in due if moment <= traveled]
                 bounds = rough()
                 until = (traveled + (bounds - FAR - _ROUNDING) / self._closing).tolist()
@@ -107,10 +107,7 @@ class DistanceBounds:
     def nearest(
         self, traveled: float, distance: Callable[[int], float], rough: Callable[[], np.ndarray]
     ) -> float:
-        """Return the least distance, m, at most FAR.
-
-        `distance` gives that of a row, m; for the others see `due`.
-        """
+        """Return the least distance, m, at most FAR; `distance` measures a row."""
         best = FAR
         for row in self.due(traveled, rough):
             found = distance(row)
@@ -133,7 +130,7 @@ class HeadClearance:
 
     No point of a segment moves farther than the farther of its two ends, so a distance found
     earlier, less that motion, is a lower bound now. Only capsules whose bound is below the best
-    distance found in this tick are queried. The answer is the same as that of querying all.
+    distance found in this tick are queried. Querying all of them would give the same answer.
     """
 
     def __init__(self, head: HeadSurface, arm: ArmCapsules) -> None:
@@ -237,7 +234,7 @@ class HeadClearance:
             )
             distance = found.distance_m
             self._known[row] = (distance - _QUERY_ROUNDING, start, end)
-            # Of two equally near capsules the first counts, whatever the order of the queries.
+            # The first of two equally near capsules counts, in any order of the queries.
             if distance < limit or (distance == limit and row < best_row):
                 best, best_row, limit = found, row, distance
         return best

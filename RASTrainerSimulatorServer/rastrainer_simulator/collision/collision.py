@@ -52,10 +52,7 @@ class TableClearance:
         self._distance_bounds.forget()
 
     def nearest(self, posed: PosedArm, traveled: float) -> float:
-        """Return the least signed distance to table and stand, m, at most FAR.
-
-        `traveled` is how far the arm has moved in all, m.
-        """
+        """Return the least signed distance, m, at most FAR; the arm has moved `traveled` m."""
         best = self._distance_bounds.nearest(
             traveled, partial(self._distance, posed), partial(self._bounds, posed)
         )
@@ -81,14 +78,13 @@ class TableClearance:
 
 
 APART = 3
-"""Links this many joints apart are checked; joint limits keep nearer ones from touching."""
+"""Links this many joints apart are checked; joint limits keep nearer links from touching."""
 
 
 class SelfClearance:
     """The least distance between links that could touch each other."""
 
     def __init__(self, arm: ArmCapsules) -> None:
-        """Take the capsules of an arm; those of one body, or of near links, are never compared."""
         first, second = np.triu_indices(len(arm.capsules), k=1)
         apart = np.abs(arm.joints[first] - arm.joints[second]) >= APART
         self._first, self._second = first[apart], second[apart]
@@ -99,10 +95,6 @@ class SelfClearance:
         self._distance_bounds = DistanceBounds(len(self._pairs), closing=2.0)
 
     def nearest(self, posed: PosedArm, traveled: float) -> float:
-        """Return the least signed distance of two links, m, at most FAR.
-
-        `traveled` is how far the arm has moved in all, m.
-        """
         return self._distance_bounds.nearest(
             traveled, partial(self._distance, posed), partial(self._bounds, posed)
         )
@@ -176,9 +168,8 @@ class Collision:
     def is_clear(self, link_to_world: Mapping[str, np.ndarray], clearance: float) -> bool:
         """Return whether everything but the tip keeps its clearance.
 
-        The tool's shaft is off the head, and the links are at least `clearance`, m, from the head,
-        and the arm from itself, the table and the stand. Like `check`, but it stops at the first
-        one that is too near.
+        The tool's shaft is off the head; the links are at least `clearance`, m, from the head, and
+        the arm from itself, the table and the stand. It stops at the first part too near.
         """
         posed = self._arm.pose(link_to_world)
         traveled = self._travel(posed)

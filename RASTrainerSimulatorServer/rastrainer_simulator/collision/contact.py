@@ -1,4 +1,4 @@
-"""The arm's motion in one tick, stopped by what it touches and led along it.
+"""The arm's motion in one tick: obstacles stop it, and surfaces lead it along.
 
 A tick of the simulation is
 
@@ -169,7 +169,7 @@ class HalfSpace(NamedTuple):
 
 
 def nearest_inside(goal: Vector, half_spaces: Sequence[HalfSpace]) -> Vector | None:
-    """Return the point in all half-spaces that is nearest to `goal`, None where there is none.
+    """Return the point in all half-spaces that is nearest to `goal`, None if there is none.
 
     It lies on none, one, two or three of the planes, and is the nearest of the feasible points
     found by trying them all: with the handful of planes of a contact that takes microseconds.
@@ -280,7 +280,7 @@ def _step(
         if target is None:
             break
         short = add(position, shortened(subtract(target, position), longest))
-        # From a point nearer than `rest`, part of the displacement only leads part of the way out.
+        # If the point is nearer than `rest`, a short displacement leads only part of the way out.
         trial = nearest_inside(short, planes) or short
         there = nearest_to_point(trial)
         if there.distance_m >= rest - _EXACT:

@@ -35,10 +35,10 @@ class Nearest(NamedTuple):
 class ClosedSurface:
     """Vertices, triangles turned outward, and a pseudonormal for every face, edge and vertex.
 
-    The sign of the distance to the nearest surface point is that of the scalar product with the
-    pseudonormal of the feature (face, edge or vertex) on which that point lies: a face's normal,
-    the sum of an edge's two face normals, or a vertex's face normals weighted by their angles
-    (Bærentzen and Aanæs 2005, 10.1109/TVCG.2005.49, theorem 1).
+    The distance to the nearest surface point has the sign of the scalar product with the
+    pseudonormal of its feature (face, edge or vertex): a face's normal, the sum of an edge's two
+    face normals, or a vertex's face normals weighted by their angles (Bærentzen and Aanæs 2005,
+    10.1109/TVCG.2005.49, theorem 1).
     """
 
     def __init__(self, vertices: np.ndarray, triangles: np.ndarray) -> None:
@@ -150,8 +150,8 @@ def thin_segment(start: np.ndarray, end: np.ndarray) -> fcl.CollisionObject:
 class HeadSurface:
     """The head as a bounding volume hierarchy of its triangles, and as a closed surface.
 
-    fcl gives the exact distance without sign; the sign is that of the pseudonormal at the nearest
-    point. All lengths in m, all points in the head's frame.
+    fcl gives the exact distance without sign; the pseudonormal at the nearest point gives the sign.
+    All lengths in m, all points in the head's frame.
     """
 
     def __init__(self, vertices: np.ndarray, triangles: np.ndarray) -> None:

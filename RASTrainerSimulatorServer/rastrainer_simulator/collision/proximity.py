@@ -1,10 +1,11 @@
 """Free, in proximity or in contact, and how deep the commanded motion has gone into the head.
 
 The head is rigid: a pressed tip rests on the skin and slides, however hard it is pushed. The depth
-is that of a god object in haptic rendering (Zilles and Salisbury 1995, 10.1109/IROS.1995.525876):
-the tool that is shown stays on the surface while the hand moves on beneath it, and their distance
-is the penetration. A joystick and a jog command velocities, not positions, so the displacement
-commanded into the skin is summed up tick by tick; a move cannot get deeper than its end.
+is defined as for a god object in haptic rendering (Zilles and Salisbury 1995,
+10.1109/IROS.1995.525876): the visible tool stays on the surface while the hand moves on beneath it,
+and their distance is the penetration. A joystick and a jog command velocities, not positions, so
+the displacement commanded into the skin is summed up tick by tick; a move cannot get deeper than
+its end.
 
 The depth is only measured: it does not influence the motion.
 """
@@ -82,8 +83,8 @@ class Pressing:
     ) -> None:
         """Note a tick at whose end the tool is in contact.
 
-        The displacements are those of the tip, World. Of the clearance, the part of the tool that
-        is nearer to the head counts; `to_goal` leads from the tip to the end of a commanded move.
+        The displacements are of the tip, World. The part of the tool that is nearer to the head
+        counts; `to_goal` leads from the tip to the end of a commanded move.
         """
         if not self._is_in_contact:
             self._is_in_contact, self.deepest = True, 0.0

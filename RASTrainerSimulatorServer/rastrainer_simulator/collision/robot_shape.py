@@ -205,10 +205,7 @@ def robot_shape(model: RobotModel) -> RobotShape:
 
 
 def _rounded(capsules: tuple[Capsule, ...]) -> tuple[Capsule, ...]:
-    """Return the capsules in whole nanometers: the same ones on every machine.
-
-    Rounding a small negative number gives -0.0, which becomes 0.0.
-    """
+    """Return the capsules in whole nanometers, the same on every machine, without -0.0."""
     return tuple(
         Capsule(
             capsule.start.round(_DECIMALS) + 0.0,
@@ -297,7 +294,7 @@ def _slenderest_cuts(profile: np.ndarray, start: float, count: int) -> list[int]
 
 
 class PosedArm(NamedTuple):
-    """The arm's n capsules in World, m; the rows are those of `ArmCapsules`."""
+    """The arm's n capsules in World, m, in the rows of `ArmCapsules`."""
 
     poses: np.ndarray  # (links + 1, 4, 4) float: LinkToWorld of each link, ToolTipToWorld last
     ends: np.ndarray  # (n, 2, 3) float: start and end of each axis
@@ -310,7 +307,7 @@ class PosedArm(NamedTuple):
 
 
 class ArmCapsules:
-    """The capsules of a robot in one row: those of the links, from the base, then the tool's."""
+    """The capsules of a robot in one row: the links' capsules from the base on, then the tool's."""
 
     def __init__(self, shape: RobotShape) -> None:
         bodies = (*shape.links, shape.tool)

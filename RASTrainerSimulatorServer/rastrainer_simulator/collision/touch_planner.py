@@ -94,7 +94,7 @@ _LEANINGS = ((LEANING_DEG[0], 0.0), *product(LEANING_DEG[1:], _AZIMUTHS))
 """How far each direction leans, degrees, and to which side, rad."""
 
 SWIVELS_DEG = (0.0, 60.0, -60.0)
-"""Turns of the first joint, undone by the third, from which the elbow's place is looked for."""
+"""Turns of the first joint, undone by the third, from which the elbow is searched."""
 
 
 @dataclass(frozen=True)

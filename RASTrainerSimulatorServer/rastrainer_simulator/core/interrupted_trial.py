@@ -66,7 +66,6 @@ class RecordedFeed:
         """Return the feed with which a command had an effect."""
         ahead = self._ahead
         if "ahead" in effect:
-            # What lay ahead of the guide when it was locked.
             found = (effect["ahead"][name] for name in ("skinMm", "outerMm", "innerMm"))
             ahead = HeadAhead(*(None if each is None else meters(each) for each in found))
         drilled = meters(effect.get("drilledMm", 0.0))
@@ -103,7 +102,7 @@ _EFFECTS: Mapping[str, frozenset[str]] = {
 
 @dataclass(frozen=True)
 class InterruptedTrial:
-    """Where a trial is to be resumed, by what was recorded last.
+    """The point at which a trial resumes, by its last records.
 
     `steps` are the commands that were carried out, each with its moment; the last one pauses.
     `q` are joint angles in rad, None before the first sample.
@@ -151,8 +150,7 @@ class InterruptedTrial:
 def find_interrupted(folder: Path) -> tuple[JournalReading, InterruptedTrial] | None:
     """Return the journal of the newest trial in a folder, and where to resume it.
 
-    None if that trial was registered or aborted: anyone who has started another trial has left an
-    older one behind.
+    None if that trial was registered or aborted; older trials are not looked at.
     """
     path = newest_journal(folder)
     if path is None or path.stat().st_size == 0:

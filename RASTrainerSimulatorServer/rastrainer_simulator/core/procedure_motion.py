@@ -1,4 +1,4 @@
-"""What a procedure does beside the arm: what lies ahead of the guide, what is fed, alignment."""
+"""A procedure besides the arm: the head ahead of the guide, the feed, and self-alignment."""
 
 from __future__ import annotations
 
@@ -37,7 +37,6 @@ from rastrainer_simulator.vectors import (
 BEHIND_MM = 1.0
 """A tip that rests on the skin may be a little within it: the search begins this far behind it."""
 
-
 PlannedBone = Mapping[str, tuple[BoneAhead | None, ...]]
 """Where the planned lines of each procedure go through bone, mm from the entry."""
 
@@ -47,7 +46,7 @@ FEED_PHASES = (Phase.DRILLING, Phase.INSERTING)
 
 
 class Fed(NamedTuple):
-    """What a tick did to the instrument in the guide."""
+    """The effect of a tick on the instrument in the guide."""
 
     has_moved: bool = False
     is_by_stick: bool = False
@@ -85,7 +84,7 @@ class ProcedureMotion:
         self.drive.stop()
 
     def ahead(self, guide: GuideAxis, head_to_world: np.ndarray) -> HeadAhead:
-        """Return what lies ahead along a guide's axis, with the head at (4, 4) float, m."""
+        """Return the distances to skin and bone along a guide's axis; all is in m."""
         rotation, shift = head_to_world[:3, :3], head_to_world[:3, 3]
         axis = rotation.T @ np.array(guide.direction)
         tip_mm = MM_PER_M * (rotation.T @ (np.array(guide.tip) - shift))
@@ -104,7 +103,7 @@ class ProcedureMotion:
         return HeadAhead(*from_tip)
 
     def step(self, dt: float, phase: Phase, operator_input: OperatorInput, sim_time: float) -> Fed:
-        """Feed for `dt` s in a phase, with an event where what is felt changes."""
+        """Feed for `dt` s in a phase; an event tells that the instrument meets another layer."""
         if phase not in FEED_PHASES:
             return NOT_FED
         before = self.feed
@@ -124,9 +123,9 @@ class ProcedureMotion:
     def way(
         self, guide: GuideAxis, procedure: ProcedureState | None, stand_off_mm: float
     ) -> FollowingPath | LocalizedText:
-        """Return the robot's own path onto the planned line, or why there is none.
+        """Return the robot's own path to `stand_off_mm` before a planned entry, or why it has none.
 
-        The line is by the registration in use; the tip ends `stand_off_mm` before its entry.
+        The line is the planned one by the registration in use.
         """
         if not self._may_align:
             return say("no self-alignment")
@@ -154,7 +153,7 @@ APPROACH_SPEED = 0.03
 MARGIN = 0.03
 """How far the tip stays off the head on its path, m."""
 STEP = math.radians(10.0)
-"""Between two waypoints, seen from the middle of the head."""
+"""Angle between two waypoints, seen from the middle of the head."""
 _OUTWARD = 0.005
 
 HeadRadius = Callable[[Vector], float]
@@ -197,7 +196,7 @@ def _guide_path(
 
 
 _BANDS = 12
-"""Of latitude; there are twice as many sectors of longitude."""
+"""Bands of latitude; there are twice as many sectors of longitude."""
 
 
 class HeadOutline:
@@ -214,7 +213,7 @@ class HeadOutline:
         table = np.zeros((_BANDS, 2 * _BANDS))
         rows = np.minimum(bands, _BANDS - 1), np.minimum(sectors, 2 * _BANDS - 1)
         np.maximum.at(table, rows, radii)
-        # A direction may lie at the edge of its sector: the neighbors count, too.
+        # A direction may be at the edge of its sector: the neighbors count, too.
         wide = np.maximum.reduce([np.roll(table, turn, axis=1) for turn in (-1, 0, 1)])
         tall = np.pad(wide, ((1, 1), (0, 0)), mode="edge")
         # Whole millimeters: the same on every computer.

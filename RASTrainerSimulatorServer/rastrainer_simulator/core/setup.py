@@ -1,4 +1,4 @@
-"""What a simulation is made from: the scenario, the robot and the settings."""
+"""The scenario, the robot and the settings of a simulation."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class RecordedMethod:
 
 @dataclass(frozen=True)
 class RecordedSetup:
-    """What identifies a setup in the header of a journal."""
+    """Identifies a setup in the header of a journal."""
 
     scenario: RecordedContent
     robot: str
@@ -51,8 +51,8 @@ class RecordedSetup:
 class SimulationSetup:
     """Everything that a simulation starts from, besides its seed.
 
-    The hashes are of what a trial depends on, which identifies it in a journal; those of landmarks
-    and of procedures, by name, are of what such a trial depends on besides.
+    The hashes identify in a journal what a trial depends on; only trials by landmarks or with a
+    procedure depend on `landmarks_sha256` or `procedure_sha256` (by its name), too.
     """
 
     scenario: Scenario
@@ -66,7 +66,6 @@ class SimulationSetup:
     def recorded(
         self, procedure: str = "", method: RegistrationMethod = RegistrationMethod.FIDUCIALS
     ) -> RecordedSetup:
-        """Return what identifies this setup in the journal of a trial."""
         by_landmarks = method is not RegistrationMethod.FIDUCIALS
         return RecordedSetup(
             RecordedContent(self.scenario.name, self.scenario_sha256),
@@ -115,9 +114,8 @@ def load_setup(
 def scenario_sha256(scenario: Scenario) -> str:
     """Return one hash of what a trial of touches depends on: `scenario.json`, head and fiducials.
 
-    It excludes what may be added to a scenario with recorded trials: the volume, which the
-    simulator never reads, landmarks, skull and procedures. A trial with a procedure, or by
-    landmarks, has a hash of its own (`Procedure.sha256`, `landmarks_sha256`) in its journal.
+    It excludes the parts that may be added to a scenario with recorded trials: the volume, which
+    the simulator never reads, landmarks, skull and procedures.
     """
     left_out = ["volume", "skull", "procedures", "landmarks"]
     whole = hashlib.sha256()

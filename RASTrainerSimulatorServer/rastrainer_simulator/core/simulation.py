@@ -65,8 +65,8 @@ class Simulation:
     """The robot, the head and the trial.
 
     `step` is deterministic: the same setup, seed and inputs give the same states to the last bit.
-    A trial always starts with the arm above the head and nothing left over from before: a replay
-    needs nothing but the trial's own inputs.
+    A trial always starts with the arm above the head, whatever came before: a replay needs only
+    the trial's own inputs.
     """
 
     def __init__(self, setup: SimulationSetup, seed: int) -> None:
@@ -114,10 +114,9 @@ class Simulation:
     def resume_trial(
         self, interrupted: InterruptedTrial, point: StartingPoint | None = None
     ) -> None:
-        """Resume a trial of a journal, in place of any other, before the next step.
+        """Resume a trial of a journal before the next step, with the arm as in its last sample.
 
-        The arm is placed as in the last sample. `point` is where ticks,
-        time and view continue if not from the journal's last line.
+        Ticks, time and view continue from `point`, by default from the journal's last line.
         """
         point = point or interrupted.point
         self._training.resume_trial(interrupted.revision_before, interrupted.steps)
@@ -161,11 +160,11 @@ class Simulation:
         motion = Motion.FEED if fed.has_moved else motion_request.motion
         self.state = self._state(before.tick + 1, sim_time, motion)
         if self._proximity is not proximity:
-            names: dict[str, Any] = {"from": proximity.value, "to": self._proximity.value}
-            data = names | {"clearanceMm": MM_PER_M * self.state.clearance}
+            change: dict[str, Any] = {"from": proximity.value, "to": self._proximity.value}
+            change["clearanceMm"] = MM_PER_M * self.state.clearance
             if proximity is Proximity.CONTACT:
-                data["depthMm"] = MM_PER_M * self._pressing.deepest
-            events.append(Event(EventKind.PROXIMITY, sim_time, data))
+                change["depthMm"] = MM_PER_M * self._pressing.deepest
+            events.append(Event(EventKind.PROXIMITY, sim_time, change))
         return StepResult(self.state, tuple(events), tuple(answers))
 
     def _carry_out(self, command: OperatorCommand, sim_time: float) -> TrainingReply:
@@ -205,7 +204,7 @@ class Simulation:
         return TrainingReply(True)
 
     def _plan(self, arguments: Mapping[str, Any], sim_time: float) -> TrainingReply:
-        """Show what was planned and answer whether the robot can carry it out."""
+        """Show a planned target, and answer whether the robot can reach it."""
         position, entry = in_meters(arguments["positionMm"]), arguments["entryMm"]
         entry = None if entry is None else in_meters(entry)
         answer = self._plan_reach.judge(position, entry)

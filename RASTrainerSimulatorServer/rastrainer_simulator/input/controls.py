@@ -34,12 +34,12 @@ _REPEATED = (ControlName.UP, ControlName.DOWN, ControlName.LEFT, ControlName.RIG
 
 @dataclasses.dataclass(frozen=True)
 class ControlsListener:
-    """What is called when somebody operates.
+    """Callbacks for operations.
 
     Attributes:
         input_pressed: returns whether an input was consumed, as while a control is rebound.
-        taken_over: is told who has taken control from another operator.
-        refused: is told who wants to operate without control.
+        taken_over: a source has taken control from another operator.
+        refused: a source wants to operate without control.
     """
 
     pressed: Callable[[ControlName], None]
@@ -49,18 +49,17 @@ class ControlsListener:
 
 
 class Controls:
-    """Who holds the control, and what they do with it.
+    """The operator: the source of input that holds the control, and its deflections.
 
-    Whoever acts first holds the control. What is at the same station (the simulator's gamepad, the
-    keys and the mouse of its windows; the keys, pad and controllers of one page) shares it and
-    passes it on by being used. Another station's input does nothing, except that pressing `menu`
-    takes the control over once the holder has done nothing for `IDLE_S` seconds: on purpose,
-    never while someone operates, and only where it `may_be_taken`. A holder that is unplugged or
-    leaves gives the control up.
+    The first source that acts holds the control. All sources at one station (the simulator's
+    gamepad, the keys and the mouse of its windows; the keys, pad and controllers of one page)
+    share it. Another station's input does nothing, except that pressing `menu` takes the control
+    over once the holder has been idle for `IDLE_S` seconds, if it `may_be_taken`. A holder that is
+    unplugged or leaves gives the control up.
 
     Attributes:
         bindings: which input does what; may be exchanged at any time.
-        holder: what drives the arm; None until someone acts.
+        holder: the source that drives the arm; None until someone acts.
     """
 
     def __init__(
@@ -110,21 +109,21 @@ class Controls:
 
     @property
     def has_gamepad(self) -> bool:
-        """Whether a gamepad is plugged in here, or one that a browser reads has moved."""
+        """Whether a gamepad is plugged in here, or a browser's gamepad has moved."""
         return any(
             source.kind in (SourceKind.GAMEPAD, SourceKind.BROWSER_GAMEPAD)
             for source in self._states
         )
 
     def add(self, source: Source) -> InputState:
-        """Return what a source is doing, which is accepted before anything is pressed on it."""
+        """Return the state of a source, known before anything is pressed on it."""
         if source not in self._states:
             keys = source.kind is SourceKind.KEYBOARD
             self._states[source] = InputState(InputDevice.KEYBOARD if keys else InputDevice.GAMEPAD)
         return self._states[source]
 
     def enter(self, situation: ControlContext) -> None:
-        """Change the situation; what is held does nothing until it is released."""
+        """Change the situation; held inputs do nothing until they are released."""
         if situation is not self.situation:
             self.situation = situation
             self._repeating = None
@@ -165,7 +164,7 @@ class Controls:
         return False
 
     def forget(self, source: Source) -> None:
-        """Drop a source that is gone: what it held is released, and so is the control."""
+        """Drop a source that is gone: its inputs are released, and so is the control."""
         self._states.pop(source, None)
         if self._repeating is not None and self._repeating[0] == source:
             self._repeating = None
@@ -173,7 +172,7 @@ class Controls:
             self.holder = None
 
     def advance(self, dt: float) -> None:
-        """Advance by `dt` seconds: what is pressed, repeated steps in menus, and idle time."""
+        """Advance presses, repeated steps in menus, and idle time by `dt` seconds."""
         for state in self._states.values():
             state.advance(dt)
         held = self._held_state
@@ -216,11 +215,11 @@ DOWN_FROM = 0.6
 UP_BELOW = 0.4
 """An input counts as pressed from the first on, and as released below the second."""
 AT_REST_BELOW = 0.15
-"""Released sticks come to rest up to about here, beyond the dead zone of `StickResponse`: one that
-rests at its edge neither moves anything nor keeps the control."""
+"""Released sticks come to rest up to about here, beyond the dead zone of `StickResponse`: a stick
+that rests at its edge neither moves anything nor keeps the control."""
 DRIFT_BELOW, FURTHER = 0.3, 0.2
-"""What was held less far than the first when it was blocked, such as a worn stick that does not
-return, is free again once it is pushed further by the second."""
+"""An input that was held less far than the first when it was blocked, such as a worn stick that
+does not return, is free again once it is pushed further by the second."""
 
 STEP_PUSH, FINE_STEP_PUSH = 0.22, 0.4
 """How far a key or a button pushes its stick at first, and in slow motion: both mean 2 mm/s."""
@@ -228,15 +227,15 @@ STEP_S = 0.1
 """Every press lasts at least so long: a tap moves the tip by one step of 0.2 mm; in slow motion,
 down onto the skin, of 0.1 mm."""
 HOLD_AFTER_S, RAMP_S = 0.15, 0.6
-"""What is held for longer speeds up, from the first on until the second."""
+"""Keys and buttons that are held speed up from the first until the second."""
 
 
 class InputState:
-    """What a source is doing.
+    """The inputs of one source.
 
-    Keys and buttons are pressed or not: a tap moves the tip by one small step, what is held speeds
-    up smoothly, and stops at once, as a released stick does. What is held while the situation
-    changes does nothing until it is released: the arm must not start because a menu closes.
+    Keys and buttons are pressed or not: a tap moves the tip by one small step, and a held key
+    speeds up smoothly and stops at once. Inputs that are held while the situation changes do
+    nothing until they are released: the arm must not start because a menu closes.
     """
 
     def __init__(self, device: InputDevice) -> None:
@@ -257,10 +256,10 @@ class InputState:
         return not self.down and self._sticks == NEUTRAL_STICKS and not is_pushed
 
     def is_still_held(self, name: str) -> bool:
-        """Return whether an input that is pressed is known to be held still.
+        """Return whether a pressed input is known to be held still.
 
-        A key is if it has come down again since it was asked for last. That no release has come
-        says nothing: a window that draws slowly may not have looked.
+        A key must have come down again since the last call: a window that draws slowly may not
+        have reported its release yet.
         """
         if self.device is not InputDevice.KEYBOARD:
             return True
@@ -298,12 +297,12 @@ class InputState:
         return pressed
 
     def set_sticks(self, sticks: OperatorInput) -> None:
-        """Take sticks that need no bindings, those of a headset."""
+        """Take sticks that need no bindings, as of a headset."""
         self._sticks = sticks
         self._sticks_blocked = self._sticks_blocked and _are_pushed(sticks)
 
     def block(self) -> None:
-        """Ignore what is held now until it is released."""
+        """Ignore the inputs that are held now until they are released."""
         self._blocked = {
             name: value for name, value in self._inputs.items() if value >= AT_REST_BELOW
         }
@@ -311,7 +310,7 @@ class InputState:
         self._sticks_blocked = _are_pushed(self._sticks)
 
     def advance(self, dt: float) -> None:
-        """Advance what is pressed by `dt` seconds, and end the steps of taps."""
+        """Advance presses by `dt` seconds, and end the steps of taps."""
         for name in tuple(self._pressed_s):
             self._pressed_s[name] += dt
             if self._pressed_s[name] >= STEP_S and name not in self.down:

@@ -44,7 +44,7 @@ from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training.rules import ENDING_A_TRIAL, RECORDING_FAILED, REFUSALS
 
 CATCH_UP_S = 0.1
-"""How far behind the loop may fall and still make up for it tick by tick."""
+"""Delay up to which the loop catches up tick by tick."""
 COMMANDS_PER_TICK = 16
 SHUTTING_DOWN = "The simulator is shutting down."
 ARCHIVE_FAILED = "The trial's record could not be used: the simulator's log says why."
@@ -106,7 +106,7 @@ class ControlLoop:
         self._arrived: deque[OperatorCommand] = deque()
         self._displayed: deque[NotedReport] = deque()
         self.note_display = self._displayed.append
-        """Records in the trial's journal what is seen of it."""
+        """Records in the trial's journal what its views show."""
         self._answers = PendingAnswers()
         limits = trial_limits or TrialLimits()
         self._starts = RateLimit(limits.starts_per_s, limits.starts_at_once)
@@ -146,7 +146,6 @@ class ControlLoop:
         return replace(self._statistics)
 
     def hold_sticks(self, sticks: OperatorInput) -> None:
-        """Hold the sticks like this until the next call; the commands in it are ignored."""
         self._sticks = replace(sticks, commands=())
 
     def submit(
@@ -170,9 +169,9 @@ class ControlLoop:
     def begin_replacement(self) -> Future[Answer]:
         """Have no trial begin from now on, since another simulation is being made.
 
-        Refused while a trial is open. It takes its turn among the commands: whatever trial was
-        asked for before has begun, and none does after it. If it is not refused, one may call
-        `replace_simulation` and has to call `end_replacement`.
+        Refused while a trial is open. It takes its turn among the commands: trials that were
+        requested before have begun. If it is not refused, the caller may call
+        `replace_simulation` and must call `end_replacement`.
         """
         return self.submit(_BEGIN_REPLACEMENT)
 

@@ -36,9 +36,9 @@ def close(
 ) -> Angles | None:
     """Return θ that holds the wrist and the tool's direction, and its roll where given, or None.
 
-    The elbow is the feasible one nearest to φ = 0 of its circle, the branch the one nearest to
-    `last`. Where that leaves a joint more than `farthest` (rad) from `last`, an elbow at a limit is
-    taken if it avoids such a jump.
+    It takes the feasible elbow nearest to φ = 0 of its circle, and the branch nearest to `last`. If
+    that leaves a joint more than `farthest` (rad) from `last`, an elbow at a limit is taken if it
+    avoids such a jump.
     """
     (cx, cy, cz), (sx, sy, sz), _ = circle
     elbow = (cx + sx, cy + sy, cz + sz)
@@ -61,7 +61,7 @@ def close(
 def close_at(
     arm: CanonicalArm, elbow: Vector, wrist: Vector, tool: Vector, roll: Roll, last: Angles
 ) -> Angles | None:
-    """Do as `close` with the elbow at a given place of its circle, None where it cannot be."""
+    """Do as `close` with the elbow at a given place of its circle, None if it cannot be there."""
     if not tilts_allow(arm, elbow, wrist, tool):
         return None
     return _branch(arm, elbow, wrist, tool, roll, last)
@@ -106,7 +106,7 @@ def with_least_motion(
 ) -> Angles:
     """Return θ with the elbow where on its circle the joints move least from `last`.
 
-    `theta` already holds the wrist (m) and the goal's tool, and so does what is returned.
+    `theta` already holds the wrist (m) and the goal's tool.
     """
     theta, motion = _slide(arm, theta, circle, wrist, goal, last)
     if motion < LEAP:
@@ -170,7 +170,7 @@ def _slide_angle(
 ) -> tuple[float, float]:
     """Return the angle (rad) that brings θ nearest to `last`, and how far the joints then move.
 
-    `axis` is that of the elbow's circle, `links` the chain of θ; `rolls`: whether the tool's
+    `axis` is the axis of the elbow's circle, `links` the chain of θ; `rolls`: whether the tool's
     roll is held too.
     """
     motion = self_motion(axis, links, rolls)
@@ -194,7 +194,7 @@ def _slide_angle(
 def self_motion(
     axis: Vector, links: Chain, rolls: bool
 ) -> tuple[float, float, float, float, float, float] | None:
-    """Return the rates of joints 1, 2, 3, 5, 6 and 7 as the elbow turns, None where they are lost.
+    """Return the rates of joints 1, 2, 3, 5, 6 and 7 as the elbow turns, None if they are lost.
 
     `axis` is the unit vector from shoulder to wrist; joint 4 rests. Joint 7 rests too unless the
     tool's roll is held: `rolls`.

@@ -7,8 +7,8 @@
 2. FABRIK reaches backward from the target and forward from the base, and each pass closes the elbow
    exactly (`reaching`, `closure`): FABRIK alone converges slowly below a micrometer
    (J. Intell. Robot. Syst. 2023, 10.1007/s10846-023-01895-2).
-3. The joint angles are read off the links, on the branch nearest to the last ones (`closure`).
-4. What is out of reach is replaced by the nearest that is not (`reaching`).
+3. The joint angles are read off the links, on the branch nearest to the last angles (`closure`).
+4. A goal out of reach is replaced by the nearest within reach (`reaching`).
 """
 
 from __future__ import annotations
@@ -64,10 +64,9 @@ class Fabrik:
     ) -> Solution:
         """Return joint angles inside the limits that bring the tool to a target in World.
 
-        `target_position` (3,) is that of the tip, m; `target_direction` (3,) that of the tool, from
-        the wrist to the tip; `target_rotation` (3, 3) that of the tip's frame, which takes
-        precedence. Without both only the position counts. The posture is near to `q_start` (7,)
-        rad.
+        Position (3,), m, and rotation (3, 3) apply to the tip's frame, the direction (3,) to the
+        tool, from the wrist to the tip. A rotation takes precedence over a direction; without both
+        only the position counts. The posture is near to `q_start` (7,) rad.
         """
         position = self._frame.position(target_position)
         if target_rotation is not None:
@@ -159,7 +158,7 @@ def _predicted(
         missing = (target[0] - px, target[1] - py, target[2] - pz)
         theta, free = _step_inside_limits(arm, theta, columns, missing)
         links = chain(theta)
-        # What a step leaves over is removed by the closure; close to a singularity or a limit
+        # The closure removes the rest that a step leaves; close to a singularity or a limit
         # that little would still turn a pan far or leave the limits, so there it is refined.
         if (free and clear(theta)) or dist(tip(arm, links), target) < _EXACT:
             break
@@ -205,7 +204,7 @@ def _step_inside_limits(
 ) -> tuple[Angles, bool]:
     """Return θ after the step, and whether no limit was met.
 
-    A joint that would pass its limit stops there, and the others make up for it.
+    A joint that would pass its limit stops there, and the others compensate for it.
     """
     moved = _step(theta, columns, error)
     if inside(moved, arm.limits):
@@ -235,8 +234,7 @@ def _followed(arm: CanonicalArm, theta: Angles, links: Chain, goal: Goal) -> Ang
     of first order. Then as much of the arm's self-motion is added as makes the joints move least
     (Gauss–Newton).
 
-    None at a singularity or a limit, and where a joint would leap: there the elbow has to be looked
-    for.
+    None at a singularity or a limit, and if a joint would leap: the elbow has to be searched there.
     """
     if not clear(theta, _LINED_UP):
         return None
@@ -255,7 +253,7 @@ def _followed(arm: CanonicalArm, theta: Angles, links: Chain, goal: Goal) -> Ang
 def _elbow(
     arm: CanonicalArm, theta: Angles, links: Chain, wrist: Vector, goal: Goal
 ) -> Vector | None:
-    """Return roughly where the elbow goes, m, or None where joints line up.
+    """Return roughly where the elbow goes, m, or None if joints line up.
 
     `wrist` is the goal's, m.
     """
@@ -295,7 +293,7 @@ def _wrist_turns(theta: Angles, links: Chain, turned: Vector, goal: Goal) -> Vec
     _, (fx, fy, fz), (tx, ty, tz), _, _, (wx, wy, wz) = links
     ox, oy, oz = turned
     gx, gy, gz = goal.held_tool
-    # What the tool's tip, a unit vector, still has to move: along joint 6's axis and across it.
+    # The remaining motion of the tool's tip, a unit vector: along joint 6's axis and across it.
     mx = gx - tx - (oy * tz - oz * ty)
     my = gy - ty - (oz * tx - ox * tz)
     mz = gz - tz - (ox * ty - oy * tx)

@@ -20,7 +20,7 @@ from rastrainer_simulator.robot.model import MeshPart, RobotModel
 if TYPE_CHECKING:
     import trimesh
 
-    ColoredMesh = tuple[trimesh.Trimesh, tuple[float, float, float, float]]
+    ColoredMesh = tuple[trimesh.Trimesh, tuple[float, ...]]
 
 LARGEST_FILE = 50 * 2**20
 MAX_TRIANGLES = 500_000
@@ -89,9 +89,9 @@ def _lie_in_base_frame(
     poses: dict[str, np.ndarray],
     meshes: Iterable[tuple[str, trimesh.Trimesh]],
 ) -> bool:
-    """Return whether meshes lie on the outstretched robot rather than around their links' origins.
+    """Return whether meshes are on the outstretched robot rather than around their links' origins.
 
-    `poses` are the links' (4, 4) at q = 0, m. A link's mesh lies about the middle between its own
+    `poses` are the links' (4, 4) at q = 0, m. A link's mesh is about the middle between its own
     and the next joint.
     """
     ends = [*(joint.origin for joint in model.joints), model.tip.offset]

@@ -1,6 +1,6 @@
 """The robot as a value: joints, links, limits, tool tip and meshes, read from `prepared.json`.
 
-`assets/robots/make_iiwa7.py` writes that file beside the URDF, exact to the last bit: the packages
+`assets/robots/make_iiwa7.py` writes that file with the URDF, exact to the last bit: the packages
 that read URDF and meshes take a second to import and 90 MB.
 """
 

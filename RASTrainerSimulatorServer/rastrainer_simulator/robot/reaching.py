@@ -2,9 +2,9 @@
 
 Aristidou & Lasenby 2011 (10.1016/j.gmod.2011.05.003): reach backward from the target, then forward
 from the base, each time moving a joint along the line to its neighbor to the link's length, within
-the joints' cones. Between shoulder and wrist the passes need not be iterated: both keep the elbow
-in the half-plane through the line from shoulder to wrist, so their limit is the nearest point of
-the elbow's circle, which `closure` gives exactly. Only the wrist is left to iterate.
+the joints' cones. The passes need not be iterated for the elbow: both keep it in the half-plane
+through the line from shoulder to wrist, so their limit is the nearest point of the elbow's circle,
+which `closure` gives exactly. Only the wrist is left to iterate.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Start(NamedTuple):
 
 
 class Reached(NamedTuple):
-    """Joint angles, the passes that they took, and whether the limits allowed no better ones."""
+    """Joint angles, the passes that they took, and whether the limits kept the arm where it was."""
 
     theta: Angles
     passes: int
@@ -148,7 +148,7 @@ def _planar_starts(
 
 
 _SLACK = 1e-12
-# Beside and above the shoulder, m.
+# Horizontal and vertical distance from the shoulder, m.
 Point = tuple[float, float]
 # Each link's angle from the first axis, rad.
 Posture = tuple[float, ...]
@@ -178,11 +178,10 @@ def _nearest_links(
     `target` (m) is out of reach; where it is on the first axis, the arm stays in its plane of
     `last`.
 
-    There every link lies in the plane of the target and the first axis: each link is extreme in
-    its cone, as seen along the line from the tip to the target, and cones about directions of a
-    plane have their extremes in that plane. What is left is a planar arm of three joints, each at
-    an end of its range or free; where one is free, it lies on that line. There are few such
-    postures.
+    Every link is then in the plane of the target and the first axis: each link is extreme in its
+    cone, as seen along the line from the tip to the target, and cones about directions of a plane
+    have their extremes in that plane. A planar arm of three joints remains, each at an end of its
+    range, or free and on that line. There are few such postures.
     """
     x, y, z = target
     beside = hypot(x, y)
@@ -228,7 +227,7 @@ def _distances(
 ) -> Iterator[tuple[float, tuple[int, ...]]]:
     """Yield how near the tip gets with the chords pointing to the target (1) or away (−1).
 
-    From each free joint the tip has to be on the target's side: turned by π it would be nearer.
+    The tip has to be on the target's side of each free joint: turned by π it would be nearer.
     """
     distance = hypot(beside - plan.start[0], above - plan.start[1])
     for signs in product((1, -1), repeat=len(plan.parts)):
@@ -276,7 +275,7 @@ def backward(
     """Reach from the target back to the wrist; return the wrist and the tool's direction.
 
     The tool stays in its cone about the forearm, the wrist in the band that the elbow's tilt
-    leaves it. None where no wrist in the band is a tool's length from the target.
+    leaves it. None if no wrist in the band is a tool's length from the target.
     """
     tool = _inside(_toward(wrist, target), _toward(elbow, wrist), arm.wrist_cosines)
     wx, wy, wz = subtract(target, scale(tool, arm.tool))

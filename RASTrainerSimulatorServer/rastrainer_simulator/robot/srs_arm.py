@@ -2,7 +2,7 @@
 
 Three axes that meet in one point act as a shoulder, three as a wrist, and the elbow lies where the
 third, fourth and fifth axes meet (Shimizu et al. 2008, 10.1109/TRO.2008.2003266, section II).
-Every such arm, whatever its axis conventions, is the canonical chain
+With any axis conventions, such an arm is the canonical chain
 
     Rz(θ1) Ry(θ2) · upper · Rz(θ3) Ry(θ4) · fore · Rz(θ5) Ry(θ6) · tool · Rz(θ7),
 

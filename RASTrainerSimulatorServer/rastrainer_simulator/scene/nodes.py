@@ -13,10 +13,7 @@ Color = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Material:
-    """A surface's color (sRGB, 0…1), roughness and metallicity; a `glowing` one needs no light.
-
-    One whose `opacity` is below 1 lets what is behind it be seen.
-    """
+    """A surface's color (sRGB, 0…1), roughness, metallicity and opacity; it may glow by itself."""
 
     name: str
     color: Color

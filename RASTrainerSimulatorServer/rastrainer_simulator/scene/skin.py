@@ -22,7 +22,7 @@ PATCH_RADIUS = 10.0
 
 @dataclass(frozen=True)
 class Shape:
-    """Triangles in the head's frame, RAS mm, or flat ones in the x-y plane.
+    """Triangles in the head's frame, RAS mm, or flat triangles in the x-y plane.
 
     Attributes:
         points: (n, 3) float, mm.
@@ -95,7 +95,7 @@ class Skin:
 
 DOT_RADIUS = 4.0
 RIM_RADIUS = 5.2
-"""Of a fiducial's colored disk, and of the pale ring around it, which reaches a little under it."""
+"""Radii of a fiducial's colored disk, and of the pale ring that reaches a little under it."""
 NUMBER_HEIGHT = 11.0
 LONGEST_EDGE = 1.5
 
@@ -177,6 +177,10 @@ class Arrow:
     outward: np.ndarray
     start: float
     end: float
+
+    @property
+    def length(self) -> float:
+        return self.end - self.start
 
     def half_width(self, along: np.ndarray) -> np.ndarray:
         """Return half the arrow's width at lengths of the path (k,)."""
@@ -286,28 +290,24 @@ def _walk(
 
 
 def _kept_apart(made: list[Arrow]) -> list[Arrow]:
-    """Shorten arrows until none comes near another; very short ones may still meet."""
+    """Shorten arrows until none comes near another; very short arrows may still meet."""
     made = list(made)
     while True:
         close = [
             (i, j)
             for j in range(len(made))
             for i in range(j)
-            if _distance(made[i], made[j]) < APART and max(_spare(made[i]), _spare(made[j])) > 0.0
+            if _distance(made[i], made[j]) < APART
+            and max(made[i].length, made[j].length) > SHORTEST
         ]
         if not close:
             return made
         for pair in close:
-            longer = max(pair, key=lambda index: _spare(made[index]))
+            longer = max(pair, key=lambda index: made[index].length)
             arrow = made[longer]
-            if _spare(arrow) > 0.0:
+            if arrow.length > SHORTEST:
                 end = max(arrow.end - STEP, arrow.start + SHORTEST)
                 made[longer] = Arrow(arrow.path, arrow.outward, arrow.start, end)
-
-
-def _spare(arrow: Arrow) -> float:
-    """Return by how much an arrow may be shortened."""
-    return arrow.end - arrow.start - SHORTEST
 
 
 def _distance(first: Arrow, second: Arrow) -> float:

@@ -1,4 +1,4 @@
-"""LoadScenario: another head and other tasks, loaded beside the running control loop."""
+"""LoadScenario: loads another head and other tasks while the control loop runs."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ _log = logging.getLogger(__name__)
 class ScenarioLoader:
     """Makes simulations of other scenarios and has the control loop continue with them.
 
-    One at a time, since that is costly, and between two trials: from the moment that one is asked
-    for until it is used, or cannot be, no trial begins. All methods belong to one thread.
+    One at a time, since that is costly, and between two trials: from the request until the
+    simulation is used, or has failed, no trial begins. All methods belong to one thread.
     """
 
     def __init__(
@@ -42,14 +42,13 @@ class ScenarioLoader:
         self._may_be_anywhere = may_be_anywhere
         self._library = library or user_library()
         self.pictures: dict[str, Path] = {}
-        """Of the scenarios that have been listed, by name."""
+        """Pictures of the listed scenarios, by name."""
         self._worker = ThreadPoolExecutor(max_workers=1, thread_name_prefix="scenario")
         self._loading: Future[Answer] | None = None
 
     def load(self, folder: str) -> Future[Answer]:
-        """Load a scenario by its name, or by the path of its folder.
+        """Load a scenario by its name (ours, or in the user's library), or by its folder's path.
 
-        Names are those of the scenarios that come with us and of those in the user's library.
         It is refused in a trial, and while another simulation is being made.
         """
         return self._begin(lambda: self._found(folder), is_checked=True)

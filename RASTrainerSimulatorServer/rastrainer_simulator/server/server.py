@@ -52,16 +52,16 @@ _LOOP_CHECK_PERIOD_S = 1.0
 
 @dataclass(frozen=True)
 class ServerOptions:
-    """What the simulator is started with.
+    """The options of the simulator.
 
     Attributes:
         seed: of the heads' poses in the trials, which determines the truth.
         is_seeded: whether that seed was chosen, not drawn.
         port: to listen on; 0 is any free one.
         connect_to: host and port of a listening Slicer, in place of listening.
-        scenario: folder; None is the one that comes with RASTrainer.
+        scenario: folder; None is the default scenario.
         view_port: of the views; 0 is any free one, None the usual one or else any free one.
-        has_network: whether views of other computers are served, too.
+        has_network: whether other computers may show views, too.
         has_desktop: whether a window is opened; the simulator ends when its user closes it.
         scores_alone: whether a trial outside of a study is scored where no Slicer is connected.
     """
@@ -151,7 +151,7 @@ class SimulatorServer:
         self._presenter = presenter
         views = None if presenter is None else self._make_view_server(presenter, on_ready)
         window = None
-        # Keep garbage collection between two ticks short: what is loaded now is never freed.
+        # Garbage collection between two ticks stays short if it skips everything loaded so far.
         gc.collect()
         gc.freeze()
         with stop_on_signals(stop):

@@ -126,11 +126,7 @@ class SteeringSettings:
 
 @dataclass(frozen=True)
 class NearestSurface:
-    """The head as the tool sees it: clearances (m) and outward normals nearest to it.
-
-    `clearance` and `normal` are those of the tip, `shaft_clearance` and `shaft_normal` those of the
-    tool behind it.
-    """
+    """Clearances (m) of the tip and the shaft behind it, and the head's outward normals there."""
 
     clearance: float
     normal: Vector
@@ -148,7 +144,7 @@ class ToolSteering:
         self.reset()
 
     def hold_direction(self, is_held: bool) -> None:
-        """Have the operator hold and steer the tool's direction, whatever is set."""
+        """Have the operator hold and steer the tool's direction, or follow the settings."""
         self._choice = ToolDirection.HELD if is_held else self._settings.choice
         self.is_steered = self._choice not in (ToolDirection.FREE, ToolDirection.CLEAR)
         if is_held is not self._has_to_hold:

@@ -1,4 +1,4 @@
-"""From the operator's sticks and commands to the target of the tool's tip after this tick."""
+"""Turns the operator's sticks and commands into the target of the tool's tip after this tick."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ _SAME = {"much too far": "too far"}
 def told(sentence: str) -> str:
     """Return a trial's sentence in English, without the distances that the trainee reads.
 
-    Beside the exact pose of the tip, they would give the secret pose of the head
+    With the exact pose of the tip, they would give the secret pose of the head
     (`Testing/security/pose_leak.py`).
     """
     if not isinstance(sentence, LocalizedText):
@@ -96,7 +96,7 @@ def captured_points(training: TrainingState) -> Message:
 def what_changes(state: SimulationState, is_guided: bool = False) -> dict[str, Any]:
     """Return `SimState` without its number and time; it is sent when this changes.
 
-    No distance to the head goes to clients: beside the pose of the tip it would be a range finder,
+    No distance to the head goes to clients: with the pose of the tip it would be a range finder,
     which gives the head's secret pose (`Testing/security/pose_leak.py`).
     """
     training, trace = state.training, state.training.trace
@@ -214,7 +214,7 @@ class Publisher:
         return bool(self._poses) and (is_news or state.sim_time >= self._next)
 
     def publish(self, state: SimulationState) -> None:
-        """Send each client what is due and new."""
+        """Send each client the devices that are due and have changed."""
         now = state.sim_time
         sent, training = self._sent_training, state.training
         if training is not sent:
@@ -239,7 +239,7 @@ class Publisher:
         self._next = min([self._state.next, *due])
 
     def _publish_poses(self, due: Iterable[ClientConnection], messages: Iterable[Message]) -> None:
-        """Send each client what is new to it; the messages carry the next number."""
+        """Send each client the messages that are new to it; they carry the next number."""
         is_sent = False
         for message in messages:
             content = message.content.pack()

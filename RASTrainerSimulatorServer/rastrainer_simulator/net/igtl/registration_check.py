@@ -1,7 +1,7 @@
 """A client's registration is accepted only if it is the fit of the trial's own points.
 
-The simulator has the touches and the trace, so it registers them itself and compares. What goes
-into the journal is its own outcome: the same for every client, whose numpy may round otherwise.
+The simulator has the touches and the trace, so it registers them itself and compares. The journal
+gets its own outcome, the same for every client, whose numpy may round otherwise.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ SubmitCommand = Callable[[str, Mapping[str, Any], str], "Future[Answer]"]
 CHECKED = (CommandName.USE_REGISTRATION, CommandName.SUBMIT_REGISTRATION)
 """Commands with a registration."""
 TOLERANCE, TRACE_TOLERANCE = 1e-6, 1e-4
-"""Of each number of a matrix (mm in its last column) and of the FRE. A trace is matched in steps,
+"""For each number of a matrix (mm in its last column) and the FRE. A trace is matched in steps,
 which enlarge a difference of 1e-11 mm in its points to 1e-6."""
 _REST_S = 0.002
 

@@ -55,7 +55,7 @@ _OWN_DEVICES = frozenset(
 COMMANDS_AT_ONCE = 16
 """Commands of one client that are submitted to the control loop at a time."""
 WAITING_COMMANDS, WAITING_COMMAND_BYTES = 4096, 2**20
-"""Further ones that may wait for their turn; one more is refused."""
+"""Further commands that may wait for their turn; another is refused."""
 OFFERS_AT_ONCE = 8
 """Trials in one round of offers."""
 _NUMBERS = 2**32
@@ -138,7 +138,7 @@ class CommandHandler:
     def _reply(self, connection: ClientConnection, command: Command, answer: Answer) -> None:
         """Send an answer; its body repeats the sentence for clients that read no metadata.
 
-        What the rules of a trial refuse has a code and values beside the sentence.
+        A refusal by the rules of a trial has a code and values besides the sentence.
         """
         metadata, data = {STATUS_KEY: SUCCESS if answer.ok else FAIL}, dict(answer.data)
         if not answer.ok:
@@ -213,7 +213,7 @@ class SimulatorLink:
             self._slicer_left()
 
     def publish(self, state: SimulationState) -> None:
-        """Publish what is due, and offer a trial that has just been registered or aborted."""
+        """Publish the devices that are due, and offer a trial that has just been closed."""
         self.publisher.publish(state)
         arrivals = self._arrivals()
         if arrivals != self._offered_arrivals:
@@ -306,7 +306,7 @@ class TrialOffers:
         self._start = 0
 
     def offer_newest(self) -> None:
-        """Offer the aborted trials, then the one that was registered last.
+        """Offer the aborted trials, then the last registered trial.
 
         In a study, a client counts a repeat only if it knows which trials were aborted before.
         """
