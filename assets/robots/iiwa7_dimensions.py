@@ -36,6 +36,14 @@ JOINTS = (
 )
 FLANGE_OFFSET = 0.035
 TOOL_LENGTH = 0.2
+ARM = {
+    "shoulder": 0.33999999999999997,
+    "upper": 0.3999999999999999,
+    "fore": 0.40000000000000024,
+    "tool": 0.32600000000000007,
+}
+"""The shoulder's height, and the lengths to elbow, wrist and tip; to the last bit of the joints' axes
+as their least-squares fit gave them, on which recorded trials depend."""
 
 LINK_MASSES = (4.855658, 3.394011, 4.031991, 3.394011, 4.031989, 1.529239, 2.403626, 0.259474)
 TOOL_MASS = 0.25

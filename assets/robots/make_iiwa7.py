@@ -15,6 +15,7 @@ import numpy as np
 import trimesh
 from iiwa7_base import base, plain_base
 from iiwa7_dimensions import (
+    ARM,
     COLORS,
     FLANGE_OFFSET,
     JOINTS,
@@ -112,7 +113,8 @@ def model_json(bodies: Mapping[str, LinkBody], tip_file: str) -> dict[str, Any]:
         for link, kind, file, color in files
     ]
     names = {"name": "iiwa7", "tip": TOOL_TIP_LINK}
-    return {**names, "joints": joints, "links": links, "meshes": meshes}
+    arm = ARM | {"signs": [float(sum(joint.axis)) for joint in JOINTS]}
+    return {**names, "arm": arm, "joints": joints, "links": links, "meshes": meshes}
 
 
 def shifted(x: float, y: float, z: float) -> np.ndarray:

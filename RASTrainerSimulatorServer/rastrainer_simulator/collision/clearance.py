@@ -45,14 +45,16 @@ class Clearance(NamedTuple):
         return self.tip.distance_m
 
     @property
-    def shaft_m(self) -> float:
-        """Signed clearance of the tool without its tip, m; a lower bound if far."""
-        return max(self.tip_m, SHAFT_NEAR) if self.shaft is None else self.shaft.distance_m
+    def tool_m(self) -> float:
+        """Signed clearance of the whole tool to the head, m: the clearance that is shown."""
+        return min(self.tip.distance_m, self.shaft_m)
 
     @property
-    def tool_m(self) -> float:
-        """Signed clearance of the whole tool to the head, m: what the trainee is shown."""
-        return min(self.tip_m, self.shaft_m)
+    def shaft_m(self) -> float:
+        """Signed clearance of the tool without its tip, m; a lower bound if far."""
+        if self.shaft is not None:
+            return self.shaft.distance_m
+        return max(self.tip.distance_m, SHAFT_NEAR)
 
 
 _ROUGHLY_FAR = 0.2

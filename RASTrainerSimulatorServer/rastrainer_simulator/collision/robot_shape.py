@@ -223,15 +223,13 @@ def _points(parts: list[Mesh], spacing: float) -> np.ndarray:
 def _tool_capsules(model: RobotModel, tool: RobotLink, parts: list[Mesh]) -> tuple[Capsule, ...]:
     """Return the capsules, in the tip's frame, of a tool whose mesh is in its link's frame."""
     # The pose, in the tip's frame, of a frame there whose z runs up the tool.
-    up = -model.geometry.tip_rotation[2]
-    x = np.cross(np.eye(3)[np.abs(up).argmin()], up)
-    x /= np.linalg.norm(x)
-    shaft_to_tip = rigid(np.column_stack([x, np.cross(up, x), up]), np.zeros(3))
+    up = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
+    shaft_to_tip = rigid(up, np.zeros(3))
     if parts:
         tool_to_shaft = np.linalg.inv(model.tip.offset @ shaft_to_tip) @ tool.offset
         capsules = capsules_along(apply(tool_to_shaft, _points(parts, _TOOL_SPACING)), SHAFT_START)
     else:
-        ends = np.outer((SHAFT_START, model.geometry.tool), (0.0, 0.0, 1.0))
+        ends = np.outer((SHAFT_START, model.arm.tool), (0.0, 0.0, 1.0))
         capsules = (Capsule(ends[0], ends[1], _ROD_RADIUS),)
     moved = []
     for capsule in capsules:

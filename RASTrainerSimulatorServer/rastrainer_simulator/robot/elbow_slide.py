@@ -6,7 +6,7 @@ joint rates have a closed form, so the angle of least squares is one division (G
 
 from __future__ import annotations
 
-from itertools import islice
+import itertools
 from math import inf, sqrt
 
 from rastrainer_simulator.robot.closure import (
@@ -47,14 +47,24 @@ def close(
         if nearest is None:
             return None
         elbow = nearest
-    theta = _branch(arm, elbow, wrist, tool, roll, last)
-    if theta is not None and _near_limits(theta, last, farthest):
-        return theta
-    for elbow in elbows_at_limits(arm, circle, wrist, tool, roll):
-        other = _branch(arm, elbow, wrist, tool, roll, last)
-        if other is not None and _near_limits(other, last, farthest):
-            return other
-        theta = theta or other
+    l1, l2, l3, l4, l5, l6, l7 = last
+    theta = None
+    for place in itertools.chain((elbow,), elbows_at_limits(arm, circle, wrist, tool, roll)):
+        found = _branch(arm, place, wrist, tool, roll, last)
+        if found is None:
+            continue
+        t1, t2, t3, t4, t5, t6, t7 = found
+        if (
+            -farthest <= t1 - l1 <= farthest
+            and -farthest <= t2 - l2 <= farthest
+            and -farthest <= t3 - l3 <= farthest
+            and -farthest <= t4 - l4 <= farthest
+            and -farthest <= t5 - l5 <= farthest
+            and -farthest <= t6 - l6 <= farthest
+            and -farthest <= t7 - l7 <= farthest
+        ):
+            return found
+        theta = theta or found
     return theta
 
 
@@ -79,20 +89,6 @@ def _branch(
     return nearest_branch(arm, angles, last, roll is not None)
 
 
-def _near_limits(theta: Angles, last: Angles, farthest: float) -> bool:
-    a1, a2, a3, a4, a5, a6, a7 = theta
-    b1, b2, b3, b4, b5, b6, b7 = last
-    return (
-        -farthest <= a1 - b1 <= farthest
-        and -farthest <= a2 - b2 <= farthest
-        and -farthest <= a3 - b3 <= farthest
-        and -farthest <= a4 - b4 <= farthest
-        and -farthest <= a5 - b5 <= farthest
-        and -farthest <= a6 - b6 <= farthest
-        and -farthest <= a7 - b7 <= farthest
-    )
-
-
 _FLAT = 1e-9
 _NO_MOTION = 2e-4
 LEAP = 0.02 * 0.02
@@ -113,7 +109,7 @@ def with_least_motion(
         return theta
     # Close to a singularity the nearest elbow can need a pan to turn far: try to keep each.
     elbows = elbows_that_keep_a_pan(arm, circle, wrist, goal.held_tool, goal.roll, last)
-    for elbow in islice(elbows, _MAX_KEPT):
+    for elbow in itertools.islice(elbows, _MAX_KEPT):
         kept = _near(arm, elbow, wrist, goal, last)
         if kept is not None and squared_motion(kept, last) < motion:
             theta, motion = kept, squared_motion(kept, last)

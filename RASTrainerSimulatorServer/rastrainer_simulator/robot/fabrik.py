@@ -14,21 +14,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import cos, dist, inf, sin, sqrt
+from math import cos, dist, inf, isfinite, sin, sqrt
 
-from rastrainer_simulator.robot.closure import elbow_circle
+from rastrainer.errors import InputError
+from rastrainer_simulator.robot.closure import Roll, elbow_circle
 from rastrainer_simulator.robot.elbow_slide import LEAP, close_at, self_motion, squared_motion
 from rastrainer_simulator.robot.goal import (
     BLOCKED,
     OUT_OF_REACH,
     ROLL_BLOCKED,
-    ArmFrame,
     FabrikSettings,
     Goal,
     Solution,
 )
 from rastrainer_simulator.robot.model import RobotModel
-from rastrainer_simulator.robot.reaching import Reached, Start, reach_position, reach_wrist
+from rastrainer_simulator.robot.reaching import Start, reach_position, reach_wrist
 from rastrainer_simulator.robot.srs_arm import (
     Angles,
     CanonicalArm,
@@ -39,10 +39,12 @@ from rastrainer_simulator.robot.srs_arm import (
     inside,
     tip,
 )
-from rastrainer_simulator.vectors import ZERO, Vector, scale, subtract, unit
+from rastrainer_simulator.vectors import ZERO, Vector, dot, scale, subtract, unit
 
 # A warm start that would move a joint farther than this (rad) looks for an elbow that avoids it.
 _JUMP = 0.5
+_NEAR_M = 0.03
+_NEAR_COSINE = 0.95
 _BENT = 1e-6
 
 
@@ -51,8 +53,8 @@ class Fabrik:
 
     def __init__(self, model: RobotModel, settings: FabrikSettings | None = None) -> None:
         self.settings = settings or FabrikSettings()
-        self._frame = ArmFrame(model.geometry)
-        self._arm = CanonicalArm.of(model.geometry)
+        self._arm = model.arm
+        self._q_limits = tuple((joint.lower, joint.upper) for joint in model.joints)
 
     def solve(
         self,
@@ -68,44 +70,42 @@ class Fabrik:
         tool, from the wrist to the tip. A rotation takes precedence over a direction; without both
         only the position counts. The posture is near to `q_start` (7,) rad.
         """
-        position = self._frame.position(target_position)
-        if target_rotation is not None:
-            x, y, z = self._frame.rotation(target_rotation)
-            goal = Goal(position, z, (x, y))
-        elif target_direction is not None:
-            goal = Goal(position, self._frame.direction(target_direction), None)
-        else:
-            goal = Goal(position, None, None)
+        goal = _goal(self._arm, target_position, target_direction, target_rotation)
         aim = goal.within_lengths(self._arm)
-        start: Angles = self._frame.theta(q_start)
+        signs = zip(self._arm.signs, q_start, strict=True)
+        start: Angles = tuple([sign * float(angle) + 0.0 for sign, angle in signs])
+        if not inside(start, self._arm.limits):
+            if not isfinite(sum(start)):
+                raise InputError("The joint angles to start from must be finite.")
+            start = clamped(start, self._arm.limits)
         links = chain(start)
-        if not aim.is_near(self._arm, links):
-            reached = self._reach(goal, aim, start, links, inf)
+        # Whether the tool is not yet almost at the goal, as within a motion.
+        is_far = dist(aim.position, tip(self._arm, links)) > _NEAR_M
+        if aim.tool is not None and not is_far:
+            is_far = dot(links[2], aim.tool) <= _NEAR_COSINE
+        if is_far:
+            theta = self._reach(goal, aim, start, links, inf)
+        elif aim.tool is None:
+            start, links = _predicted(self._arm, start, links, aim.position)
+            theta = self._reach(goal, aim, start, links, _JUMP)
         else:
-            if aim.tool is None:
-                start, links = _predicted(self._arm, start, links, aim.position)
-            else:
-                followed = _followed(self._arm, start, links, aim)
-                if followed is not None:
-                    return self._solution(goal, followed, 1)
-            reached = self._reach(goal, aim, start, links, _JUMP)
-        return self._solution(goal, *reached)
-
-    def _solution(self, goal: Goal, theta: Angles, passes: int, blocked: bool = False) -> Solution:
+            theta = _followed(self._arm, start, links, aim)
+            if theta is None:
+                theta = self._reach(goal, aim, start, links, _JUMP)
+        settings, blocked = self.settings, theta is None
+        theta = start if theta is None else theta
         off, turned = goal.errors(self._arm, theta, chain(theta))
-        settings = self.settings
         converged = off <= settings.tolerance_m and turned <= settings.tolerance_rad
-        if converged:
-            reason = ""
-        elif blocked:
-            reason = BLOCKED
-        else:
-            reason = OUT_OF_REACH if off > settings.tolerance_m else ROLL_BLOCKED
-        return Solution(self._frame.q(theta), off, turned, converged, passes, reason)
+        reason = OUT_OF_REACH if off > settings.tolerance_m else ROLL_BLOCKED
+        if converged or blocked:
+            reason = "" if converged else BLOCKED
+        q = tuple([sign * angle for sign, angle in zip(self._arm.signs, theta, strict=True)])
+        q = q if inside(q, self._q_limits) else clamped(q, self._q_limits)
+        return Solution(q, off, turned, converged, reason)
 
     def _reach(
         self, goal: Goal, aim: Goal, theta: Angles, links: Chain, farthest: float
-    ) -> Reached:
+    ) -> Angles | None:
         a, b = self._arm.upper, self._arm.fore
         (ux, uy, uz), (fx, fy, fz), _, _, (nx, ny, nz), _ = links
         ex, ey, ez = a * ux, a * uy, a * uz
@@ -119,6 +119,55 @@ class Fabrik:
         start = Start(theta, wrist, (ex, ey, ez), farthest)
         reach = reach_position if goal.tool is None else reach_wrist
         return reach(self._arm, goal, aim, start, self.settings.max_iterations)
+
+
+# A rotation whose columns are not perpendicular unit vectors to this is no rotation.
+_SKEW = 1e-6
+
+
+def _goal(
+    arm: CanonicalArm,
+    position: Sequence[float],
+    direction: Sequence[float] | None,
+    rotation: Sequence[Sequence[float]] | None,
+) -> Goal:
+    """Return a target of World in the arm's frame."""
+    x, y, z = map(float, position)
+    if not isfinite(x + y + z):
+        raise InputError("The target position must be three finite numbers.")
+    place = (x + 0.0, y + 0.0, z - arm.shoulder)  # No −0.0, which could turn a pan by π.
+    if rotation is not None:
+        return Goal(place, *_axes(rotation))
+    if direction is None:
+        return Goal(place, None, None)
+    x, y, z = map(float, direction)
+    size = sqrt(x * x + y * y + z * z)
+    if not 1e-9 <= size < inf:
+        raise InputError("The tool direction must be a finite vector with a length.")
+    return Goal(place, (x / size + 0.0, y / size + 0.0, z / size + 0.0), None)
+
+
+def _axes(rotation: Sequence[Sequence[float]]) -> tuple[Vector, Roll]:
+    """Return the tool's direction, and its x and y axes, of a rotation (3, 3) of the tip."""
+    (ax, bx, cx), (ay, by, cy), (az, bz, cz) = (map(float, row) for row in rotation)
+    skew = (
+        abs(ax * ax + ay * ay + az * az - 1.0)
+        + abs(bx * bx + by * by + bz * bz - 1.0)
+        + abs(ax * bx + ay * by + az * bz)
+        + abs(ay * bz - az * by - cx)
+        + abs(az * bx - ax * bz - cy)
+        + abs(ax * by - ay * bx - cz)
+    )
+    if not skew <= _SKEW:
+        raise InputError("The tool rotation's columns must be perpendicular unit vectors.")
+    # Perpendicular and of unit length to the last bit: the columns are so to `_SKEW` only.
+    size = sqrt(cx * cx + cy * cy + cz * cz)
+    tx, ty, tz = cx / size, cy / size, cz / size
+    part = ax * tx + ay * ty + az * tz
+    x, y, z = ax - part * tx, ay - part * ty, az - part * tz
+    size = sqrt(x * x + y * y + z * z)
+    x, y, z = x / size, y / size, z / size
+    return (tx, ty, tz), ((x, y, z), (ty * z - tz * y, tz * x - tx * z, tx * y - ty * x))
 
 
 _DAMPING = 1e-6

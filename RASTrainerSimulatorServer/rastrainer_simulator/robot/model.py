@@ -7,6 +7,7 @@ that read URDF and meshes take a second to import and 90 MB.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -18,13 +19,15 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.robot.srs_arm import Joint, SrsGeometry, srs_geometry
+from rastrainer_simulator.robot.srs_arm import CanonicalArm, Joint
 
 FOLDER = ("robots", "iiwa7")
 PREPARED_NAME = "prepared.json"
 MAX_BYTES = 2**20
 _KINDS = ("visual", "collision")
 _SUFFIXES = (".glb", ".dae", ".obj", ".ply", ".stl")
+HOME = tuple(map(math.radians, (0.0, 30.0, 0.0, -90.0, 0.0, 60.0, 0.0)))
+"""rad: the elbow is bent by 90°, the tool points straight down."""
 _GRAY = (0.8, 0.8, 0.8, 1.0)
 
 
@@ -58,9 +61,14 @@ class RobotModel:
     joints: tuple[Joint, ...]
     links: tuple[RobotLink, ...]  # parents before children
     tip: RobotLink
-    home: tuple[float, ...]  # rad: elbow bent by 90°, tool straight down
-    geometry: SrsGeometry
+    arm: CanonicalArm
     meshes: tuple[MeshPart, ...]
+    home: tuple[float, ...] = HOME
+
+    @property
+    def limits(self) -> np.ndarray:
+        """(2, 7) float: lower and upper joint limits in rad."""
+        return np.array([(joint.lower, joint.upper) for joint in self.joints]).T
 
     @property
     def velocity(self) -> np.ndarray:
@@ -129,9 +137,8 @@ def robot_model(value: Mapping[str, Any], folder: Path, other: Path | None = Non
         else:
             meshes.extend(part for part in own if (part.link, part.kind) == (link.name, kind))
     tip = next(link for link in links if link.name == value["tip"])
-    geometry = srs_geometry(joints, tip.offset)
-    home = geometry.home()
-    return RobotModel(value["name"], joints, links, tip, home, geometry, tuple(meshes))
+    arm = CanonicalArm.of(**value["arm"], joints=joints)
+    return RobotModel(value["name"], joints, links, tip, arm, tuple(meshes))
 
 
 def _replacement(link: str, kind: str, folder: Path) -> Path | None:

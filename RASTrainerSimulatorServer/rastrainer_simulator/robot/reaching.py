@@ -34,39 +34,32 @@ class Start(NamedTuple):
     farthest: float  # rad: a joint that would move more calls for another solution
 
 
-class Reached(NamedTuple):
-    """Joint angles, the passes that they took, and whether the limits kept the arm where it was."""
-
-    theta: Angles
-    passes: int
-    blocked: bool = False
-
-
-def reach_position(arm: CanonicalArm, goal: Goal, aim: Goal, start: Start, most: int) -> Reached:
+def reach_position(
+    arm: CanonicalArm, goal: Goal, aim: Goal, start: Start, most: int
+) -> Angles | None:
     """Bring the tip to a goal, or as near as it gets, the tool's direction being free.
 
-    `aim` is the goal, moved to where the arm's lengths allow it.
+    `aim` is the goal, moved to where the arm's lengths allow it. At most `most` passes are tried.
+    None if the limits allow nothing better than the start.
     """
     target = aim.position
-    theta, passes = _iterate(arm, target, start, most)
+    theta = _iterate(arm, target, start, most)
     if theta is not None:
-        return Reached(theta, passes)
+        return theta
     for wrist, elbow in _planar_starts(arm, target, start.theta):
-        theta, used = _iterate(arm, target, Start(start.theta, wrist, elbow, inf), 1)
-        passes += used
+        theta = _iterate(arm, target, Start(start.theta, wrist, elbow, inf), 1)
         if theta is not None:
-            return Reached(theta, passes)
+            return theta
     upper, fore, tool = _nearest_links(arm, goal.position, start.theta)
     angles = joint_angles(upper, fore, tool, None, start.theta)
-    theta = nearest_branch(arm, angles, start.theta, False)
-    return Reached(theta, passes) if theta else Reached(start.theta, passes, True)
+    return nearest_branch(arm, angles, start.theta, False)
 
 
-def reach_wrist(arm: CanonicalArm, goal: Goal, aim: Goal, start: Start, most: int) -> Reached:
+def reach_wrist(arm: CanonicalArm, goal: Goal, aim: Goal, start: Start, most: int) -> Angles | None:
     """Bring the tip to a goal with the tool's direction, and its roll where given.
 
-    `aim` is as in `reach_position`. Where the limits do not allow it, the roll is given up first,
-    then the position.
+    The arguments are as in `reach_position`. If the limits do not allow the goal, the roll is given
+    up first, then the position.
     """
     wrist, tool = aim.wrist(arm), goal.held_tool
     circle = elbow_circle(arm, wrist, start.elbow)
@@ -74,17 +67,13 @@ def reach_wrist(arm: CanonicalArm, goal: Goal, aim: Goal, start: Start, most: in
     if theta is not None:
         if start.farthest < inf:
             theta = with_least_motion(arm, theta, circle, wrist, goal, start.theta)
-        return Reached(theta, 1)
-    passes = 1
+        return theta
     if goal.roll:
         theta = close(arm, circle, wrist, tool, None, start.theta)
     if theta is None:
-        passes += most
         wrist, elbow = settle(arm, goal.wrist(arm), start.elbow, tool, most)
         theta = close(arm, elbow_circle(arm, wrist, elbow), wrist, tool, None, start.theta)
-    if theta is None:
-        return Reached(start.theta, passes, True)
-    if goal.roll:
+    if theta is not None and goal.roll:
         # The last joint is turned as near to the roll as its limits allow.
         axis = chain(theta)[5]
         x, y = goal.roll
@@ -93,28 +82,26 @@ def reach_wrist(arm: CanonicalArm, goal: Goal, aim: Goal, start: Start, most: in
         if fitted is None:
             fitted = min(arm.limits[6], key=lambda limit: abs(remainder(limit - wanted, TURN)))
         theta = (*theta[:6], fitted)
-    return Reached(theta, passes)
+    return theta
 
 
-def _iterate(
-    arm: CanonicalArm, target: Vector, start: Start, most: int
-) -> tuple[Angles | None, int]:
+def _iterate(arm: CanonicalArm, target: Vector, start: Start, most: int) -> Angles | None:
     last, wrist, elbow, farthest = start
     gap = inf
-    for passes in range(1, most + 1):
+    for _ in range(most):
         reached = backward(arm, target, wrist, elbow)
         if reached is None:
-            return None, passes
+            return None
         held, tool = reached
         circle = elbow_circle(arm, held, elbow)
         theta = close(arm, circle, held, tool, None, last, farthest)
         if theta is not None:
-            return theta, passes
+            return theta
         wrist, elbow = forward(arm, held, elbow)
         before, gap = gap, dist(wrist, held)
         if abs(before - gap) < _STALLED * gap:
-            return None, passes
-    return None, most
+            return None
+    return None
 
 
 _TINY = 1e-12

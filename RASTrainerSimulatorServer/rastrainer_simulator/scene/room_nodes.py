@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +33,12 @@ from rastrainer_simulator.scene.nodes import (
 from rastrainer_simulator.scene.surfaces import box, post, soft_box, turned
 
 FLOOR_HEIGHT = -0.78
-_SHAPES = {"box": box, "soft box": soft_box, "post": post, "turned": turned}
+_SHAPES: dict[str, Callable[..., Surface]] = {
+    "box": box,
+    "soft box": soft_box,
+    "post": post,
+    "turned": turned,
+}
 _MATERIALS = {
     material.name: material
     for material in (

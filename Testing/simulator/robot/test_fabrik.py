@@ -214,7 +214,7 @@ def test_the_tolerance_and_the_iteration_limit_are_settings(robot):
     solution = loose.solve([1.5, 0, 0.34], q_start=robot.home)
     assert solution.converged
     assert solution.position_error_m == pytest.approx(0.374)
-    assert loose.solve([0.5, 0.1, 0.3], q_start=robot.home).iterations == 1
+    assert loose.solve([0.5, 0.1, 0.3], q_start=robot.home).converged
     for wrong in ({"tolerance_m": 0.0}, {"max_iterations": 0}, {"tolerance_rad": math.nan}):
         with pytest.raises(InputError, match="above zero"):
             FabrikSettings(**wrong)
