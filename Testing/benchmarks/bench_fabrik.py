@@ -110,7 +110,7 @@ def _cold(
     robot: Pinocchio, ours: Ours, peers: Sequence[Solver], mode: str, sizes: Sizes
 ) -> list[dict]:
     random = np.random.default_rng(SEED)
-    postures = random.uniform(robot.geometry.q_lower, robot.geometry.q_upper, (sizes.verified, 7))
+    postures = random.uniform(*robot.limits, (sizes.verified, 7))
     targets = [robot.tip(q).copy() for q in postures]
     solved = 0
     for target in targets:
@@ -172,7 +172,7 @@ def _suffix(peer: Solver) -> str:
 
 def _exact(robot: Pinocchio, q: np.ndarray, target: pin.SE3, mode: str) -> bool:
     off, turned = robot.errors(q, target, mode)
-    inside = bool(np.all(np.clip(q, robot.geometry.q_lower, robot.geometry.q_upper) == q))
+    inside = bool(np.all(np.clip(q, *robot.limits) == q))
     return inside and off <= EXACT_M and turned <= EXACT_RAD
 
 

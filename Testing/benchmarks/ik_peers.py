@@ -106,7 +106,7 @@ class LeastSquares:
             longest = np.abs(step).max()
             if longest > self.longest_step:
                 step *= self.longest_step / longest
-            q = np.clip(q + step, robot.geometry.q_lower, robot.geometry.q_upper)
+            q = np.clip(q + step, *robot.limits)
         return None
 
 

@@ -68,9 +68,7 @@ def wander(count, seed, step=0.02):
     """Joint angles of a random walk from home."""
     random, q = np.random.default_rng(seed), np.array(ROBOT.home)
     for _ in range(count):
-        q = np.clip(
-            q + random.normal(size=7) * step, ROBOT.geometry.q_lower, ROBOT.geometry.q_upper
-        )
+        q = np.clip(q + random.normal(size=7) * step, *ROBOT.limits)
         yield q
 
 

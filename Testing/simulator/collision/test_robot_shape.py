@@ -127,7 +127,7 @@ def test_a_robot_without_meshes_is_a_rod_from_the_tip_to_the_wrist():
     (rod,) = shape.tool.capsules
     assert shape.links == ()
     np.testing.assert_allclose(rod.start, [0.0, 0.0, -SHAFT_START], atol=1e-9)
-    np.testing.assert_allclose(rod.end, [0.0, 0.0, -robot.geometry.tool], atol=1e-9)
+    np.testing.assert_allclose(rod.end, [0.0, 0.0, -robot.arm.tool], atol=1e-9)
     vertices, triangles = ball(0.05, 3)
     found = Collision(shape, vertices, triangles).check(KINEMATICS.links(robot.home))
     assert (found.links_m, found.self_m) == (FAR, FAR)

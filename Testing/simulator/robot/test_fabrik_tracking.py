@@ -106,7 +106,7 @@ def test_joint_speeds_stay_within_limits_on_wide_paths_past_singularities_and_ed
         moved = np.abs(np.subtract(moved_to, q))
         assert np.all(moved <= most * (1.0 + 1e-9))
         assert np.degrees(moved).max() <= 2.0
-        assert np.all(np.clip(moved_to, robot.geometry.q_lower, robot.geometry.q_upper) == moved_to)
+        assert np.all(np.clip(moved_to, *robot.limits) == moved_to)
         waited += has_waited
         reached += solution.converged and not has_waited
         q = moved_to
@@ -124,7 +124,7 @@ def test_hardly_any_step_of_a_wide_path_needs_the_limiter(fabrik, robot):
 
 def test_a_joint_at_its_limit_stops_and_the_others_continue(fabrik, robot):
     start = fabrik.solve([0.5, 0.0, 0.4], DOWN, q_start=robot.home)
-    q = (*start.q[:5], robot.geometry.q_upper[5], start.q[6])
+    q = (*start.q[:5], robot.limits[1][5], start.q[6])
     tip = make_kinematics(robot).tip(q)[:3, 3]
     for goal in np.eye(3):
         steps, solutions = track(fabrik, straight(tip, tip + 0.05 * goal), q)

@@ -1,19 +1,14 @@
-import copy
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.robot.kinematics import make_kinematics
-from rastrainer_simulator.robot.model import load_robot, read_prepared, robot_model
+from rastrainer_simulator.robot.model import load_robot
 
 
 def test_the_limits_are_those_of_the_data_sheet(robot):
-    np.testing.assert_allclose(
-        np.degrees(robot.geometry.q_upper), [170, 120, 170, 120, 170, 120, 175]
-    )
-    np.testing.assert_array_equal(robot.geometry.q_lower, np.negative(robot.geometry.q_upper))
+    np.testing.assert_allclose(np.degrees(robot.limits[1]), [170, 120, 170, 120, 170, 120, 175])
+    np.testing.assert_array_equal(robot.limits[0], np.negative(robot.limits[1]))
     np.testing.assert_allclose(np.degrees(robot.velocity), [98, 98, 100, 130, 140, 180, 180])
 
 
@@ -49,19 +44,3 @@ def test_other_meshes_replace_those_of_the_urdf(tmp_path, robot):
     assert kept == [part.path for part in robot.meshes if part.link != "iiwa_link_3"]
     with pytest.raises(InputError, match="no mesh for this robot"):
         load_robot(mesh_folder=tmp_path / "empty")
-
-
-@pytest.mark.parametrize(
-    ("joint", "origin"),
-    [
-        # An offset elbow, a bent wrist: what other 7R arms have.
-        (3, (0.045, 0.0105, 0.1925)),
-        (5, (0.088, -0.0707, 0.1925)),
-    ],
-)
-def test_an_arm_that_is_not_s_r_s_is_refused(joint, origin):
-    model = copy.deepcopy(read_prepared()["model"])
-    for row, value in enumerate(origin):
-        model["joints"][joint]["origin"][row][3] = value
-    with pytest.raises(InputError, match="not an S-R-S arm"):
-        robot_model(model, Path())
