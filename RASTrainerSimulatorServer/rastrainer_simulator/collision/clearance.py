@@ -25,13 +25,9 @@ SHAFT_NEAR = 0.0015
 class Clearance(NamedTuple):
     """Signed clearances of one posture, in m (below zero: overlap); points and normals in World.
 
-    Attributes:
-        tip: the very tip of the tool against the head.
-        shaft: the rest of the tool against the head, where it is near (see `SHAFT_NEAR`), else
-            None; it starts 3 mm behind the tip.
-        links_m: the links, flange included, against the head; at most FAR.
-        self_m: the arm against itself, links at least three joints apart; at most FAR.
-        table_m: arm and tool against the table and the head's stand; at most FAR.
+    `tip` is the very tip of the tool against the head, `shaft` the rest of the tool from 3 mm
+    behind the tip, None unless it is near (`SHAFT_NEAR`). The others are at most FAR: the links
+    against the head, the arm against itself, and arm and tool against table and stand.
     """
 
     tip: Nearest

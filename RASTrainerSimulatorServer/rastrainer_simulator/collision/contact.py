@@ -52,10 +52,8 @@ ToJoints = Callable[[Vector], Sequence[float]]
 class Moved:
     """Where a motion ended.
 
-    Attributes:
-        link_to_world: (4, 4) float, m, by the names of the links.
-        stopped_by: "links", "self" or "table" (rarely "tip" or "shaft", at the edge of the arm's
-            reach) that cut the motion short, else "". Sliding does not stop a motion.
+    `link_to_world` are (4, 4) float, m, by the names of the links. "links", "self" or "table"
+    (rarely "tip" or "shaft", at the edge of the arm's reach) cut a motion short: `stopped_by`.
     """
 
     q: Joints

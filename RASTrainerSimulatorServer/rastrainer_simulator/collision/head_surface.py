@@ -18,12 +18,9 @@ _FLAT = 1e-12
 
 
 class Nearest(NamedTuple):
-    """The point of the head's surface that is nearest to the tip or to the shaft.
+    """The point (m) of the head's surface that is nearest to the tip or to the shaft.
 
-    Attributes:
-        distance_m: signed clearance, m; below zero inside the head.
-        point: on the surface, m.
-        normal: unit vector away from the head, along which the clearance grows.
+    The distance is below zero inside the head; it grows along the normal, a unit vector.
     """
 
     distance_m: float

@@ -27,11 +27,8 @@ from rastrainer_simulator.vectors import Vector, dot, subtract
 class ProximitySettings:
     """Where the states start and end, in m; with hysteresis, so that none flickers.
 
-    Attributes:
-        near: radius of the sphere about the tip within which the head is in proximity.
-        far: clearance of the tip at which proximity ends.
-        touching: clearance of tip or shaft at which contact starts.
-        released: clearance of the whole tool at which contact ends.
+    Proximity starts at the clearance `near` of the tip and ends at `far`; contact starts at the
+    clearance `touching` of the whole tool and ends at `released`.
     """
 
     near: Setting = NEAR_MM / MM_PER_M
@@ -58,12 +55,7 @@ DEEPEST = 0.010
 
 
 class Pressing:
-    """The virtual depth of the tool in the head, all lengths in m.
-
-    Attributes:
-        depth: now; 0 without contact.
-        deepest: greatest of the contact that lasts, or of the last one.
-    """
+    """The virtual depth of the tool in the head, m, and the deepest of the last contact."""
 
     def __init__(self) -> None:
         self.depth = 0.0

@@ -99,12 +99,9 @@ SWIVELS_DEG = (0.0, 60.0, -60.0)
 
 @dataclass(frozen=True)
 class PlannedTouch:
-    """A planned touch of a point: the joint angles, rad, and how the tool is held.
+    """A planned touch of a point: joint angles, rad, and the tool's direction (3,), World.
 
-    Attributes:
-        direction: (3,) float, of the tool, from the wrist to the tip, World.
-        leaning_deg: between the direction and the inward normal.
-        number: of the direction among the `tool_directions`.
+    It leans from the inward normal, and has a number among the `tool_directions`.
     """
 
     q: tuple[float, ...]
@@ -116,14 +113,12 @@ class PlannedTouch:
 class TouchPlanner:
     """Looks for a posture that touches a place with nothing but the tip, inside the joint limits.
 
-    Args:
-        clearance: of the links to the head, to each other and to the table, m. The tool's shaft
-            need only be clear of the head: next to the tip it cannot be farther away.
+    The links keep `CLEARANCE_M`. The tool's shaft need only be clear of the head: next to the tip
+    it cannot be farther away.
     """
 
-    def __init__(self, model: RobotModel, collision: Collision, clearance: float = 0.005) -> None:
+    def __init__(self, model: RobotModel, collision: Collision) -> None:
         self._collision = collision
-        self._clearance = clearance
         self._kinematics = make_kinematics(model)
         # No later pass can hold a goal that the first cannot: it would only approach it.
         self._fabrik = Fabrik(model, FabrikSettings(max_iterations=1))
@@ -147,7 +142,7 @@ class TouchPlanner:
                 if not solution.converged:
                     break
                 links = self._kinematics.links(solution.q)
-                if self._collision.is_clear(links, self._clearance):
+                if self._collision.is_clear(links, CLEARANCE_M):
                     return PlannedTouch(solution.q, direction, _LEANINGS[number][0], number)
         return None
 

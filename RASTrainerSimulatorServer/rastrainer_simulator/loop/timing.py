@@ -35,78 +35,39 @@ def sleep_until(moment: float) -> None:
 def precise_timing(is_first_in_line: bool) -> Iterator[None]:
     """Let this process wake up on time until the end of the context.
 
-    With `is_first_in_line` this thread runs before all ordinary threads, if the system permits it;
-    it must sleep between its ticks, or they would never run.
+    With `is_first_in_line` this thread runs before all ordinary threads from now on, if the system
+    permits it; it must sleep between its ticks, or they would never run.
     """
     interval = sys.getswitchinterval()
     sys.setswitchinterval(SWITCH_INTERVAL_S)
+    if is_first_in_line:
+        raise_thread_priority(FIRST)
     try:
-        with _fine_timer(), _in_line(FIRST) if is_first_in_line else contextlib.nullcontext():
+        with _fine_timer():
             yield
     finally:
         sys.setswitchinterval(interval)
 
 
-def raise_thread_priority() -> None:
+def raise_thread_priority(priority: int = SECOND) -> None:
     """Let this thread run before all ordinary threads from now on, but after the control loop.
 
     It is for the threads that share the interpreter with the loop in every tick: if such a thread
-    is put aside while it holds the interpreter, the loop waits, too (priority inversion). Nothing
-    happens if the system does not permit it.
+    is put aside while it holds the interpreter, the loop waits, too (priority inversion). Windows
+    permits it to everyone, Linux to root and up to the limit of `ulimit -r`; else nothing happens.
     """
     if sys.platform == "win32":
-        _set_windows_priority(_WINDOWS_PRIORITY[SECOND])
-    elif hasattr(os, "SCHED_FIFO"):
-        set_real_time(SECOND)
-
-
-@contextlib.contextmanager
-def _in_line(priority: int) -> Iterator[None]:
-    """Request real-time priority; Linux grants it to root and up to the limit of `ulimit -r`."""
-    if sys.platform == "win32":
-        before = _set_windows_priority(_WINDOWS_PRIORITY[priority])
-        try:
-            yield
-        finally:
-            _set_windows_priority(before)
-        return
-    if not hasattr(os, "SCHED_FIFO"):
-        yield
-        return
-    policy, parameters = os.sched_getscheduler(0), os.sched_getparam(0)
-    if not set_real_time(priority):
-        yield
-        return
-    try:
-        yield
-    finally:
-        # Only root may clear the flag again.
-        os.sched_setscheduler(0, policy | os.SCHED_RESET_ON_FORK, parameters)
-
-
-def set_real_time(priority: int) -> bool:
-    """Set the priority of this thread; return whether the system permits it."""
-    # Processes that the thread starts, such as the window, stay ordinary.
-    policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK
-    try:
-        os.sched_setscheduler(0, policy, os.sched_param(priority))
-    except PermissionError:
-        return False
-    return True
-
-
-if sys.platform == "win32":
-
-    def _set_windows_priority(priority: int) -> int:
-        """Set this thread's priority, which Windows permits to everyone; return the former one."""
         import ctypes
 
         kernel = ctypes.windll.kernel32
         kernel.GetCurrentThread.restype = ctypes.c_void_p
         thread = ctypes.c_void_p(kernel.GetCurrentThread())
-        before = kernel.GetThreadPriority(thread)
-        kernel.SetThreadPriority(thread, priority)
-        return before
+        kernel.SetThreadPriority(thread, _WINDOWS_PRIORITY[priority])
+    elif hasattr(os, "SCHED_FIFO"):
+        # Processes and threads that the thread starts, such as the window, stay ordinary.
+        policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK
+        with contextlib.suppress(PermissionError):
+            os.sched_setscheduler(0, policy, os.sched_param(priority))
 
 
 @contextlib.contextmanager

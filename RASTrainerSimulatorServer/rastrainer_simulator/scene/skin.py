@@ -22,12 +22,9 @@ PATCH_RADIUS = 10.0
 
 @dataclass(frozen=True)
 class Shape:
-    """Triangles in the head's frame, RAS mm, or flat triangles in the x-y plane.
+    """Triangles (m, 3) in the head's frame, RAS mm, counterclockwise seen from outside.
 
-    Attributes:
-        points: (n, 3) float, mm.
-        triangles: (m, 3) int, counterclockwise seen from outside.
-        outward: (n, 3) float, unit normals of the skin below.
+    `points` are (n, 3) float, and `outward` (n, 3) the unit normals of the skin below them.
     """
 
     points: np.ndarray
@@ -166,11 +163,8 @@ _ACROSS = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
 class Arrow:
     """The middle line of an arrow; mm, RAS.
 
-    Attributes:
-        path: (n, 3) float, on the skin, from the fiducial on, a step apart.
-        outward: (n, 3) float, the skin's normals there.
-        start: length of the path at which the arrow starts.
-        end: and at which its tip is; no more where fiducials leave no room for it.
+    The `path` (n, 3) is on the skin, from the fiducial on, a step apart, with the skin's normals
+    `outward`. The arrow starts and ends at lengths of it, the same if there is no room for it.
     """
 
     path: np.ndarray

@@ -40,12 +40,10 @@ _ROOM_ENOUGH = 6.0
 
 @dataclass(frozen=True)
 class Place:
-    """One possible position of a number; its middle (3,) is on the skin.
+    """One possible position of a number, its middle (3,) on the skin.
 
-    Attributes:
-        covers: (k, 3) float, places all over the number's rectangle on the skin.
-        clearance: to arrows and to the rims of all dots.
-        cost: how much worse it is than the best place there could be, mm.
+    `covers` (k, 3) are places all over its rectangle, with the clearance to arrows and rims;
+    `cost` is how much worse it is than the best place there could be, mm.
     """
 
     middle: np.ndarray

@@ -54,16 +54,11 @@ _LOOP_CHECK_PERIOD_S = 1.0
 class ServerOptions:
     """The options of the simulator.
 
-    Attributes:
-        seed: of the heads' poses in the trials, which determines the truth.
-        is_seeded: whether that seed was chosen, not drawn.
-        port: to listen on; 0 is any free one.
-        connect_to: host and port of a listening Slicer, in place of listening.
-        scenario: folder; None is the default scenario.
-        view_port: of the views; 0 is any free one, None the usual one or else any free one.
-        has_network: whether other computers may show views, too.
-        has_desktop: whether a window is opened; the simulator ends when its user closes it.
-        scores_alone: whether a trial outside of a study is scored where no Slicer is connected.
+    The `seed` determines the heads' poses; `is_seeded` is whether it was chosen, not drawn. A port
+    0 is any free port; a `view_port` None is the usual port if it is free. `connect_to` is a
+    listening Slicer, in place of listening. With `has_network`, other computers may show views,
+    too; with `has_desktop`, the simulator ends when its window is closed; with `scores_alone`, it
+    scores trials outside of a study if no Slicer is connected.
     """
 
     records: Path

@@ -83,12 +83,10 @@ def camera_axes(view_direction: Vector, view_up: Vector) -> Axes:
 class ToolDirection(str, Enum):
     """The ways to choose the tool's direction.
 
-    FREE: the inverse kinematics alone, as in the paper: only the tip's position is followed.
-    CLEAR: the same, but near the head the tool leans no farther from the surface normal than
-        keeps its shaft off the skin; the paper's skull let the tool through.
-    HELD: the operator: it stays as it is until the second stick turns it.
-    NORMAL: near the head the skin: the tool comes down along the surface normal; else as HELD.
-    POSE: as HELD, and the tool does not roll about its axis either.
+    FREE: by the inverse kinematics alone, as in the paper. CLEAR: the same, but near the head the
+    tool leans no farther from the surface normal than keeps its shaft off the skin. HELD: it stays
+    as it is until the second stick turns it. NORMAL: as HELD, but near the head it comes down along
+    the surface normal. POSE: as HELD, and the tool does not roll about its axis either.
     """
 
     FREE = "free"
@@ -105,8 +103,7 @@ class SteeringSettings:
     Attributes:
         coarse_turn, fine_turn: fastest turn by the stick, without and with the trigger, rad/s.
         leaning_turn: fastest turn toward the surface normal, rad/s.
-        largest_lean: of CLEAR, between the tool and the normal at the surface.
-        near: clearance of the tip up to which the lean is limited to that.
+        largest_lean: of CLEAR, between the tool and the normal, up to the clearance `near`.
         far: clearance from which the lean is not limited.
         shaft_clearance: clearance of the shaft below which the tool turns away.
         from_above: least downward part of the direction toward which the tool leans, 0…1: coming

@@ -30,10 +30,8 @@ from rastrainer_simulator.vectors import (
 class StickResponse:
     """How a stick's deflection becomes a speed.
 
-    Attributes:
-        dead_zone: share of the stick's travel that counts as released, 0…1. The zone is round, so
-            that a diagonal deflection is not bent toward an axis.
-        exponent: of the response curve; 1 is linear, larger is gentler near the center.
+    The `dead_zone`, a share of the stick's travel, is round, so that a diagonal deflection is not
+    bent toward an axis. An `exponent` above 1 makes the response gentler near the center.
     """
 
     dead_zone: Setting = 0.12
@@ -82,13 +80,7 @@ class TeleoperationSettings:
 
 @dataclass(frozen=True)
 class Tip:
-    """The tool's tip in World.
-
-    Attributes:
-        position: m.
-        direction: unit vector from A7 to the tip.
-        across: the tip's x axis, a unit vector.
-    """
+    """The tool's tip in World, m, the unit vector from A7 to it, and its x axis."""
 
     position: Vector
     direction: Vector
@@ -97,14 +89,10 @@ class Tip:
 
 @dataclass(frozen=True)
 class MotionRequest:
-    """The operator's request for this tick.
+    """The operator's request for this tick: the tip's displacement, m, World.
 
-    Attributes:
-        motion: its source; NONE keeps the arm still.
-        displacement: of the tip, m, World.
-        direction: of the tool, unit vector; None if it is free.
-        across: the x axis of the tool's tip, unit vector; None if the tool may roll.
-        goal: end of the motion, m, World; None if no position is commanded.
+    `direction` is the tool's, None if it is free, `across` its tip's x axis, None if it may roll.
+    `goal` is the end of the motion, m, World, None if no position is commanded.
     """
 
     motion: Motion
@@ -118,9 +106,8 @@ class MotionRequest:
 class Teleoperation:
     """Turns sticks and commanded motions into the tip's displacement, tick by tick.
 
-    A request always starts from where the tip is, not from where it should have been: nothing
-    builds up while the tool is stopped by the head or by a joint's speed limit, and the arm stops
-    in the tick in which the stick is released.
+    A request always starts from where the tip is: nothing builds up while the head or a joint's
+    speed limit stops the tool, and the arm stops in the tick in which the stick is released.
     """
 
     def __init__(self, settings: TeleoperationSettings) -> None:

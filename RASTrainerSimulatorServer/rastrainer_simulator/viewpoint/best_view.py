@@ -98,10 +98,8 @@ class ViewedPoint:
 class PointViews:
     """The views of a fiducial in any posture of the arm.
 
-    Attributes:
-        eyes: (k, 3) float, from where head and table leave fiducial and number visible, the best
-            first; World, m.
-        planned: the posture in which it is to be touched; None if the robot cannot.
+    From the `eyes` (k, 3), World, m, the best first, head and table leave fiducial and number
+    visible. `planned` is the posture in which it is to be touched, None if the robot cannot.
     """
 
     point: ViewedPoint
@@ -111,12 +109,10 @@ class PointViews:
 
 @dataclass(frozen=True)
 class BestView:
-    """A viewpoint for a touch: World, m.
+    """A viewpoint for a touch: an eye that sees fiducial, number and tip as well as possible.
 
-    Attributes:
-        eye: from where fiducial, number and tip are seen as well as possible.
-        beside: an eye that looks along the skin; None if something is always in between.
-        is_whole: whether nothing of these is hidden from `eye`.
+    `is_whole` is whether it sees all of them. The eye `beside` looks along the skin; None if
+    something is always in between. World, m.
     """
 
     eye: Vector
@@ -298,8 +294,8 @@ class TouchViews:
     def of(self, task: Task, head_to_world: np.ndarray) -> Iterator[tuple[str, BestView | None]]:
         """Yield each fiducial's label and best view during its touch, as planned.
 
-        A fiducial that the robot cannot touch, or that no view shows with its number and the tip,
-        has None. HeadToWorld is (4, 4) float, mm.
+        None if the robot cannot touch it, or no view shows it with its number and the tip.
+        HeadToWorld is (4, 4) float, mm.
         """
         self.begin(task, head_to_world)
         for label in task.labels:

@@ -50,11 +50,8 @@ class CameraPose:
 class Orbit:
     """The difference of a view from a camera of the scenario.
 
-    Attributes:
-        azimuth_deg: turn about World's vertical, counterclockwise from above.
-        elevation_deg: how much higher the camera stands, as an angle.
-        zoom: its distance, as a share of the scenario camera's.
-        shift: of the focal point, World, m.
+    It is turned about World's vertical, counterclockwise from above, stands higher by an angle, its
+    distance is a share (`zoom`) of the other's, and its focal point is shifted (World, m).
     """
 
     azimuth_deg: float = 0.0
@@ -189,13 +186,9 @@ class Pictures:
 
 
 class ViewControl:
-    """One view of the scene, which all windows and pages draw.
+    """One view of the scene, which all windows and pages draw: an orbit from a scenario's camera.
 
-    Attributes:
-        camera: the scenario's camera that it starts from.
-        orbit: how it differs from that.
-        is_automatic: whether the last move was automatic.
-        travel: the move to another position that is under way.
+    `travel` is a move under way; `is_automatic` is whether the last move was automatic.
     """
 
     def __init__(self) -> None:

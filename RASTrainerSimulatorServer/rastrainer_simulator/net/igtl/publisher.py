@@ -164,15 +164,9 @@ class PoseSubscription:
         """`is_steady` also wants poses that have not changed."""
         self.tool_tip = Pacer(tool_tip_hz)
         self.links = Pacer(links_hz)
-        self._is_steady = is_steady
-        self._sent: dict[str, bytes] = {}
-
-    def is_news(self, device: str, content: bytes) -> bool:
-        """Return whether a pose, as sent with 32 bits, is to be sent; it then counts as sent."""
-        if self._sent.get(device) == content and not self._is_steady:
-            return False
-        self._sent[device] = content
-        return True
+        self.is_steady = is_steady
+        self.sent: dict[str, bytes] = {}
+        """The content of each device's last pose, as sent with 32 bits."""
 
 
 class Publisher:
@@ -243,9 +237,12 @@ class Publisher:
         is_sent = False
         for message in messages:
             content = message.content.pack()
-            receivers = [
-                client for client in due if self._poses[client].is_news(message.device, content)
-            ]
+            receivers = []
+            for client in due:
+                poses = self._poses[client]
+                if poses.is_steady or poses.sent.get(message.device) != content:
+                    poses.sent[message.device] = content
+                    receivers.append(client)
             self._send(receivers, message)
             is_sent = is_sent or bool(receivers)
         if is_sent:

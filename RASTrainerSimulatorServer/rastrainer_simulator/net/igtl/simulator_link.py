@@ -11,7 +11,7 @@ import itertools
 import json
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import Future
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
@@ -40,8 +40,8 @@ from rastrainer_simulator.net.igtl.outgoing import Outgoing
 from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher, told
 from rastrainer_simulator.net.igtl.registration_check import (
     CHECKED,
-    RegistrationCheck,
     SubmitCommand,
+    submit_checked,
 )
 from rastrainer_simulator.net.igtl.server import ClientConnection, IgtlServer
 from rastrainer_simulator.net.limits import LinkLimits
@@ -174,19 +174,23 @@ class SimulatorLink:
     ):
         """Make a link, in the event loop's thread.
 
-        Args:
-            arrivals: counts the records that `unacknowledged` gives, since the start.
-            find_scenario: gives the scenario of a name, the present one for ""; in any thread.
-            health: gives what the heartbeat reports about the simulator, ready for JSON.
-            answers: gives a study's answers that Slicer has not taken yet.
-            slicer_left: is called when the last client that registers and scores has left.
+        `arrivals` counts the records that `unacknowledged` gives, since the start; `find_scenario`
+        gives the present scenario for "", in any thread; `health` is for the heartbeat; `answers`
+        gives a study's answers that Slicer has not taken yet; `slicer_left` is called when the last
+        client that registers and scores has left.
         """
         self.server = IgtlServer(self, limits)
         self.publisher = Publisher(latest)
         self.offers = TrialOffers(unacknowledged, lambda: self.server.clients)
         self._arrivals = arrivals
         self._offered_arrivals = arrivals()
-        self._check = RegistrationCheck(submit, latest, find_scenario)
+        self._submit_checked = partial(
+            ThreadPoolExecutor(max_workers=1, thread_name_prefix="registration").submit,
+            submit_checked,
+            submit,
+            lambda: latest().training,
+            find_scenario,
+        )
         self._submit_command = submit
         self._health = health
         self._answers = answers
@@ -266,7 +270,7 @@ class SimulatorLink:
         if not is_offered:
             sentence = "This trial was not offered over this connection."
             return answered(Answer(0, False, sentence))
-        submit = self._check.submit if name in CHECKED else self._submit_command
+        submit = self._submit_checked if name in CHECKED else self._submit_command
         return submit(name, arguments, connection.name)
 
     def _greet(self, connection: ClientConnection, arguments: Mapping[str, Any]) -> Answer:
