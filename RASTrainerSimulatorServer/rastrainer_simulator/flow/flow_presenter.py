@@ -43,7 +43,7 @@ from rastrainer_simulator.state import (
     SimulationState,
     StepResult,
 )
-from rastrainer_simulator.viewpoint.view_control import Pictures, ViewMotion
+from rastrainer_simulator.viewpoint.view_control import Pictures
 
 REFRESH_S = 0.1
 """How often a screen is rebuilt though nothing was pressed: its clock, distances and axes."""
@@ -393,7 +393,7 @@ class FlowPresenter(Presenter):
             dt,
             self.shown.latest,
             self.shown.setup.scenario,
-            ViewMotion(*self.controls.view),
+            self.controls.view,
             self.controls.sticks,
             follows and self.controls.situation is ControlContext.WORK,
         )
