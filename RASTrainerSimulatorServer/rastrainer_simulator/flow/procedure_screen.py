@@ -230,7 +230,8 @@ def procedure_page(page: SessionPage) -> PageContent:
     names = [name for name in steps if name != "align" or can_align]
     alignment = session.state.alignment
     is_far = alignment is not None and not alignment.is_exact
-    title = page.say(f"procedure.title.{training.phase.value}") if names else ""
+    key = f"procedure.title.{training.phase.value}"
+    title = page.say(key) if names else session.task_title(training.task)
     said = (session.texts.again(training.instruction),)
     rows = (*map(step, names), page.button("work"))
-    return PageContent(title, said, rows=rows, first="align" if is_far else "")
+    return PageContent(said, rows=rows, title=title, first="align" if is_far else "")

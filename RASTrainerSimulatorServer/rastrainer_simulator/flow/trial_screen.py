@@ -288,10 +288,11 @@ def match_page(page: SessionPage, looked: Future[TouchRegistration]) -> PageCont
         page.button("draw", lambda: session.pages.show(None)),
     )
     # A double press must not accept a match that was not read.
-    return PageContent(say("match.title"), said, facts, rows, first="draw")
+    return PageContent(said, facts, rows, first="draw")
 
 
-def _resume(session: TrainingSession) -> None:
+def _resume(page: SessionPage) -> None:
+    session = page.session
     if session.training.phase is Phase.PAUSED:
         session.do(CommandName.RESUME)
     else:
@@ -329,7 +330,7 @@ def trial_page(page: SessionPage) -> PageContent:
         end,
     )
     title = page.say("trial.title", task=session.task_title(training.task))
-    return PageContent(title, (text,), rows=rows)
+    return PageContent((text,), rows=rows, title=title)
 
 
 def _abort(session: TrainingSession, reason: AbortReason) -> partial[None]:
@@ -355,7 +356,7 @@ class PreparingPage(SessionPage):
             self.button("menu", label=self.say("hint.menu")),
             self.button("begin", begin_without_picture),
         )
-        return PageContent(self.say("preparing.title"), said, rows=rows, first="menu")
+        return PageContent(said, rows=rows, first="menu")
 
     def back(self) -> None:
         self.session.pages.replace(trial_page(self.session))
@@ -373,10 +374,10 @@ def abort_page(page: SessionPage) -> PageContent:
     text = page.say("abort.text", trainee=training.trainee, kept=len(training.touches))
     abort = _abort(page.session, AbortReason.TRAINEE)
     rows = (page.button("keep"), page.button("abort", abort))
-    return PageContent(page.say("abort.title"), (text,), rows=rows, first="keep")
+    return PageContent((text,), rows=rows, first="keep")
 
 
-@page_kind("practice", leave=lambda session: session.do(CommandName.RESUME))
+@page_kind("practice", leave=lambda page: page.session.do(CommandName.RESUME))
 def practice_page(page: SessionPage) -> PageContent:
     """Say that the trial run's minutes are over: the trainee decides how to continue."""
     session = page.session
@@ -389,7 +390,7 @@ def practice_page(page: SessionPage) -> PageContent:
 
     rows = (page.button("finish", finish), page.button("resume"))
     text = page.say(key, trainee=session.training.trainee)
-    return PageContent(page.say("practice.title"), (text,), rows=rows, first="resume")
+    return PageContent((text,), rows=rows, first="resume")
 
 
 @page_kind("complete")
@@ -402,4 +403,4 @@ def complete_page(page: SessionPage) -> PageContent:
         page.button("undo", partial(session.do, CommandName.UNDO)),
         page.button("abort", page.open_page(abort_page)),
     )
-    return PageContent(page.say("complete.title"), (text,), rows=rows)
+    return PageContent((text,), rows=rows)

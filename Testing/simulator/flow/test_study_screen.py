@@ -175,7 +175,7 @@ def test_the_performance_line_says_that_its_ends_differ_from_the_others(
     menu, guide, language, performance, effort
 ):
     session = menu.presenter._session
-    session.prefer(replace(session.preferences, language=language))
+    session.prefer(language=language)
     tell(menu, guide, replace(SUS, questionnaire="nasa-tlx"))
     menu.choose("answer")
     menu.until_menu("questionnaire")

@@ -19,8 +19,8 @@ from rastrainer.trial.scoring import (
 from rastrainer.trial.trial_feedback import MAX_SHORT
 from rastrainer_simulator.flow.pages.experiment import open_experiment
 from rastrainer_simulator.flow.pages.procedure import (
-    ProcedureErrorsPage,
     procedure_details,
+    procedure_errors_page,
     procedure_facts,
 )
 from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind
@@ -85,7 +85,7 @@ def _onward(page: SessionPage) -> tuple[PageRow, ...]:
     return (*rows, page.button("menu", menu, page.say("result.menu")))
 
 
-@page_kind("waiting", leave=lambda session: open_experiment(session, _following(session)))
+@page_kind("waiting", leave=lambda page: open_experiment(page.session, _following(page.session)))
 def waiting_page(page: SessionPage) -> PageContent:
     """Say that the points are registered, and the score has not come yet."""
     session, say = page.session, page.say
@@ -97,7 +97,7 @@ def waiting_page(page: SessionPage) -> PageContent:
     waiting = say(key, trainee=session.training.trainee)
     why = (say("waiting.problem", reason=problem),) if problem else ()
     facts = _facts_of_trial(session)
-    return PageContent(say("waiting.title"), (waiting, *why), facts, _onward(page))
+    return PageContent((waiting, *why), facts, _onward(page))
 
 
 class ResultPage(SessionPage):
@@ -141,7 +141,7 @@ class ResultPage(SessionPage):
         verdict = {True: "passed", False: "failed", None: "title"}[self._is_passed]
         task = session.task_title(training.task)
         title = self.say(f"result.{verdict}", trainee=training.trainee, task=task)
-        return PageContent(title, said, self._facts(score), self._rows())
+        return PageContent(said, self._facts(score), self._rows(), title=title)
 
     def _facts(self, score: Fact) -> list[Fact]:
         """Return each value with its limit; nothing looks good in a trial that is not passed."""
@@ -178,7 +178,7 @@ class ResultPage(SessionPage):
             self.button("replay", self.show_again),
         ]
         if procedure_details(self._result):
-            rows.append(self.button("procedure", self.open_page(ProcedureErrorsPage)))
+            rows.append(self.button("procedure", self.open_page(procedure_errors_page)))
         # In a study, practice comes where the study has it.
         worst = "" if is_in_study else _worst_point(session.training, self._result)
         if worst:

@@ -74,12 +74,6 @@ class Preferences:
     expert: Annotated[str, text(64, 0)] = ""
     tutorial: Annotated[str, _any_of(TutorialRule)] = TutorialRule.REQUIRED.value
 
-    def stepped(self, name: str, direction: int) -> Preferences:
-        """Return the preferences with one of them moved to its next or previous option."""
-        options = OPTIONS[name]
-        place = (options.index(getattr(self, name)) + direction) % len(options)
-        return dataclasses.replace(self, **{name: options[place]})
-
     def applied_to(self, settings: SimulationSettings) -> SimulationSettings:
         teleoperation = settings.teleoperation
         return dataclasses.replace(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import Future
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -210,9 +211,9 @@ class TrainingSession:
                 self.history.keep_tutorial(outcome)
         return outcome
 
-    def prefer(self, preferences: Preferences) -> None:
+    def prefer(self, **changes: Any) -> None:
         before = self.control_loop.setup.settings
-        self.preferences = preferences
+        self.preferences = preferences = replace(self.preferences, **changes)
         self.texts = self.operator.texts = Texts(LANGUAGES[preferences.language])
         self.reload.request(before, preferences.applied_to(before))
         with self.complaining():
