@@ -20,7 +20,10 @@ from rastrainer_simulator.vectors import in_millimeters
 
 @dataclass(frozen=True)
 class TrainingReply:
-    """The answer to a command; `feed` is the new feed in the guide, None if it stays."""
+    """The answer to a command; `feed` is the new feed in the guide, None if it stays.
+
+    `data` of a refused touch describes the touch.
+    """
 
     ok: bool
     message: str = ""
@@ -51,14 +54,6 @@ class TrialStep:
     answered: Mapping[str, Any] = field(default_factory=dict)
     kind: EventKind = EventKind.PHASE
     feed: Feed | None = None
-
-
-@dataclass(frozen=True)
-class RefusedStep:
-    """Why a command is refused; `data` describes a touch that does not count."""
-
-    sentence: str
-    data: Mapping[str, Any] | None = None
 
 
 def summary(state: TrainingState) -> dict[str, Any]:
