@@ -27,11 +27,10 @@ from rastrainer_simulator.input.inputs import (
 )
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.presentation.feedback_event import (
-    FEEDBACK_EFFECTS,
     FeedbackEvent,
     feedback_of,
 )
-from rastrainer_simulator.presentation.messages import Frames, Hello, InstructorOrder, Seat
+from rastrainer_simulator.presentation.messages import Hello, InstructorOrder, Seat
 from rastrainer_simulator.presentation.presenter import Control, Presenter, TraceGuidance
 from rastrainer_simulator.presentation.screen import PRESS, Tone
 from rastrainer_simulator.record.trial_context import DisplayReport, ViewReport
@@ -278,7 +277,7 @@ class FlowPresenter(Presenter):
             self._session.pages.write(name, value)
             self._is_changed = True
 
-    def on_frames(self, view: int, frames: Frames) -> None:
+    def on_frames(self, view: int, shown: int, dropped: int, refresh_hz: float) -> None:
         """Process how smoothly a view draws; the journal notes it of the trainee's view."""
         if view not in self._views.joined:
             return
@@ -286,9 +285,7 @@ class FlowPresenter(Presenter):
         if view != self._views.watched(self.controls.holder):
             return
         hello = self._views.joined[view].hello
-        report = DisplayReport(
-            hello.kind, hello.device, frames.refresh_hz, frames.shown, frames.dropped
-        )
+        report = DisplayReport(hello.kind, hello.device, refresh_hz, shown, dropped)
         self._control_loop.note_display(report)
 
     def on_picture(self, view: int, task: str, share: float) -> None:
@@ -350,7 +347,7 @@ class FlowPresenter(Presenter):
         self._number += 1
         feedback = feedback_of(what, self._number, volume)
         if feedback.rumble > 0.0:
-            self.rumble(feedback.rumble, FEEDBACK_EFFECTS[what].seconds)
+            self.rumble(feedback.rumble, what.seconds)
         self.updates.publish(feedback)
 
     def _lose_sight(self, view: int, why: str) -> None:

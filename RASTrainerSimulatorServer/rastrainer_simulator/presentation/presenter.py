@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +9,6 @@ import numpy as np
 from rastrainer_simulator.loop.results import Subscribers
 from rastrainer_simulator.presentation.messages import (
     Feedback,
-    Frames,
     Hello,
     InstructorOrder,
     Seat,
@@ -56,8 +54,7 @@ class Presenter:
 
     Everything is called in the event loop's thread, and what is subscribed is called there too;
     every call returns at once. Values have been checked: numbers are finite and within their
-    range, texts short and printable, `view` is the number of a view that has joined. Each message
-    of a view goes to the method of its type.
+    range, texts short and printable, `view` is the number of a view that has joined.
 
     Attributes:
         updates: each new screen, feedback and holder of the control.
@@ -100,49 +97,15 @@ class Presenter:
     def view_left(self, view: int) -> None:
         """Forget a view; what it held has been released before."""
 
-    def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
-        """Process a `KeyInput`.
+    def receive(self, view: int, kind: str, *values: object) -> None:
+        """Process a message of a view, with the values of its fields; ignored by default.
 
-        While a key is held it may come down again and again, as keyboards repeat it. A view
-        that leaves or falls silent releases each key that it held, with `is_down` False.
+        It goes to the method of its type, such as `on_key` with those of `KeyInput`. A key that is
+        held may come down again and again, as keyboards repeat it. A view that leaves or falls
+        silent releases what it held: each key comes up, a pad has nothing pressed, sticks are at
+        zero. Of one that has been silent for so long that its picture must be frozen, the `kind` is
+        "silence".
         """
-
-    def on_layout(self, view: int, keys: Mapping[str, str]) -> None:
-        """Process a `LayoutInput`."""
-
-    def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
-        """Process a `PadInput`; one of a view that leaves or falls silent has nothing pressed."""
-
-    def on_sticks(
-        self,
-        view: int,
-        translation: tuple[float, float, float],
-        rotation: tuple[float, float],
-        is_fine: bool,
-        yaw_deg: float,
-    ) -> None:
-        """Process a `SticksInput`; a view that leaves or falls silent releases them: zeros."""
-
-    def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
-        """Process an `OrbitInput`."""
-
-    def on_press(self, view: int, control: str) -> None:
-        """Process a `PressInput`; any name."""
-
-    def on_item(self, view: int, name: str) -> None:
-        """Process an `ItemInput`; any name, the menu may have changed."""
-
-    def on_text(self, view: int, name: str, value: str) -> None:
-        """Process a `TextInput`; any name, the menu may have changed."""
-
-    def on_frames(self, view: int, frames: Frames) -> None:
-        """Process how smoothly a view draws, once a second."""
-
-    def on_picture(self, view: int, task: str, share: float) -> None:
-        """Process a `PictureProgress`."""
-
-    def on_visibility(self, view: int, is_visible: bool) -> None:
-        """Process a `Visibility`."""
-
-    def on_silence(self, view: int) -> None:
-        """Process that a view has been silent for so long that its picture must be frozen."""
+        process = getattr(self, f"on_{kind}", None)
+        if process is not None:
+            process(view, *values)

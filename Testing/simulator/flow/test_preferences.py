@@ -42,7 +42,8 @@ def test_the_defaults_leave_the_simulation_unchanged():
 
 @pytest.mark.parametrize("name", OPTIONS)
 def test_only_preferences_that_affect_the_simulation_change_it(name):
-    changed = Preferences().stepped(name, 1).applied_to(SimulationSettings())
+    other = next(each for each in OPTIONS[name] if each != getattr(Preferences(), name))
+    changed = replace(Preferences(), **{name: other}).applied_to(SimulationSettings())
     assert (changed != SimulationSettings()) is (name in OF_THE_SIMULATION)
 
 
