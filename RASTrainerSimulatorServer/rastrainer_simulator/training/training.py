@@ -188,12 +188,12 @@ class Training:
 
     def _start(self, command: OperatorCommand, now: TouchMoment) -> Outcome:
         arguments, scenario, revision = command.arguments, self._scenario, self.state.revision
-        method = method_of(arguments.get("method"))
         procedure, number = arguments.get("procedure") or "", self._number
         seed = arguments.get("seed")
         if seed is None:
             seed = arguments.get(DRAWN_SEED, trial_seed(self._seed, number))
         try:
+            method = method_of(arguments.get("method"))
             chosen = arguments.get("skin")
             skin = record_from_json(SkinShift, chosen) if chosen else scenario.skin
             task = task_by_method(scenario, arguments["task"], method)
