@@ -130,7 +130,6 @@ class ProcedureScreen(ArmScreen):
         )
 
     def _marks(self) -> tuple[ErrorArrow, ...]:
-        """Return the plan by the registration, and checkpoints as named marks on the skin."""
         session, procedure = self._session, self._procedure
         if procedure.stage is Phase.VERIFYING:
             touched = {each.name for each in procedure.checkpoints}
@@ -160,7 +159,6 @@ class ProcedureScreen(ArmScreen):
         return procedure
 
     def _figures(self) -> tuple[str, ...]:
-        """Return the position of the guide, the drill or the instrument, by the registration."""
         state, say = self._session.state, self._session.texts.say
         alignment, ruler = state.alignment, self._ruler()
         if ruler is not None:

@@ -237,10 +237,6 @@ class TrialScreen(ArmScreen):
         return self._hints(movement, names)
 
     def _is_off_the_path(self) -> bool:
-        """Return whether the tip is off the path between the last point and the next.
-
-        This guides, too: without guidance it is not told.
-        """
         training = self._session.training
         target = self._points.get(training.next_point or "")
         if self.guidance is Guidance.NONE or not training.touches or target is None:
@@ -252,7 +248,6 @@ class TrialScreen(ArmScreen):
 
 
 def registration_so_far(training: TrainingState, scenario: Scenario) -> TouchRegistration:
-    """Return how the open trial would be registered, by what has been touched and traced."""
     answer = {"task": training.task, "method": training.method.value, **given(training)}
     return register_trial(GivenPoints.of_answer(answer), scenario)
 
@@ -369,7 +364,6 @@ class PreparingPage(SessionPage):
 
 @page_kind("abort")
 def abort_page(page: SessionPage) -> PageContent:
-    """Ask for confirmation before a trial is aborted."""
     training = page.session.training
     text = page.say("abort.text", trainee=training.trainee, kept=len(training.touches))
     abort = _abort(page.session, AbortReason.TRAINEE)
@@ -395,7 +389,6 @@ def practice_page(page: SessionPage) -> PageContent:
 
 @page_kind("complete")
 def complete_page(page: SessionPage) -> PageContent:
-    """Say that all points are touched: they are registered, or the last one is undone."""
     session, training = page.session, page.session.training
     text = page.say("complete.text", trainee=training.trainee, count=len(training.touches))
     rows = (

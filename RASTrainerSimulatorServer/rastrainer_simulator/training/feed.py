@@ -67,7 +67,6 @@ class HeadAhead:
     inner: float | None = None
 
     def to_json(self) -> dict[str, float | None]:
-        """Return what the journal records, mm."""
         named = {"skinMm": self.skin, "outerMm": self.outer, "innerMm": self.inner}
         return {name: None if m is None else MM_PER_M * m for name, m in named.items()}
 
@@ -99,7 +98,6 @@ class Feed:
         return max(self.drilled, self.ahead.outer)
 
     def moved(self, phase: Phase, way: float) -> Feed:
-        """Return the feed after `way` m in a phase, as far as it goes."""
         if phase is Phase.DRILLING:
             depth = min(max(self.depth + way, 0.0), LONGEST_FEED_M)
             return replace(self, depth=depth, drilled=max(self.drilled, depth))
@@ -107,7 +105,6 @@ class Feed:
         return replace(self, depth=depth)
 
     def layer(self, phase: Phase) -> FeedLayer:
-        """Return what the drill has cut to, or what the instrument meets."""
         ahead = self.ahead
         if phase is Phase.DRILLING:
             if ahead.inner is not None and self.drilled >= ahead.inner:

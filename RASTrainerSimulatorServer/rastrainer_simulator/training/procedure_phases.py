@@ -75,7 +75,6 @@ class ProcedureMoment:
         return replace(self.state, phase=phase, procedure=entered)
 
     def attempts(self) -> tuple[RegistrationAttempt, ...]:
-        """Return all attempts at registering, with the present one."""
         now = self.procedure
         attempt = RegistrationAttempt(self.state.touches, now.registration, now.checkpoints)
         return (*now.attempts, attempt)
@@ -104,7 +103,6 @@ class ProcedurePhases:
         return self.HANDLERS[command.name](self, moment)
 
     def resumed(self, state: TrainingState) -> TrialStep:
-        """Return the step by which a paused procedure continues in its stage."""
         procedure = state.procedure
         assert procedure is not None
         running = replace(state, phase=procedure.stage)
@@ -150,52 +148,45 @@ class ProcedurePhases:
 
     def _check_point(self, moment: ProcedureMoment) -> TrialStep | TrainingReply:
         """Touch the nearest checkpoint; its error is by the trainee's own registration."""
-        procedure, now = moment.procedure, moment.now
-        name, error = self._nearest_checkpoint(procedure, now)
+        procedure, now, name, error = moment.procedure, moment.now, "", 0.0
+        checkpoints = self._procedure.checkpoints
+        plan = None
+        if procedure.registration is not None:
+            plan = RegisteredPlan.of(procedure.registration.matrix)
+        if plan is not None and checkpoints:
+            name, error = plan.nearest_checkpoint(checkpoints, now.tip)
         place = {
             "checkpoint": name,
             "positionMm": [MM_PER_M * value for value in now.tip],
             "clearanceMm": MM_PER_M * now.tip_clearance,
             "depthMm": MM_PER_M * now.depth,
         }
-        sentence = self._refused_check(procedure, name, error, now)
-        if sentence is not None:
+        done = sum(len(each.checkpoints) for each in (*procedure.attempts, procedure))
+        radius, is_above = (
+            self._settings.checkpoint_radius,
+            now.tip_clearance > self._touches.skin_tolerance,
+        )
+        sentence = ""
+        if procedure.registration is None:
+            sentence = say("not in use yet")
+        elif not name:
+            sentence = say("no checkpoints")
+        elif done >= MAX_TOUCHED_CHECKPOINTS:
+            sentence = say("too many checkpoints", most=MAX_TOUCHED_CHECKPOINTS)
+        elif error > radius:
+            away, within = MM_PER_M * error, MM_PER_M * radius
+            sentence = say("too far from checkpoints", name=name, distance=away, radius=within)
+        elif self._touches.touch_rule is TouchRule.ON_SKIN and is_above:
+            sentence = say("above a checkpoint", height=MM_PER_M * now.tip_clearance)
+        if sentence:
             return TrainingReply(False, sentence, place)
         checked = CheckedPoint(name, now.tip, error, now.sim_time, moment.elapsed)
-        checkpoints = (*procedure.checkpoints, checked)
-        state = replace(moment.state, procedure=replace(procedure, checkpoints=checkpoints))
+        touched = (*procedure.checkpoints, checked)
+        state = replace(moment.state, procedure=replace(procedure, checkpoints=touched))
         error_mm = MM_PER_M * error
-        data = {**place, "errorMm": error_mm, "kept": len(checkpoints)}
-        said = {"name": name, "error": error_mm}
-        return TrialStep(state, "checked", said, data, kind=EventKind.CHECKPOINT)
-
-    def _nearest_checkpoint(self, procedure: ProcedureState, now: TouchMoment) -> tuple[str, float]:
-        """Return the checkpoint nearest to the tip by the registration in use, and how far, m."""
-        if procedure.registration is None or not self._procedure.checkpoints:
-            return "", 0.0
-        plan = RegisteredPlan.of(procedure.registration.matrix)
-        assert plan is not None, "what is in use is rigid"
-        return plan.nearest_checkpoint(self._procedure.checkpoints, now.tip)
-
-    def _refused_check(
-        self, procedure: ProcedureState, name: str, error: float, now: TouchMoment
-    ) -> str | None:
-        """Return why a touch of a checkpoint does not count, None where it does."""
-        radius = self._settings.checkpoint_radius
-        if procedure.registration is None:
-            return say("not in use yet")
-        if not name:
-            return say("no checkpoints")
-        done = sum(len(each.checkpoints) for each in procedure.attempts)
-        if done + len(procedure.checkpoints) >= MAX_TOUCHED_CHECKPOINTS:
-            return say("too many checkpoints", most=MAX_TOUCHED_CHECKPOINTS)
-        if error > radius:
-            away, within = MM_PER_M * error, MM_PER_M * radius
-            return say("too far from checkpoints", name=name, distance=away, radius=within)
-        is_above = now.tip_clearance > self._touches.skin_tolerance
-        if self._touches.touch_rule is TouchRule.ON_SKIN and is_above:
-            return say("above a checkpoint", height=MM_PER_M * now.tip_clearance)
-        return None
+        data = {**place, "errorMm": error_mm, "kept": len(touched)}
+        values = {"name": name, "error": error_mm}
+        return TrialStep(state, "checked", values, data, kind=EventKind.CHECKPOINT)
 
     def _accept(self, moment: ProcedureMoment) -> TrialStep | TrainingReply:
         procedure = moment.procedure
@@ -247,14 +238,12 @@ class ProcedurePhases:
         )
 
     def _retract(self, moment: ProcedureMoment) -> TrialStep | TrainingReply:
-        """Remove the drill and align again: only before it has cut bone."""
         if moment.now.feed.has_cut_bone:
             return TrainingReply(False, say("bone is cut"))
         values = {"name": moment.trajectory.line.name}
         return TrialStep(moment.entering(Phase.ALIGNING), "realign", values, feed=NO_FEED)
 
     def _start_insertion(self, moment: ProcedureMoment) -> TrialStep | TrainingReply:
-        """Exchange the drill for the instrument, which begins at the guide's tip."""
         feed = moment.now.feed
         if feed.drilled <= 0.0:
             return TrainingReply(False, say("nothing drilled"))

@@ -103,7 +103,6 @@ def revealed(truth: Truth, state: TrainingState, matrix: tuple[float, ...]) -> d
 
 
 def trial_data(state: TrainingState, truth: Truth) -> dict[str, Any]:
-    """Return the answer to GetTrial of the present trial; the truth once it is revealed."""
     data = {**summary(state), **given(state)}
     if state.registration is not None:
         data.update(revealed(truth, state, state.registration.matrix))

@@ -183,7 +183,6 @@ class Training:
         return len(self._task.labels) if self._task else 0
 
     def elapsed(self, sim_time: float) -> float:
-        """Return the trial's time in s, pauses excluded."""
         return self._clock.time_of(self.state, sim_time)
 
     def _start(self, command: OperatorCommand, now: TouchMoment) -> Outcome:
@@ -290,7 +289,6 @@ class Training:
         return replace(step, answered={"nextPoint": following})
 
     def _trace(self, command: OperatorCommand, _now: TouchMoment) -> Outcome:
-        """Begin or end a stroke; a repeated command changes nothing."""
         trace, on = self.state.trace, command.arguments["on"]
         assert trace is not None, "the method has a trace"
         if on == trace.is_on:

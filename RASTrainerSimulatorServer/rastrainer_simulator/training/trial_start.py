@@ -58,7 +58,6 @@ class TrialClock:
         return state.completed_s
 
     def elapsed(self, now: float) -> float:
-        """Return the time that has been counted, s."""
         until = now if self._paused_since is None else self._paused_since
         return until - self._start - self._paused
 
@@ -70,7 +69,6 @@ def paused(state: TrainingState) -> TrainingState:
 
 
 def resumed(state: TrainingState) -> TrialStep:
-    """Return the step by which the touches or the trace of a paused trial continue."""
     if state.trace is None or state.next_point is not None:
         return TrialStep(replace(state, phase=Phase.RUNNING), "resumed")
     return replace(tracing.stroke(state, state.trace.ended()), data={}, kind=EventKind.PHASE)

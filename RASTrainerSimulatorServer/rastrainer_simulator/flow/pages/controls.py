@@ -47,7 +47,6 @@ REMEMBERED = 4
 
 @page_kind("controls")
 def controls_page(page: SessionPage, leads_on: bool = False) -> PageContent:
-    """Show which input does what, on the device in the reader's hands."""
     session, operator = page.session, page.session.operator
 
     def lead_on() -> None:
@@ -121,7 +120,6 @@ LISTEN_S = 10.0
 
 @page_kind("bindings")
 def bindings_page(page: ShownPage, device: InputDevice, group: str = "work") -> PageContent:
-    """Show the controls of a device, a group at a time."""
     session, say = page.session, page.say
     table, presets = session.controls.bindings.table(device), LAYOUTS[device]
     preset = preset_name(device, table)

@@ -73,7 +73,6 @@ class ExperimentPage(SessionPage):
         return PageContent(said, rows=rows, trend=trend, first=self._first)
 
     def _choices(self) -> Iterator[PageRow]:
-        """Yield who trains, on which head and how; what a study decides cannot be changed."""
         session, step, say = self.session, self.session.step, self.say
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
             yield self.button("answer", partial(self._open_questionnaire, step))
@@ -128,7 +127,6 @@ class ExperimentPage(SessionPage):
             self._usual_id = ""
 
     def _beginnings(self) -> Iterator[PageRow]:
-        """Yield what can be begun: assignments, tutorial and tasks; and the trainee's trials."""
         session, curriculum = self.session, self.session.curriculum
         words = session.assignment_texts
         if curriculum is not None:

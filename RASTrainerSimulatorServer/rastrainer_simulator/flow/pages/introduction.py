@@ -52,7 +52,6 @@ def introduction_page(page: ShownPage, sheet: int = 1) -> PageContent:
 
 @page_kind("tutorial", pause_goes_back=True)
 def tutorial_page(page: SessionPage) -> PageContent:
-    """Offer to continue the tutorial, to restart it or to leave it."""
     session, say = page.session, page.say
     tutorial = session.tutorial
     step, steps = (1, 1) if tutorial is None else tutorial.place
@@ -79,7 +78,6 @@ def tutorial_page(page: SessionPage) -> PageContent:
 
 @page_kind("tutorial-done")
 def tutorial_done_page(page: SessionPage, outcome: TutorialOutcome) -> PageContent:
-    """Say how exact the touches were, and lead to the trial run."""
     session, say = page.session, page.say
     errors = (say("tutorial.mm", error=error) for error in outcome.errors_mm)
     facts = (
@@ -99,7 +97,6 @@ def tutorial_done_page(page: SessionPage, outcome: TutorialOutcome) -> PageConte
 
 @page_kind("practiced")
 def practiced_page(page: SessionPage, outcome: TutorialOutcome) -> PageContent:
-    """Say how exact the touch of a practiced point was, and offer another one."""
     session, error_mm = page.session, outcome.errors_mm[-1]
     error = page.say("tutorial.mm", error=error_mm)
     fact = Fact(page.say("practiced.error"), error, error_tone(error_mm))

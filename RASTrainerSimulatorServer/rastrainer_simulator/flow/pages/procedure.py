@@ -69,7 +69,6 @@ def _trajectories_of(details: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
 
 @page_kind("procedure-errors")
 def procedure_errors_page(page: ShownPage, number: int = 0) -> PageContent:
-    """Show the errors of one trajectory, each split into registration and hand."""
     each = _trajectories_of(procedure_details(page.session.training.result))
     details = each[number] if each else {}
     name, say = _text(details.get("name")), page.say

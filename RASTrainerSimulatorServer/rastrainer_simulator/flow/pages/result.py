@@ -25,7 +25,6 @@ from rastrainer_simulator.flow.pages.procedure import (
 )
 from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind
 from rastrainer_simulator.flow.pages.trial_review import ErrorsPage, ReplayPage
-from rastrainer_simulator.flow.session.local_scorer import SCORED_BY_SIMULATOR
 from rastrainer_simulator.flow.session.open_pages import PageContent, PageRow
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.session.trainee_history import (
@@ -38,6 +37,7 @@ from rastrainer_simulator.presentation.screen import Fact, Tone
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
 from rastrainer_simulator.state import TrainingState, TrialResult
 from rastrainer_simulator.texts.texts import Texts
+from rastrainer_simulator.training.local_scorer import SCORED_BY_SIMULATOR
 
 LONGEST_SENTENCE = 300
 MAX_WARNINGS = 2
@@ -56,7 +56,6 @@ _ONWARD = ("next", "procedure", "errors", "worst", "replay", "again", "menu")
 
 
 def _following(session: TrainingSession) -> str:
-    """Return the task that comes next; "" for none, or where a curriculum says what does."""
     step = session.trial_step
     if step is not None:
         return step.task if step.is_played else ""
@@ -87,7 +86,6 @@ def _onward(page: SessionPage) -> tuple[PageRow, ...]:
 
 @page_kind("waiting", leave=lambda page: open_experiment(page.session, _following(page.session)))
 def waiting_page(page: SessionPage) -> PageContent:
-    """Say that the points are registered, and the score has not come yet."""
     session, say = page.session, page.say
     scorer, is_there = session.local_scorer, session.services.is_slicer_connected()
     key = "waiting.slicer" if is_there else "waiting.nobody"
@@ -169,7 +167,6 @@ class ResultPage(SessionPage):
         return [*facts, *_facts_of_trial(self.session), *shown]
 
     def _rows(self) -> tuple[PageRow, ...]:
-        """Return where the trainee can go: after a failure first to what helps."""
         session, is_in_study = self.session, self.session.trial_step is not None
         rows = [
             *_onward(self),
@@ -190,7 +187,6 @@ class ResultPage(SessionPage):
         return tuple(named[name] for name in order if name in named)
 
     def back(self) -> None:
-        """Go to the next task, or to this one again where it is not passed."""
         failed = self.session.training.task
         first = failed if self._is_passed is False else _following(self.session)
         open_experiment(self.session, first)

@@ -39,8 +39,6 @@ def start_page(page: SessionPage) -> PageContent:
 
 @page_kind("quit")
 def quit_page(page: SessionPage) -> PageContent:
-    """Ask for confirmation before the simulator is shut down."""
-
     def leave() -> None:
         page.session.services.quit()
         page.back()
@@ -127,7 +125,6 @@ class PinPage(SessionPage):
         return PageContent((self.say("pin.text"),), rows=rows)
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """Add a typed digit; the focus goes to the button that unlocks, for the key Enter."""
         if device is not InputDevice.KEYBOARD or name not in {*_KEYS, _DELETE_KEY}:
             return False
         self._type(_KEYS.get(name, ""))

@@ -68,8 +68,6 @@ def clicked_id_page(page: SessionPage, write: Write) -> PageContent:
 
 @page_kind("character")
 def character_page(page: SessionPage, write: Write, row: str) -> PageContent:
-    """Show the characters of one row: a click adds one to the ID."""
-
     def add(character: str) -> None:
         write(page.session.trainee + character)
         page.back()
@@ -79,7 +77,6 @@ def character_page(page: SessionPage, write: Write, row: str) -> PageContent:
 
 
 def _has_moved_on(page: SessionPage, step: StudyStep, **_answers: int) -> bool:
-    """Return whether the study has another step, for example after answers given in Slicer."""
     return page.session.services.assigned.steps.get(step.trainee) != step
 
 
@@ -93,7 +90,6 @@ def questionnaire_page(page: ShownPage, step: StudyStep, **answers: int) -> Page
         return {"lowest": asked.lowest, "highest": asked.highest, **words}
 
     def row(number: int, item: QuestionnaireItem) -> PageRow:
-        """Return an item's question, with the ends of its scale if they are its own."""
         line = page.say(item.name)
         if item.anchors:
             line = page.say("questionnaire.ends", topic=line, **ends(item.name))

@@ -112,7 +112,6 @@ class ReplayPage(SessionPage):
     def __init__(
         self, session: TrainingSession, loading: TrialLoading, begins_at_worst: bool
     ) -> None:
-        """`begins_at_worst` shows the worst touch at first."""
         super().__init__(session)
         self.playback: Playback | None = None
         self._loading = loading
@@ -192,7 +191,6 @@ _VERDICTS = {True: "experiment.passed", False: "experiment.failed", None: "exper
 
 @page_kind("own-trials")
 def own_trials_page(page: SessionPage) -> PageContent:
-    """List the newest trials first; choosing one shows it again."""
     session, say = page.session, page.say
 
     def show(trial_id: str) -> None:

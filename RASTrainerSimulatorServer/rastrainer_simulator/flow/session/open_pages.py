@@ -78,7 +78,6 @@ class Page:
         raise NotImplementedError
 
     def back(self) -> None:
-        """Leave the page, as the trainee wants."""
         raise NotImplementedError
 
     def button(
@@ -217,7 +216,6 @@ class OpenPages:
             page.back()
 
     def move(self, direction: int) -> None:
-        """Move the focus to the next (1) or previous (−1) row, around the ends."""
         if self.top is None:
             return
         rows = self.top.content().rows
@@ -232,7 +230,6 @@ class OpenPages:
             self._focus[-1] = name
 
     def choose(self, name: str) -> None:
-        """Choose a row: press a button, step a choice, go to a text."""
         row = self._row(name)
         if row is not None:
             self.focus(name)

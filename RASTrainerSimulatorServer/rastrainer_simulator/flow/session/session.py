@@ -21,7 +21,6 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
 from rastrainer.study_messages import CurriculumMessage, StudyStep
 from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
-from rastrainer_simulator.flow.session.local_scorer import LocalScorer
 from rastrainer_simulator.flow.session.open_pages import OpenPages
 from rastrainer_simulator.flow.session.operator_device import OperatorDevice
 from rastrainer_simulator.flow.session.preferences import (
@@ -45,6 +44,7 @@ from rastrainer_simulator.replay.ghost import TrialGhost
 from rastrainer_simulator.replay.recorded_trial import TrialLoading, load_trial
 from rastrainer_simulator.state import Answer, Event, SimulationState, TouchStage, TrainingState
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
+from rastrainer_simulator.training.local_scorer import LocalScorer
 from rastrainer_simulator.vectors import Vector, in_meters
 from rastrainer_simulator.viewpoint.view_control import Orbit
 
