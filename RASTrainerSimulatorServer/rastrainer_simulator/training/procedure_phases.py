@@ -161,17 +161,15 @@ class ProcedurePhases:
             "clearanceMm": MM_PER_M * now.tip_clearance,
             "depthMm": MM_PER_M * now.depth,
         }
-        done = sum(len(each.checkpoints) for each in (*procedure.attempts, procedure))
-        radius, is_above = (
-            self._settings.checkpoint_radius,
-            now.tip_clearance > self._touches.skin_tolerance,
-        )
+        before = sum(len(each.checkpoints) for each in procedure.attempts)
+        radius = self._settings.checkpoint_radius
+        is_above = now.tip_clearance > self._touches.skin_tolerance
         sentence = ""
         if procedure.registration is None:
             sentence = say("not in use yet")
         elif not name:
             sentence = say("no checkpoints")
-        elif done >= MAX_TOUCHED_CHECKPOINTS:
+        elif before + len(procedure.checkpoints) >= MAX_TOUCHED_CHECKPOINTS:
             sentence = say("too many checkpoints", most=MAX_TOUCHED_CHECKPOINTS)
         elif error > radius:
             away, within = MM_PER_M * error, MM_PER_M * radius
