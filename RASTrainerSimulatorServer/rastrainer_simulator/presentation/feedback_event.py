@@ -63,13 +63,13 @@ _OF_A_LAYER = {
     FeedLayer.THROUGH.value: FeedbackEvent.THROUGH,
     FeedLayer.BLOCKED.value: FeedbackEvent.BLOCKED,
 }
-"""What a hand feels of a drill or an instrument; skin and scalp are not felt."""
+"""Layers that a hand feels through a drill or an instrument; skin and scalp are not felt."""
 
 
 def feedback_event(
     event: Event, touch: TouchStage, not_recorded: bool = False
 ) -> FeedbackEvent | None:
-    """Return the feedback to an event of the simulation, None where it has none.
+    """Return the feedback to an event of the simulation; None without any.
 
     `touch` is how the touch is going when it happens: a contact where a touch counts is no alarm.
     `not_recorded` says that a change of the phase undid what the disk had refused.

@@ -25,7 +25,7 @@ class ProcedureSettings:
     """How a procedure is carried out.
 
     A touch may be `checkpoint_radius` (m) from its checkpoint, by the registration in use.
-    The speeds are the fastest feed, m/s; the fine ones while the trigger for fine speed is held.
+    The speeds are the fastest feed, m/s; the fine speeds while the trigger for fine speed is held.
     """
 
     self_alignment: bool = True
@@ -56,7 +56,7 @@ class FeedLayer(str, Enum):
 
 @dataclass(frozen=True)
 class HeadAhead:
-    """What lies ahead along the guide's axis: distances from its tip, m, None if it is missed.
+    """Surfaces ahead along the guide's axis: distances from its tip, m, None if missed.
 
     `outer` is where the axis enters the skull, `inner` where it leaves it. Only the simulator knows
     them; the trainee feels them.
@@ -139,7 +139,7 @@ class FeedDrive:
     """Turns the stick, or a commanded feed, into the distance of a tick."""
 
     def __init__(self, settings: ProcedureSettings, response: StickResponse) -> None:
-        """`response` is that of the sticks that move the arm."""
+        """`response` belongs to the sticks that move the arm."""
         self._settings = settings
         self._response = response
         self._velocity = 0.0

@@ -95,7 +95,7 @@ class Truth:
 
 @dataclass(frozen=True, eq=False)
 class PlacedHead:
-    """A head in World, as the tip meets it; `fiducials` (World, m) are those of a trial's task."""
+    """A head in World, as the tip meets it; `fiducials` (World, m) belong to a trial's task."""
 
     truth: Truth
     fiducials: Mapping[str, Vector] = field(default_factory=dict)

@@ -52,7 +52,7 @@ _log = logging.getLogger(__name__)
 
 
 Job = tuple[str, Phase, int]
-"""What is done without Slicer: a trial is scored, or its n-th attempt is registered."""
+"""Work done without Slicer: scoring a trial, or registering its n-th attempt."""
 
 
 class LocalScorer:

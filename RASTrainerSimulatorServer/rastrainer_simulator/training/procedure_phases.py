@@ -1,6 +1,6 @@
-"""The phases of a procedure: which command leads from one to the next, and what it records.
+"""The phases of a procedure, the commands that lead from one to the next, and their records.
 
-Nothing here knows where the head is. What the trainee sees and reads follows from their
+Nothing here knows where the head is. The trainee's picture and sentences follow from their
 registration; the true distances at the moment of LockGuide only decide whether the guide may be
 locked.
 """
@@ -39,7 +39,7 @@ AT_EACH_STAGE: Mapping[Phase, str] = {
     Phase.DRILLING: "drill",
     Phase.INSERTING: "insert",
 }
-"""What the trainee reads when the trial continues there after a pause."""
+"""Instructions when the trial continues there after a pause."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class ProcedurePhases:
         touches: TrainingSettings,
         settings: ProcedureSettings,
     ) -> None:
-        """`labels` are those of the task's fiducials; `touches` is what counts as a touch."""
+        """`labels` name the task's fiducials; `touches` are the rules of a touch."""
         self._procedure = procedure
         self._labels = tuple(labels)
         self._touches = touches
@@ -194,7 +194,7 @@ class ProcedurePhases:
         return TrialStep(state, "align", {"name": procedure.trajectories[0].line.name})
 
     def _register_again(self, moment: ProcedureMoment) -> TrialStep | TrainingReply:
-        """Touch all points again; what was touched stays in the record as an attempt."""
+        """Touch all points again; earlier touches stay in the record as an attempt."""
         attempts = moment.attempts()
         if len(attempts) >= MAX_ATTEMPTS:
             return TrainingReply(False, say("too many attempts", most=MAX_ATTEMPTS))

@@ -42,8 +42,8 @@ class TrialStep:
         data: goes into the answer and the event, ready for JSON.
         recorded: goes into the event alone: clients never learn it.
         answered: goes into the answer alone.
-        kind: of the event; another than that of a phase is followed by one if the phase changes.
-        feed: what is in the guide from now on; None as before.
+        kind: of the event; an event of the phase follows any other if the phase changes.
+        feed: the new feed in the guide; None if it stays.
     """
 
     state: TrainingState

@@ -104,7 +104,7 @@ def _trace_key(command: str, state: TrainingState, key: str | None) -> str | Non
 
 @dataclass(frozen=True)
 class TrainingSettings:
-    """What counts as a touch.
+    """The rules of a touch.
 
     Attributes:
         acceptance_radius: the longest distance of the tip to the fiducial, m.
@@ -131,7 +131,7 @@ class TouchMoment:
         tip_clearance: signed distance of the tip to the skin, m; below 0 within the head.
         depth: how far the tip is pressed in, m; see `SimulationState.depth`.
         direction: of the tool, a unit vector from A7 to the tip, World; ZERO where it has no part.
-        feed: how far what is in the guide is beyond its tip; of LockGuide, what lies ahead of it.
+        feed: how far the instrument is beyond the guide's tip; for LockGuide, with the way ahead.
     """
 
     sim_time: float

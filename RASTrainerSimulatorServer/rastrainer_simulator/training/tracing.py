@@ -19,7 +19,7 @@ from rastrainer_simulator.vectors import Vector, distance
 
 
 def takes_point(trace: TraceState | None, now: TouchMoment, settings: TrainingSettings) -> bool:
-    """Return whether the tip leaves a point: on the skin, whatever the rule, and not pressed in."""
+    """Return whether the tip leaves a point: on the skin, by any rule, and not pressed in."""
     if trace is None or not trace.is_on or now.tip_clearance > settings.skin_tolerance:
         return False
     if MM_PER_M * now.depth > PRESSED_MM:

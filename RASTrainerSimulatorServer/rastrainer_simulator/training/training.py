@@ -121,7 +121,7 @@ class Training:
     ) -> None:
         """Bring the trial of a journal to where it was when the server ended.
 
-        `revision` is that before the trial, `steps` what was carried out since. A trial whose time
+        `revision` is the last before the trial, `steps` the commands since then. A trial whose time
         was running is paused from the last step on.
         """
         self._head = PlacedHead.nominal(self._scenario)
@@ -335,7 +335,7 @@ class Training:
         return TrialStep(registered, "registered", answered=answered)
 
     def _abort(self, _command: OperatorCommand, _now: TouchMoment) -> Outcome:
-        """Between trials the head is where it nominally is."""
+        """The head is put where the scenario has it."""
         aborted = self.state
         self._head = PlacedHead.nominal(self._scenario)
         self._kept = {}

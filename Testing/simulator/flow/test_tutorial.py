@@ -186,7 +186,7 @@ def test_a_tip_beside_the_center_is_not_praised_but_led_there(learner):
     assert status(learner)[1] == "Step 10 of 14"
     said = learner.presenter.screen.instruction
     assert said.text in [
-        f"On the skin, {mm} mm beside point 1: move the tip to its center." for mm in (4, 5, 6)
+        f"On the skin, {mm} mm from point 1: move the tip to its center." for mm in (4, 5, 6)
     ]
     assert said.tone == "warning"
     learner.tap("touch")

@@ -39,7 +39,7 @@ LONGER = 5.0
 
 
 class ErrorsPage(SessionPage):
-    """Shows the head without a menu, and in it what was off: touches or lines of a procedure."""
+    """Shows errors in the head, without a menu: of touches, or of a procedure's lines."""
 
     def __init__(self, session: TrainingSession, has_lines: bool = False) -> None:
         super().__init__(session)

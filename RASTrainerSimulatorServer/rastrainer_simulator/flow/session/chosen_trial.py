@@ -1,4 +1,4 @@
-"""A trial as the study requires or the trainee has chosen it, and what it waits for."""
+"""A trial as the study requires or the trainee has chosen it, and the reasons against it."""
 
 from __future__ import annotations
 
