@@ -12,7 +12,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rastrainer.json_records import record_from_json
-from rastrainer_simulator.flow.flow import PICTURE_GRACE_S
+from rastrainer_simulator.flow.flow_presenter import PICTURE_GRACE_S
 from rastrainer_simulator.presentation.screen import Menu, Screen
 from rastrainer_simulator.teleoperation.steering import camera_axes
 from Testing.end_to_end.window_process import wait_until

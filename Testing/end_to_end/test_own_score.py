@@ -32,13 +32,13 @@ from rastrainer.trial.ctps import PUBLISHED_STUDY, read_trials
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.flow.session.local_scorer import (
+from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
+from rastrainer_simulator.record.trial_archive import TrialArchive
+from rastrainer_simulator.training.local_scorer import (
     SCORED_BY_SIMULATOR,
     registered_alone,
     score_alone,
 )
-from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
-from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.virtual.scripted_trial import play_trial, send_hello
 from Testing.end_to_end.faulty_proxy import SlicerSide
 from Testing.end_to_end.finished_trials import COLIN, TRAINEE, write_finished_trials

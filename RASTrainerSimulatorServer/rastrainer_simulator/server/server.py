@@ -229,7 +229,8 @@ class SimulatorServer:
             pin=self._pin,
         )
         running = RunningPresenter(self._control_loop, services, self._options.has_gamepad)
-        link.publisher.is_guided = lambda: running.presenter.is_tracing_guided
+        guidance, loop = running.presenter.trace_guidance, self._control_loop
+        link.publisher.is_guided = lambda: guidance(loop.latest).covered_mm > 0.0
         return running
 
     def _use_settings(self, settings: SimulationSettings) -> Future[Answer]:

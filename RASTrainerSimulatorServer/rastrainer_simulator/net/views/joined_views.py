@@ -254,7 +254,7 @@ class JoinedViews:
             for view in tuple(self._views.values()):
                 view.release_if_silent(self._limits.silent_s)
                 if view.has_fallen_silent(self._limits.lost_s):
-                    self._presenter.on_silence(view.number)
+                    self._presenter.receive(view.number, "silence")
 
 
 def _put_control(view: ViewSocket, control: Control) -> None:
