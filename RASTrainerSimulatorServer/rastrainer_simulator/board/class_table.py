@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 from aiohttp import web
@@ -33,12 +32,8 @@ MOST_TRAINEES = 500
 LOCK_WAIT_S = 5.0
 
 
-@dataclass(frozen=True)
-class ClassStanding:
-    """The standings of the active trainees of a study."""
-
-    standings: Mapping[str, CurriculumStanding]
-    without: tuple[str, ...]
+Standings = Mapping[str, "CurriculumStanding | None"]
+"""Of the active trainees of a study, by name; None for those who follow no curriculum."""
 
 
 class ClassReader:
@@ -52,9 +47,9 @@ class ClassReader:
         self._study: Study | None = None
         self._version: int | None = None
         self._file: tuple[int, ...] = ()
-        self._found: ClassStanding | None = None
+        self._found: Standings | None = None
 
-    def read(self) -> ClassStanding:
+    def read(self) -> Standings:
         """Return everybody's standing; the same object as before if nothing has changed."""
         try:
             file = _file(self._place)
@@ -93,16 +88,15 @@ def _file(place: StudyPlace) -> tuple[int, ...]:
     return found.st_ino, found.st_size, found.st_mtime_ns
 
 
-def _standing(study: Study) -> ClassStanding:
+def _standing(study: Study) -> Standings:
     names = [trainee.pseudonym for trainee in study.trainees()]
     if len(names) > MOST_TRAINEES:
         raise InputError(
             f"The study has {len(names)} active trainees, and a table shows at most "
             f"{MOST_TRAINEES}: archive those who no longer train."
         )
-    standings = CurriculumStore(study).standings()
-    without = tuple(name for name in names if name not in standings)
-    return ClassStanding(standings, without)
+    store = CurriculumStore(study)
+    return {name: store.standing(name) for name in names}
 
 
 _log = logging.getLogger(__name__)
@@ -116,7 +110,7 @@ class ClassWatch:
     def __init__(self, place: StudyPlace | None) -> None:
         """Read nothing yet; without a study nothing is ever read."""
         self._thread = None if place is None else StudyThread(lambda: ClassReader(place))
-        self._found: ClassStanding | None = None
+        self._found: Standings | None = None
         self._tables: dict[str, tuple[CurriculumTable, ...]] = {}
         self._problem = self._as_of = ""
         self._task: asyncio.Task[None] | None = None
@@ -152,7 +146,7 @@ class ClassWatch:
             problem=self._problem,
             as_of=self._as_of,
             curricula=self._tables.get(language, ()),
-            without=() if found is None else found.without,
+            without=tuple(name for name, each in (found or {}).items() if each is None),
         )
 
     async def _keep_reading(self, thread: StudyThread[ClassReader]) -> None:
@@ -174,7 +168,7 @@ class ClassWatch:
         self._problem, self._as_of = "", utc_now()
 
 
-def class_table(found: ClassStanding, language: str) -> tuple[CurriculumTable, ...]:
+def class_table(found: Standings, language: str) -> tuple[CurriculumTable, ...]:
     texts = Texts(LANGUAGES[language])
 
     def task_title(name: str) -> str:
@@ -183,7 +177,7 @@ def class_table(found: ClassStanding, language: str) -> tuple[CurriculumTable, .
 
     words = AssignmentTexts(texts, task_title, _spoken)
     tables = []
-    for curriculum, group in by_curriculum(found.standings).items():
+    for curriculum, group in by_curriculum(found).items():
         first = next(iter(group.values()))
         columns = tuple(
             AssignmentColumn(each.name, words.label(each), words.goal(each))

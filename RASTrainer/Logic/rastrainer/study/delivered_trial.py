@@ -60,8 +60,9 @@ def store_delivered(
         is_being_scored: whether its registration or score is being sent to the simulator.
     """
     record = record_from_json(TrialRecord, value)
-    is_new = study.check_trial(record)
-    if not is_new and (is_being_scored or study.has("truths", record.trial_id)):
+    trial_id = record.trial_id
+    if study.has("trials", trial_id) and (is_being_scored or study.is_revealed(trial_id)):
+        study.add_trial(record)
         return DeliveredTrial(record)
     try:
         analysis = analyze(record)

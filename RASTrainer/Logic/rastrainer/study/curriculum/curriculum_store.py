@@ -21,12 +21,7 @@ from rastrainer.trial.trial_feedback import PastTrial
 _STAMPS = """
     SELECT pseudonym,
         (SELECT count(*) FROM aborted_trials WHERE aborted_trials.trainee_id = trainees.id),
-        (SELECT max(scores.id) FROM scores JOIN trials ON trials.trial_id = scores.trial_id
-            WHERE trials.trainee_id = trainees.id),
-        (SELECT count(*) FROM truths JOIN trials ON trials.trial_id = truths.trial_id
-            WHERE trials.trainee_id = trainees.id),
-        (SELECT max(procedure_outcomes.id) FROM procedure_outcomes
-            JOIN trials ON trials.trial_id = procedure_outcomes.trial_id
+        (SELECT max(results.id) FROM results JOIN trials ON trials.trial_id = results.trial_id
             WHERE trials.trainee_id = trainees.id),
         (SELECT max(curriculum_choices.id) FROM curriculum_choices
             WHERE curriculum_choices.trainee_id = trainees.id

@@ -69,12 +69,13 @@ def _shortfall(standing: AssignmentStanding) -> float:
 
 
 def by_curriculum(
-    standings: Mapping[str, CurriculumStanding],
+    standings: Mapping[str, CurriculumStanding | None],
 ) -> dict[Curriculum, dict[str, CurriculumStanding]]:
     """Return the standings of trainees, by name, for each curriculum that is followed."""
     groups: dict[Curriculum, dict[str, CurriculumStanding]] = {}
     for name, standing in standings.items():
-        groups.setdefault(standing.curriculum, {})[name] = standing
+        if standing is not None:
+            groups.setdefault(standing.curriculum, {})[name] = standing
     return groups
 
 

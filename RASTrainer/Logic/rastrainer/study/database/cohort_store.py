@@ -74,9 +74,7 @@ class CohortStore:
 
     def add(self, analysis: TrialAnalysis) -> None:
         """Store a finished trial with all results, the truth included, in one transaction."""
-        record, truth, study = analysis.record, analysis.truth, self._study
-        if truth is None:
-            raise ValueError("A virtual trial is stored with its truth.")
+        record, study = analysis.record, self._study
         with self._database.writing():
             if not study.has_trainee(record.trainee):
                 study.create_trainee(record.trainee, consent=True)
@@ -88,8 +86,8 @@ class CohortStore:
                     analysis.target_errors,
                     analysis.score,
                     analysis.procedure,
+                    analysis.truth,
                 )
-                study.set_truth(record.trial_id, truth.true_tre_mm, truth.head_to_world)
 
     def add_stuck(self, trial_id: str) -> None:
         """Note that a trial was played but not finished."""

@@ -138,7 +138,10 @@ def connected(
 ) -> Any:
     """Return a connection; psycopg's error if there is none in time."""
     connection = _impatient(postgres_driver(), answer_s).connect(
-        **address.connection_options,
+        address.uri,
+        # As they were checked.
+        host=address.host,
+        sslmode=address.sslmode,
         **_NETWORK,
         tcp_user_timeout=1000 * silence_s,
         autocommit=True,

@@ -147,11 +147,7 @@ class StepProgress:
             questionnaire = find_questionnaire(step.questionnaire)
             return {"answers": list(questionnaire.checked(details["answers"]))}
         if step.kind == StepKind.TRIAL:
-            if not isinstance(details.get("trialId"), str):
-                raise InputError(
-                    "A step with a trial is complete only with the UUID of the stored trial."
-                )
-            return {"trialId": details["trialId"]}
+            raise InputError("A step with a trial is done by a stored trial that counts for it.")
         minutes = details.get("minutes")
         if not is_number(minutes) or not step.minutes <= minutes < float("inf"):
             what = "The trial run" if step.kind == StepKind.TRIAL_RUN else "The break"
