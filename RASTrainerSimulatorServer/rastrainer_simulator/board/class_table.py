@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from aiohttp import web
@@ -25,13 +26,13 @@ from rastrainer_simulator.board.board_messages import (
 )
 from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
 from rastrainer_simulator.net.views.access_control import fresh_json
-from rastrainer_simulator.ops.study_thread import StudyThread
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 
 MOST_TRAINEES = 500
 LOCK_WAIT_S = 5.0
-
-
+ROUND_S = 2.0
+UNEXPECTED = "The study cannot be read because of an unexpected error; the board's log has more."
+_log = logging.getLogger(__name__)
 Standings = Mapping[str, "CurriculumStanding | None"]
 """Of the active trainees of a study, by name; None for those who follow no curriculum."""
 
@@ -99,17 +100,13 @@ def _standing(study: Study) -> Standings:
     return {name: store.standing(name) for name in names}
 
 
-_log = logging.getLogger(__name__)
-ROUND_S = 2.0
-UNEXPECTED = "The study cannot be read because of an unexpected error; the board's log has more."
-
-
 class ClassWatch:
     """Keeps what was last read of a study, also while it cannot be read."""
 
     def __init__(self, place: StudyPlace | None) -> None:
         """Read nothing yet; without a study nothing is ever read."""
-        self._thread = None if place is None else StudyThread(lambda: ClassReader(place))
+        self._reader = None if place is None else ClassReader(place)
+        self._thread = ThreadPoolExecutor(1, "study")
         self._found: Standings | None = None
         self._tables: dict[str, tuple[CurriculumTable, ...]] = {}
         self._problem = self._as_of = ""
@@ -117,20 +114,21 @@ class ClassWatch:
 
     async def begin(self) -> None:
         """Read once now, and repeatedly from now on."""
-        if self._thread is None:
+        if self._reader is None:
             return
         try:
-            await self._read(self._thread)
+            await self._read(self._reader)
         except StudyBusyError as error:
             self._problem = str(error)
-        self._task = asyncio.create_task(self._keep_reading(self._thread))
+        self._task = asyncio.create_task(self._keep_reading(self._reader))
 
     async def close(self) -> None:
         if self._task is not None:
             self._task.cancel()
             await asyncio.gather(self._task, return_exceptions=True)
-        if self._thread is not None:
-            await self._thread.close()
+        if self._reader is not None:
+            self._thread.submit(self._reader.close)
+        self._thread.shutdown()
 
     async def send(self, request: web.Request) -> web.Response:
         asked = request.query.get("language", "")
@@ -142,18 +140,18 @@ class ClassWatch:
         if found is not None and language not in self._tables:
             self._tables[language] = class_table(found, language)
         return ClassNews(
-            has_study=self._thread is not None,
+            has_study=self._reader is not None,
             problem=self._problem,
             as_of=self._as_of,
             curricula=self._tables.get(language, ()),
             without=tuple(name for name, each in (found or {}).items() if each is None),
         )
 
-    async def _keep_reading(self, thread: StudyThread[ClassReader]) -> None:
+    async def _keep_reading(self, reader: ClassReader) -> None:
         while True:
             await asyncio.sleep(ROUND_S)
             try:
-                await self._read(thread)
+                await self._read(reader)
             except InputError as error:
                 self._problem = str(error)
             except Exception:
@@ -161,8 +159,8 @@ class ClassWatch:
                 _log.exception(UNEXPECTED)
                 self._problem = UNEXPECTED
 
-    async def _read(self, thread: StudyThread[ClassReader]) -> None:
-        found = await thread.do(ClassReader.read)
+    async def _read(self, reader: ClassReader) -> None:
+        found = await asyncio.get_running_loop().run_in_executor(self._thread, reader.read)
         if found is not self._found:
             self._found, self._tables = found, {}
         self._problem, self._as_of = "", utc_now()

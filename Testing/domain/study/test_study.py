@@ -326,7 +326,7 @@ def test_everything_about_one_trainee_is_exported_and_nothing_about_others(
     text = (tmp_path / "a.json").read_text()
     (trial,) = json.loads(text)["trials"]
     assert record_from_json(TrialRecord, trial["record"]) == record_from_json(TrialRecord, first)
-    assert (trial["true_tre_mm"], trial["motion"]) == (0.5, {"path_mm": 2500.5})
+    assert (trial["truth"]["trueTreMm"], trial["record"]["motion"]) == (0.5, {"path_mm": 2500.5})
     assert record(2)["trialId"] not in text
 
 

@@ -121,7 +121,7 @@ def test_deleting_a_trainee_deletes_aborted_trials_for_good(study, tmp_path):
 def test_the_export_of_a_trainee_has_the_aborted_trials(study, tmp_path):
     study.add_aborted(make_aborted())
     assert export_trainee(study, "T-001", tmp_path / "all.json") == 0
-    exported = json.loads((tmp_path / "all.json").read_text())["aborted_trials"]
+    exported = json.loads((tmp_path / "all.json").read_text())["abortedTrials"]
     assert [(each["record"]["reason"], len(each["record"]["points"])) for each in exported] == [
         ("trainee", 3)
     ]

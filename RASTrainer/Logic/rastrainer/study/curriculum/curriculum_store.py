@@ -16,7 +16,6 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import decoded, json_text
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import pass_mark_of
-from rastrainer.trial.trial_feedback import PastTrial
 
 _STAMPS = """
     SELECT pseudonym,
@@ -77,8 +76,15 @@ class CurriculumStore:
             curriculum = None if row is None else _read(row[0])
             if curriculum is None:
                 return None
-            counted = map(_as_counted, self._study.attempts(pseudonym))
-            return standing_in(curriculum, tuple(counted), _marks(self._study))
+            counted = [
+                trial
+                if (done := trial.procedure_score) is None
+                else replace(
+                    trial, score=done.score, acceptable=done.acceptable, parts=done.desirabilities
+                )
+                for trial in self._study.attempts(pseudonym)
+            ]
+            return standing_in(curriculum, counted, _marks(self._study))
 
     def stamps(self) -> dict[str, tuple[int | None, ...]]:
         """Return for each active trainee numbers that change with where they may stand.
@@ -100,11 +106,3 @@ def _marks(study: Study) -> PassMarkOf:
 
 def _read(text: str | None) -> Curriculum | None:
     return None if text is None else decoded(text, Curriculum.from_json)
-
-
-def _as_counted(trial: PastTrial) -> PastTrial:
-    done = trial.procedure_score
-    if done is None:
-        return trial
-    parts = done.desirabilities
-    return replace(trial, score=done.score, acceptable=done.acceptable, parts=parts)

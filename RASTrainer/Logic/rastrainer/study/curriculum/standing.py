@@ -42,30 +42,26 @@ class CurriculumStanding:
     def next_best(self) -> AssignmentStanding | None:
         """The assignment to practice next; None when no open one is left.
 
-        It is the weakest of the open ones: the one whose latest mean is farthest below its mark;
-        one that was never played comes first, and of equal ones the first of the curriculum.
+        It is the weakest open assignment, whose latest mean is farthest below its mark; one that
+        was never played comes first, one without a mark last, and of equal ones the first.
+
+        Drawing the mean of few trials toward that of all improved nothing in simulated courses
+        (`Testing/error_rates/curricula.py`).
         """
+
+        def shortfall(standing: AssignmentStanding) -> float:
+            if standing.mark is None:
+                return -math.inf
+            return math.inf if standing.mean is None else standing.mark - standing.mean
+
         is_open = [each for each in self.standings if each.state is AssignmentState.OPEN]
-        return max(is_open, key=_shortfall, default=None)
+        return max(is_open, key=shortfall, default=None)
 
     def message(self, trainee: str) -> CurriculumMessage:
         """Return what the simulator shows a trainee."""
         best = self.next_best
         name = "" if best is None else best.name
         return CurriculumMessage(trainee, self.curriculum.title, name, self.standings)
-
-
-def _shortfall(standing: AssignmentStanding) -> float:
-    """Return the points from the latest mean up to the mark; infinite before the first trial.
-
-    Without a mark it is infinitely little: practice leads to no goal there.
-
-    Drawing the mean of few trials toward that of all improved nothing in simulated courses
-    (`Testing/error_rates/curricula.py`).
-    """
-    if standing.mark is None:
-        return -math.inf
-    return math.inf if standing.mean is None else standing.mark - standing.mean
 
 
 def by_curriculum(
@@ -102,11 +98,9 @@ def standing_in(
 
 
 def _counts_for(trial: PastTrial, assignment: Assignment) -> bool:
-    procedure = trial.procedure
-    if trial.is_aborted and (assignment.procedure or not trial.is_in_procedure):
-        procedure = assignment.procedure
-    elif trial.is_aborted:
+    if trial.is_aborted and trial.is_in_procedure and not assignment.procedure:
         return False
+    procedure = assignment.procedure if trial.is_aborted else trial.procedure
     return assignment.is_played_as(
         trial.scenario, trial.task, trial.mode, trial.method.value, procedure
     )

@@ -23,6 +23,7 @@ from rastrainer.study.protocol.step_progress import (
     SKIPPED,
     StepEntry,
     StepProgress,
+    checked_details,
     checked_reason,
 )
 from rastrainer.study.protocol.steps import objections_to
@@ -144,14 +145,13 @@ class StudyProgress:
     ) -> StepProgress:
         """Store that the next step was done, with details of `StepEntry`; return the progress."""
         with self._database.writing():
-            progress = self.progress(pseudonym)
-            expected = progress.expected(step)
-            checked = progress.check_done(expected, details or {})
+            due = self.progress(pseudonym).due(step)
+            checked = checked_details(due, details or {})
             return self._store(pseudonym, step, DONE, checked)
 
     def skip(self, pseudonym: str, step: str, reason: str) -> StepProgress:
         with self._database.writing():
-            self.progress(pseudonym).expected(step)
+            self.progress(pseudonym).due(step)
             checked = checked_reason(reason, "A step can be skipped")
             return self._store(pseudonym, step, SKIPPED, {"reason": checked})
 
