@@ -56,7 +56,7 @@ from rastrainer_simulator.presentation.messages import (
 )
 
 TILES_S = 0.25
-"""Between two messages to a teacher's page."""
+"""Time between two messages to a teacher's page."""
 HEARTBEAT_S = 20.0
 SEAT_PATH = "/seat/{seat:[0-9a-f]{12}}"
 FILES = (
@@ -64,9 +64,9 @@ FILES = (
     "sounds/{name:[a-z-]{1,32}}.wav",
     "scenarios/{name:[a-z0-9-]{1,40}}.png",
 )
-"""What a page may request of a simulator."""
+"""Files that a page may request from a simulator."""
 FILE_TYPES = {"glb": "model/gltf-binary", "wav": "audio/wav", "png": "image/png"}
-"""Their types, whatever the simulator says."""
+"""Their types; the simulator's own statement is ignored."""
 _KEPT_HEADERS = (hdrs.CONTENT_ENCODING, hdrs.CACHE_CONTROL, hdrs.VARY, "X-File-Size")
 _SPECTATOR_HELLO = message_text(Hello("spectator"))
 _HELLO_S = 5.0

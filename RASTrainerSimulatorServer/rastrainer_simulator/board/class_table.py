@@ -34,7 +34,7 @@ ROUND_S = 2.0
 UNEXPECTED = "The study cannot be read because of an unexpected error; the board's log has more."
 _log = logging.getLogger(__name__)
 Standings = Mapping[str, "CurriculumStanding | None"]
-"""Of the active trainees of a study, by name; None for those who follow no curriculum."""
+"""Standings of the active trainees of a study, by name; None without a curriculum."""
 
 
 class ClassReader:
@@ -101,7 +101,7 @@ def _standing(study: Study) -> Standings:
 
 
 class ClassWatch:
-    """Keeps what was last read of a study, also while it cannot be read."""
+    """Keeps the standings that were last read, also while the study cannot be read."""
 
     def __init__(self, place: StudyPlace | None) -> None:
         """Read nothing yet; without a study nothing is ever read."""

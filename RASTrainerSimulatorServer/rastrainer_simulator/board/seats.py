@@ -130,7 +130,7 @@ NOT_OURS = "The server at {address} is not a simulator of this version."
 
 
 class OtherCertificateError(InputError):
-    """The certificate is not the one whose fingerprint was compared."""
+    """The certificate has another fingerprint than the compared one."""
 
 
 class UnpairedError(InputError):

@@ -178,13 +178,12 @@ def write_slicer_files(trial: StoredTrial, folder: Path) -> list[Path]:
     """Write a trial's files and return their paths.
 
     `touched-world.mrk.json` has the touches in the robot's frame, `touched-ras.mrk.json` the same
-    after rigid registration, `WorldToRas.tfm` the registration, `residuals.csv` its residuals;
-    `traced-world.mrk.json` and `traced-ras.mrk.json` have the points of a trace, the files `.ply`
-    beside them the same as point clouds. Each
-    trajectory of a procedure, counted from 1, has the line `trajectory-1-planned.mrk.json` and,
-    where the truth is known, `trajectory-1-shown.mrk.json`, where the plan as it was shown truly
-    lay in the head, and `trajectory-1-placed.mrk.json` from the guide's tip to the instrument's,
-    all in RAS.
+    after rigid registration, `WorldToRas.tfm` the registration, `residuals.csv` its residuals.
+    `traced-world.mrk.json` and `traced-ras.mrk.json` have the points of a trace, the `.ply` files
+    the same points as clouds. Each trajectory of a procedure, counted from 1, has the line
+    `trajectory-1-planned.mrk.json` and, if the truth is known, `trajectory-1-shown.mrk.json`, the
+    true position of the plan as it was shown, and `trajectory-1-placed.mrk.json` from the guide's
+    tip to the instrument's tip, all in RAS.
     """
     make_folder(folder)
     record, rigid = trial.record, trial.registrations.get(RIGID)

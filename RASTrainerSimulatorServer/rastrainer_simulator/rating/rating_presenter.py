@@ -1,4 +1,4 @@
-"""What views show and accept while a rater watches replays and marks them: one domain a page."""
+"""The presenter and the pages for a rater who watches replays and marks them, a domain a page."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class RatingPresenter(ReplayPresenter):
         return self._texts.say(key, **self.work.numbers, **values)
 
     def advance(self, dt: float) -> None:
-        """Show what is loaded."""
+        """Show a replay that has been loaded."""
         self.pages.advance(dt)
         loading = self._loading
         if loading is None or not loading.done():
@@ -114,7 +114,7 @@ class RatingPresenter(ReplayPresenter):
             self._try(lambda: self._page_pressed(InputDevice.KEYBOARD, code))
 
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
-        """Process a gamepad: what is newly pressed is for the open page, else for the replay."""
+        """Process a gamepad: newly pressed buttons are for the open page, else for the replay."""
         now = _pressed(axes), _pressed(buttons)
         before = self._inputs.get(view, (frozenset(), frozenset()))
         self._inputs[view] = now
@@ -241,7 +241,7 @@ class DomainPage(RatingPage):
         self._form, self._domain = form, domain
 
     def content(self) -> PageContent:
-        """Return the marks, three of them with what they mean."""
+        """Return the marks, three of them with their meaning."""
         marks = (
             self.button(f"mark {mark}", partial(self._give, mark), self._label(mark))
             for mark in MARKS

@@ -47,7 +47,7 @@ class RatingWork:
 
     @property
     def open_domain(self) -> tuple[RatingForm, RatingDomain] | None:
-        """The first domain of the present replay without a mark; None where all have one."""
+        """The first domain of the present replay without a mark; None if all have one."""
         return self._open_of(self.marks)
 
     @property

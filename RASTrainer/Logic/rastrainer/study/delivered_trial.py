@@ -175,7 +175,7 @@ def explain(
 def explain_procedure(
     record: TrialRecord, scenario: Scenario, truth: RevealedTruth, progress: Progress
 ) -> ProcedureOutcome | None:
-    """Return the errors of a stored trial's procedure; None where it is of another plan."""
+    """Return the errors of a stored trial's procedure; None if it followed another plan."""
     progress("Computing errors", 0.0)
     try:
         return procedure_outcome(record, scenario, truth.matrix)

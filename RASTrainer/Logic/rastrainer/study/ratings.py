@@ -34,7 +34,7 @@ class RatingForm:
     """A form of domains that are marked from 1 (worst) to 5 (best), and added up.
 
     Names of domains and the scale are as published. The sentences that describe marks are our own,
-    in the simulator's texts: the published ones are their authors'.
+    in the simulator's texts: the published sentences belong to their authors.
 
     Attributes:
         domains: Those that a replay can show, in their order.
@@ -95,9 +95,9 @@ class RatingStore:
     ) -> tuple[str, ...]:
         """Assign replays to a rater; return their trials in the rater's order.
 
-        All raters get the same trials: those that somebody has, and more of `trial_ids`, drawn at
-        random, where these are fewer than `count`. Each rater gets them in their own order. What a
-        rater has already keeps its place.
+        All raters get the same trials: those of the other raters, and if these are fewer than
+        `count`, more of `trial_ids`, drawn at random. Each rater gets them in another order. A
+        rater's earlier replays keep their places.
         """
         rater = accepted(pseudonym, rater, "The name of a rater")
         with self._database.writing():

@@ -1,4 +1,4 @@
-"""Which curriculum each trainee of a study follows, and which trials count for their standing.
+"""The curricula of a study's trainees, and the trials that count for their standing.
 
 Each choice is stored, the last one counts. Scored trials count, and as failures those that were
 aborted or can have no score.
@@ -37,9 +37,9 @@ class CurriculumStore:
         self._study = study
 
     def choose(self, curriculum: Curriculum | None, pseudonym: str = "") -> None:
-        """Have a trainee, or by "" all present and future ones, follow a curriculum or none.
+        """Have a trainee follow a curriculum or none; "" means all present and future trainees.
 
-        What was chosen last counts: a choice for everybody ends those for single trainees.
+        The last choice counts: a choice for everybody ends the choices for single trainees.
         """
         marks = _marks(self._study)
         for each in () if curriculum is None else curriculum.assignments:

@@ -21,14 +21,14 @@ from rastrainer.trial.scoring import passes
 from rastrainer.trial.trial_feedback import PastTrial, competence_of
 
 PassMarkOf = Callable[[Assignment], "float | None"]
-"""From an assignment to the study's mark that passes its trials; None where there is none."""
+"""Maps an assignment to the study's pass mark for its trials; None if there is none."""
 RECENT = 3
 """How many of its latest trials an assignment is compared by."""
 
 
 @dataclass(frozen=True)
 class CurriculumStanding:
-    """A trainee's standing; each played trial is one, however many assignments it counts for."""
+    """A trainee's standing; a played trial is counted once, even if several assignments use it."""
 
     curriculum: Curriculum
     standings: tuple[AssignmentStanding, ...]
@@ -42,10 +42,10 @@ class CurriculumStanding:
     def next_best(self) -> AssignmentStanding | None:
         """The assignment to practice next; None when no open one is left.
 
-        It is the weakest open assignment, whose latest mean is farthest below its mark; one that
-        was never played comes first, one without a mark last, and of equal ones the first.
+        It is the weakest open assignment, whose latest mean is farthest below its mark. An
+        unplayed assignment comes first, an assignment without a mark last; ties keep their order.
 
-        Drawing the mean of few trials toward that of all improved nothing in simulated courses
+        Drawing the mean of few trials toward the overall mean improved nothing in simulated courses
         (`Testing/error_rates/curricula.py`).
         """
 
@@ -80,8 +80,8 @@ def standing_in(
 ) -> CurriculumStanding:
     """Return where a trainee stands by their trials, in order of starting.
 
-    The score of a trial with a procedure is that of the procedure; the study's pass mark is for
-    goals without their own.
+    In a trial with a procedure, the procedure's score counts. Goals without a mark use the
+    study's pass mark.
     """
     reached: dict[str, str] = {}
     standings = []
@@ -176,7 +176,7 @@ PARTS = {
     "plunge": "drilling too deep",
     "distance": "the distance to no-go structures",
 }
-"""Of the scores of touches and of procedures."""
+"""The parts of the scores of touches and of procedures."""
 
 
 def title_of(assignment: Assignment) -> str:

@@ -1,7 +1,7 @@
 """The virtual cohort that is simulated into a study, stored so that it can resume.
 
 The plan is stored before the first trial, and its completion after the last, so an incomplete study
-is recognized whatever interrupted it.
+is recognized after any interruption.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class CohortStore:
             self._database.insert("cohort", id=1, plan_json=text, planned_trials=planned_trials)
 
     def gap(self) -> str:
-        """Return what is missing, as a sentence; "" if the cohort is complete, or there is none.
+        """Return a sentence about missing trials; "" if the cohort is complete, or there is none.
 
         It stays complete if trainees were deleted since.
         """

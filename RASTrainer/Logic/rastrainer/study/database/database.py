@@ -63,7 +63,7 @@ def study_place(place: str | os.PathLike[str] | PostgresAddress) -> StudyPlace:
 
 
 def _address(uri: str) -> PostgresAddress:
-    # No sentence repeats what was entered: it might hold a password.
+    # No sentence repeats the entered address: it might hold a password.
     if len(uri) > _MAX_LENGTH or not unquote(uri).isprintable():
         raise InputError(f"An address of PostgreSQL is printable text such as {EXAMPLE}.")
     try:
@@ -192,7 +192,7 @@ class StudyDatabase(ABC):
             return self._execute(sql, *parameters).fetchone()
 
     def insert(self, table: str, is_once: bool = False, **values: Any) -> None:
-        """Store a row; with `is_once`, not in place of one that has its key.
+        """Store a row; with `is_once`, keep a stored row that has the same key.
 
         `trainee` is a pseudonym; the time of storing is added where the table has it.
         """
@@ -211,11 +211,11 @@ class StudyDatabase(ABC):
             self._execute(sql, *parameters)
 
     def reading(self) -> AbstractContextManager[None]:
-        """Read one state of the study several times, or that of the open transaction."""
+        """Read one state of the study several times, within an open transaction if there is one."""
         return self._transaction(may_change=False)
 
     def writing(self) -> AbstractContextManager[None]:
-        """Make changes in one transaction, once those of others are done.
+        """Make changes in one transaction, after the transactions of others.
 
         Within another one of `writing`, the changes are part of that one.
         """
@@ -264,7 +264,7 @@ class StudyDatabase(ABC):
 
     @abstractmethod
     def continue_numbers(self) -> None:
-        """Number new rows after all copied ones, within a transaction of `writing`."""
+        """Number new rows after all copied rows, within a transaction of `writing`."""
 
     @abstractmethod
     def _connect(self) -> Any:

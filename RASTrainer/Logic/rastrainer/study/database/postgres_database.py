@@ -1,7 +1,7 @@
 """A study in PostgreSQL: many seats, one study.
 
 A reader sees one state of the study, however long it reads. A writer first changes the one row of
-`rastrainer_study` and so waits for all writers before it, as those of an SQLite file do; the
+`rastrainer_study` and so waits for all writers before it, as writers of an SQLite file do; the
 number in that row tells the others that something has changed.
 
 The next transaction reconnects if the connection was lost. If that was during a COMMIT, no one
@@ -38,7 +38,7 @@ from rastrainer.study.database.schema import (
 )
 
 LOCKED = "UPDATE rastrainer_study SET changes = changes + 1"
-"""By which a writer waits for the previous one, and informs others of its change."""
+"""Makes a writer wait for the previous writer, and informs others of its change."""
 _TABLES = """
     SELECT count(*) FROM pg_class WHERE relnamespace = 'public'::regnamespace AND relkind = 'r'
 """

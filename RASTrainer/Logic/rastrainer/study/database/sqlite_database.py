@@ -43,7 +43,7 @@ class SqliteDatabase(StudyDatabase):
         "foreign_keys = ON",
         # Deleted trainees leave no bytes behind in the file.
         "secure_delete = ON",
-        # Also sync the folder: what was committed stays after a power failure, since the simulator
+        # Also sync the folder: committed changes survive a power failure, since the simulator
         # forgets a trial that we have acknowledged.
         "synchronous = EXTRA",
         "journal_mode = DELETE",

@@ -77,13 +77,13 @@ def decoded_record(kind: type[Value], written: str) -> Value:
 
 
 def result_of(kind: str, written: str) -> Any:
-    """Return a stored result; a kind that is none of `RESULTS` is that of a registration."""
+    """Return a stored result; every kind outside `RESULTS` is a registration's."""
     return decoded_record(RESULTS.get(kind, StoredRegistration), written)
 
 
 @dataclass(frozen=True)
 class Trainee:
-    """A trainee, known only by a pseudonym; archived ones are hidden from the list."""
+    """A trainee, known only by a pseudonym; the list hides archived trainees."""
 
     pseudonym: str
     consent: bool
@@ -170,4 +170,4 @@ class StoredAbortedTrial:
 
 SCORE, PROCEDURE, TRUTH = "score", "procedure", "truth"
 RESULTS = {SCORE: TrialScore, PROCEDURE: ProcedureOutcome, TRUTH: RevealedTruth}
-"""The kinds of results beside the registrations, which have kinds of their own."""
+"""The kinds of results other than registrations."""

@@ -25,7 +25,7 @@ class QuestionnaireItem:
 
     Attributes:
         anchors: The meaning of the smallest and the largest answer, if the item has its own.
-        groups: The scales of the SSQ that the symptom counts for, by their first letters.
+        groups: First letters of the SSQ's scales that include the symptom.
     """
 
     name: str
@@ -93,7 +93,7 @@ class Questionnaire:
 
 
 def _sus_scores(answers: Sequence[int]) -> tuple[float, ...]:
-    """Odd items are positive and count answer − 1, even ones negative and count 5 − answer."""
+    """Odd items are positive and count answer − 1, even items negative and count 5 − answer."""
     points = [a - 1 if number % 2 else 5 - a for number, a in enumerate(answers, start=1)]
     return (2.5 * sum(points),)
 
@@ -108,7 +108,7 @@ def _tlx_scores(answers: Sequence[int]) -> tuple[float, ...]:
 
 
 WEIGHTS = {"N": 9.54, "O": 7.58, "D": 13.92}
-"""Of nausea, oculomotor symptoms and disorientation."""
+"""The weights of nausea, oculomotor symptoms and disorientation."""
 TOTAL_WEIGHT = 3.74
 
 
@@ -120,7 +120,7 @@ def _ssq_scores(answers: Sequence[int]) -> tuple[float, ...]:
 
 
 _SCORES = {"sus": _sus_scores, "nasa-tlx": _tlx_scores, "ssq": _ssq_scores}
-"""From the checked answers to a score for each scale."""
+"""Formulas: they map the checked answers to a score for each scale."""
 _FILE = Path(__file__).with_name("questionnaires.json").read_text(encoding="utf-8")
 SUS, NASA_TLX, SSQ = (record_from_json(Questionnaire, each) for each in json.loads(_FILE))
 QUESTIONNAIRES = {q.name: q for q in (SUS, NASA_TLX, SSQ)}
