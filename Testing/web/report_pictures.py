@@ -23,7 +23,7 @@ from rastrainer.json_records import record_from_json
 from rastrainer.scenario.scenario import Scenario, Task, load_scenario
 from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
-from rastrainer.trial.analysis import analyze_trial
+from rastrainer.trial.analysis import RevealedTruth, analyze_trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.report.report import write_report
@@ -81,7 +81,12 @@ def _add_trial(
     study.add_trial(record, analysis.fits.values(), analysis.target_errors, analysis.score)
     target = scenario.target_position[None]
     there = transforms.apply(analysis.rigid.matrix @ head_to_world, target)
-    study.set_truth(trial_id, float(np.linalg.norm(there - target)), head_to_world.ravel().tolist())
+    study.add_results(
+        trial_id,
+        truth=RevealedTruth(
+            tuple(head_to_world.ravel().tolist()), float(np.linalg.norm(there - target))
+        ),
+    )
 
 
 def main(cohort: str = "") -> None:

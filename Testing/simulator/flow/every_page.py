@@ -205,7 +205,7 @@ class _Desk:
     undo = load = leave = None
 
     def __init__(self, texts):
-        self.texts = texts
+        self.say = partial(texts.say, number=5, count=20)
 
 
 def _screens_of_raters(texts, language: str) -> dict[str, Screen]:
