@@ -10,7 +10,7 @@ import numpy as np
 from scipy import stats
 
 from rastrainer.study.study_data import StudyData, TrialRow
-from rastrainer_simulator.report.method_comparison import TITLES
+from rastrainer_simulator.report.target_errors import TITLES
 from rastrainer_simulator.statistics.intervals import ALPHA
 from rastrainer_simulator.statistics.paired import fit_differences, holm, is_separable
 from Testing.error_rates.measured import Measured, share_of, share_text

@@ -7,8 +7,7 @@ import numpy as np
 from rastrainer.study.outcomes import MAIN_OUTCOMES
 from rastrainer.study.study_data import StudyData
 from rastrainer_simulator.report.comparisons import CONFIRMATORY, compare_modes
-from rastrainer_simulator.report.learning import learning_trends
-from rastrainer_simulator.report.trainees import groups
+from rastrainer_simulator.report.trainees import groups, learning_trends
 from rastrainer_simulator.statistics.trend import ALPHA, TrendVerdict, cohort_trend_p, falling_trend
 from rastrainer_simulator.virtual.outcome_model import OutcomeModel
 from Testing.drawn_study import draw_study

@@ -128,7 +128,7 @@ def _coverage(
     fit = fit_differences(rows, order)
     held = _holds(fit.mean / fit.standard_error, fit.dof, truth * np.sqrt(n))
     for row, expected in zip(rows[:COMPUTED], held, strict=False):
-        low, high = compare_paired(np.zeros(n), row, order).gz_interval
+        low, high = compare_paired(np.zeros(n), row, order).effect.interval
         assert (low <= truth <= high) == expected
     # Limits times J hold the truth where the limits hold the truth over J.
     shrunk = truth / small_sample_factor(fit.dof) * np.sqrt(n)

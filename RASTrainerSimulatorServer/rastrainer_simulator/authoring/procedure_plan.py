@@ -12,7 +12,6 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
-from rastrainer.number_text import fixed
 from rastrainer.procedure.checks import (
     MeasuredProcedure,
     check_procedure,
@@ -170,36 +169,3 @@ def _skull(scenario: Scenario) -> Path:
             "make it again with a skull."
         )
     return scenario.skull_mesh
-
-
-HEADER = (
-    *("line", "length (mm)", "angle to the skull (°)", "nearest no-go structure (mm)"),
-    *("nearest other line (mm)", "reach"),
-)
-REACH = {True: "yes", False: "no", None: "not tried"}
-
-
-def line_table(procedures: Iterable[MeasuredProcedure]) -> list[str]:
-    """Return the lines of a text: each procedure with its table, and what is wrong with it."""
-    text = []
-    for measured in procedures:
-        rows = [HEADER]
-        for line in measured.lines:
-            angle, near, other = line.skull_angle_deg, line.nearest_no_go, line.nearest_line_mm
-            rows.append(
-                (
-                    line.name,
-                    fixed(line.length_mm, 1),
-                    "–" if angle is None else fixed(angle, 1),
-                    f"{fixed(line.no_go_mm[near], 1)} {near}" if near else "–",
-                    "–" if other is None else f"{fixed(other, 1)} {line.nearest_line}",
-                    REACH[line.is_held],
-                )
-            )
-        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-        text.append(f"{measured.title} ({measured.procedure})")
-        for row in rows:
-            cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
-            text.append("  ".join(cells).rstrip())
-        text += [*measured.wrong, ""]
-    return text[:-1] or ["The scenario has no procedure."]

@@ -15,9 +15,7 @@ from rastrainer.trial.ctps import (
     trials_by_mode,
 )
 from rastrainer.work_progress import print_progress
-from rastrainer_simulator.cli import arg
-from rastrainer_simulator.cli.options import (
-    Subcommand,
+from rastrainer_simulator.cli.printing import (
     json_text,
     picked,
     read_known_study,
@@ -102,45 +100,3 @@ def _mean_times(given: list[str], modes: list[str]) -> dict[str, float]:
             ) from None
         means.update(dict.fromkeys([mode] if separator else modes, value))
     return means
-
-
-def _mean_ct(help_text: str) -> arg.Argument:
-    return arg.option(
-        "--mean-ct", action="append", default=[], metavar="[MODE=]SECONDS", help=help_text
-    )
-
-
-CSV_HEADER = "mode,subject,task,ct,rmse"
-COMMANDS = (
-    Subcommand(
-        "score",
-        "score the trials of a study as the paper does (CTPS)",
-        score,
-        (
-            arg.path("trials", "TRIALS.csv", "one trial a row"),
-            _mean_ct(
-                "use this mean completion time instead of the trials' own, or of the one that "
-                "notes beside the file (TRIALS.json) give; without MODE for all modes; may be "
-                "given once for each mode"
-            ),
-            arg.JSON,
-        ),
-        f"Score the trials of a CSV file with the header {CSV_HEADER} (s and mm) with CTPS, "
-        "separately for each mode.",
-    ),
-    Subcommand(
-        "report",
-        "write a study's report: tables, charts, tests, limits",
-        report,
-        (
-            arg.study(help_text=f"{arg.STUDY_HELP}; or a CSV file with the header {CSV_HEADER}"),
-            arg.output("folder to write into", required=True),
-            _mean_ct(
-                "a mean completion time for CTPS instead of the trials' own; see rastrainer score"
-            ),
-            arg.INCOMPLETE,
-        ),
-        "Write report.html, which needs no other file and prints on A4, and trials.csv. Trainees "
-        "who did not consent to research are left out.",
-    ),
-)

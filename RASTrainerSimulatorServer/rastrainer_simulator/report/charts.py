@@ -334,7 +334,7 @@ def paired_lines(comparison: ModeComparison) -> Markup:
             x, y = DIFFERENCE / HALF_WIDTH, 0.5
             chart.figure.text(x, y, "no test", color=FAINT, ha="center")
         else:
-            _difference(chart, result.mean_difference, result.interval)
+            _difference(chart, result.difference.value, result.difference.interval)
         return chart.svg()
 
 
@@ -363,9 +363,9 @@ MAX_EFFECT_SIZE = 6.0
 def effect_sizes(comparisons: Sequence[ModeComparison]) -> Markup:
     """Return the chart; intervals beyond the axis end in an arrow."""
     shown = [
-        (comparison, result.hedges_gz, result.gz_interval)
+        (comparison, result.effect.value, result.effect.interval)
         for comparison, result in tested(comparisons)
-        if result.hedges_gz is not None and result.gz_interval is not None
+        if result.effect is not None
     ]
     reach = max([1.0, *(abs(end) for _comparison, _gz, interval in shown for end in interval)])
     reach = min(MAX_EFFECT_SIZE, reach * 1.05)

@@ -1,4 +1,4 @@
-"""The modes side by side: by task (the paper's Fig. 8), as distributions, and by motion metric."""
+"""The modes side by side: by task (the paper's Fig. 8), as distributions, and by trainee."""
 
 from __future__ import annotations
 
@@ -19,8 +19,10 @@ from rastrainer.study.study_data import StudyData, values_of
 from rastrainer_simulator.report import charts
 from rastrainer_simulator.report.comparisons import ModeComparison, tested
 from rastrainer_simulator.report.page import render
+from rastrainer_simulator.statistics.paired import equivalence_margin
 
 SHOWN = ("completion_time_s", "rmse_mm", "ctps", "score")
+MAX_PAIRED_CHARTS = 6
 
 
 def mode_comparison(data: StudyData) -> Markup:
@@ -67,6 +69,24 @@ def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> Markup:
         means = [mean_and_sd(own, outcome.digits) for own in values]
         rows.append((outcome, means, [len(own) for own in values], compared.get(outcome.name)))
     return render("motion", modes=data.modes, rows=rows)
+
+
+def paired_statistics(comparisons: Sequence[ModeComparison]) -> Markup:
+    """Return tables, charts and sentences; "" if no trainee did two modes."""
+    if not comparisons:
+        return Markup()
+    results = tested(comparisons)
+    return render(
+        "paired_statistics",
+        first=comparisons[0].first,
+        second=comparisons[0].second,
+        comparisons=comparisons,
+        margin=equivalence_margin,
+        separated=[(one.outcome, found.sequences) for one, found in results if found.sequences],
+        is_order_known=any(comparison.order is not None for comparison in comparisons),
+        charts=[charts.paired_lines(one) for one in comparisons[:MAX_PAIRED_CHARTS]],
+        effects=charts.effect_sizes(comparisons) if any(r.effect for _, r in results) else None,
+    )
 
 
 def mean_and_sd(values: Sequence[float], digits: int) -> str:

@@ -9,7 +9,7 @@ from typing import TypeVar
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.statistics.intervals import TAIL, t_quantile
+from rastrainer_simulator.statistics.intervals import TAIL, coefficient
 
 FEWEST = 3
 """The agreement on two rated objects cannot be computed."""
@@ -130,8 +130,8 @@ def quadratic_kappa(first: np.ndarray, second: np.ndarray, lowest: int, highest:
         return Agreement(value, None)
     z = np.arctanh(without)
     error = math.sqrt((n - 1) / n * float(np.sum((z - z.mean()) ** 2)))
-    middle, reach = math.atanh(value), t_quantile(n - 1) * error
-    return Agreement(value, (math.tanh(middle - reach), math.tanh(middle + reach)))
+    low, high = coefficient(math.atanh(value), error, n - 1).interval
+    return Agreement(value, (math.tanh(low), math.tanh(high)))
 
 
 def kappa_of_table(table: np.ndarray, weights: np.ndarray) -> float:

@@ -20,6 +20,7 @@ import scipy
 from rastrainer.errors import InputError
 from rastrainer_simulator.statistics.intervals import (
     CONFIDENCE,
+    Estimate,
     coefficient,
     noncentrality_interval,
     small_sample_factor,
@@ -91,6 +92,7 @@ class Sequences:
     """Subjects by the condition that they did first.
 
     Attributes:
+        later: What one period later adds.
         between: Mean over both conditions of those who did the second one first, minus that of the
             others; None with fewer than two subjects in a sequence. Without carry-over it is 0 but
             for chance.
@@ -98,10 +100,8 @@ class Sequences:
 
     first_first: int
     second_first: int
-    later: float
-    later_interval: tuple[float, float]
-    between: float | None
-    between_interval: tuple[float, float] | None
+    later: Estimate
+    between: Estimate | None
 
 
 def compare_sequences(
@@ -113,22 +113,13 @@ def compare_sequences(
     """
     if fit.later is None or fit.later_error is None:
         raise ValueError("The effect of the period is not separated.")
+    means, between = (first + second) / 2, None
+    one, other = means[order > 0], means[order < 0]
+    if min(len(one), len(other)) >= MIN_SEQUENCE_SIZE and np.ptp(means) > 0:
+        low, high = scipy.stats.ttest_ind(other, one).confidence_interval(CONFIDENCE)
+        between = Estimate(float(other.mean() - one.mean()), (float(low), float(high)))
     later = coefficient(float(fit.later), float(fit.later_error), fit.dof)
-    means = (first + second) / 2
-    groups = means[order < 0], means[order > 0]
-    between, between_interval = None, None
-    if min(map(len, groups)) >= MIN_SEQUENCE_SIZE and np.ptp(means) > 0:
-        between = float(groups[0].mean() - groups[1].mean())
-        limits = scipy.stats.ttest_ind(*groups).confidence_interval(CONFIDENCE)
-        between_interval = (float(limits.low), float(limits.high))
-    return Sequences(
-        first_first=len(groups[1]),
-        second_first=len(groups[0]),
-        later=later.value,
-        later_interval=later.interval,
-        between=between,
-        between_interval=between_interval,
-    )
+    return Sequences(len(one), len(other), later, between)
 
 
 @dataclass(frozen=True)
@@ -136,25 +127,23 @@ class PairedComparison:
     """Two conditions, compared on the subjects who did both.
 
     Attributes:
-        mean_difference: Mean of second minus first; free of the effect of the period where
+        difference: Mean of second minus first; free of the effect of the period where
             `sequences` is not None.
-        hedges_gz: Mean difference over its standard deviation, corrected for few subjects; None
-            with one degree of freedom.
-        gz_interval: 95 % interval of the population's own (noncentral t); None likewise.
+        effect: Hedges' g_z, the mean difference over its standard deviation, corrected for few
+            subjects, with the interval of the population's own (noncentral t); None with one
+            degree of freedom.
         ranks: Wilcoxon's signed ranks, or his rank sums where periods are separated; None if
             neither can be computed.
         sequences: What the order did; None if it is unknown, or the same for all.
     """
 
     n: int
-    mean_difference: float
+    difference: Estimate
     standard_error: float
     dof: int
-    interval: tuple[float, float]
     t: float
     p: float
-    hedges_gz: float | None
-    gz_interval: tuple[float, float] | None
+    effect: Estimate | None
     ranks: RankTest | None
     sequences: Sequences | None = None
 
@@ -180,20 +169,18 @@ def compare_paired(
         raise InputError("All subjects differ by the same amount: no test can be computed.")
     error = float(fit.standard_error)
     t, dof = mean / error, fit.dof
-    gz, gz_interval, factor = None, None, small_sample_factor(dof)
+    effect, factor = None, small_sample_factor(dof)
     if factor is not None:
         low, high = noncentrality_interval(t, dof)
-        gz, gz_interval = factor * mean / sd, (low * error / sd, high * error / sd)
+        effect = Estimate(factor * mean / sd, (low * error / sd, high * error / sd))
     return PairedComparison(
         n=n,
-        mean_difference=mean,
+        difference=coefficient(mean, error, dof),
         standard_error=error,
         dof=dof,
-        interval=coefficient(mean, error, dof).interval,
         t=t,
         p=float(2 * scipy.stats.t.sf(abs(t), dof)),
-        hedges_gz=gz,
-        gz_interval=gz_interval,
+        effect=effect,
         ranks=rank_test(differences, order),
         sequences=None if order is None else compare_sequences(first, second, order, fit),
     )
@@ -206,7 +193,7 @@ def equivalence_margin(comparison: PairedComparison) -> float:
     small a difference may be neglected must be decided before the study.
     """
     quantile = float(scipy.stats.t.ppf(CONFIDENCE, comparison.dof))
-    return abs(comparison.mean_difference) + quantile * comparison.standard_error
+    return abs(comparison.difference.value) + quantile * comparison.standard_error
 
 
 def holm(p_values: np.ndarray) -> np.ndarray:

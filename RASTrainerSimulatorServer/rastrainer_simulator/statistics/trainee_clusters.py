@@ -74,7 +74,11 @@ def cluster_trainees(
             f"No groups are shown: {len(names)} trainees of one group would often look as clearly "
             f"divided as these (dip test, {p_phrase(p)}). That is not evidence that there are none."
         )
-    labels, silhouette = _best(points, random)
+    found = []
+    for count in range(2, max(2, min(MAX_CLUSTERS, len(points) // TRAINEES_A_CLUSTER)) + 1):
+        labels = np.unique(k_means(points, count, random), return_inverse=True)[1]
+        found.append((float(silhouettes(points, labels).mean()), labels))
+    silhouette, labels = max(found, key=lambda one: one[0])
     stable = stability(points, labels, random, STABILITY_ROUNDS)
     if stable.min() < STABLE:
         raise NoClustersError(
@@ -98,16 +102,6 @@ def one_peak_p(points: np.ndarray) -> float:
     The points are looked at along the direction in which they vary most.
     """
     return dip_p(points @ np.linalg.svd(points, full_matrices=False)[2][0])
-
-
-def _best(points: np.ndarray, random: np.random.Generator) -> tuple[np.ndarray, float]:
-    """Return the labels, from 0 without gaps, and the mean silhouette of the best number."""
-    most = min(MAX_CLUSTERS, len(points) // TRAINEES_A_CLUSTER)
-    found = []
-    for count in range(2, max(2, most) + 1):
-        labels = np.unique(k_means(points, count, random), return_inverse=True)[1]
-        found.append((labels, float(silhouettes(points, labels).mean())))
-    return max(found, key=lambda one: one[1])
 
 
 REFERENCE_SAMPLES = 2000
@@ -171,16 +165,13 @@ def _uniform_dips(n: int) -> np.ndarray:
 
 def _hull(x: np.ndarray, y: np.ndarray, side: int) -> np.ndarray:
     """Return the rows of the corners of the lower (side 1) or upper (-1) hull of sorted points."""
-    corners: list[int] = []
-    for row in range(len(x)):
-        while len(corners) > 1:
-            a, b = corners[-2:]
-            turn = (y[b] - y[a]) * (x[row] - x[a]) - (y[row] - y[a]) * (x[b] - x[a])
-            if side * turn < 0:
-                break
-            corners.pop()
-        corners.append(row)
-    return np.array(corners)
+    if len(x) == 1:
+        return np.array([0])
+    steps = np.diff(x)
+    slopes = scipy.optimize.isotonic_regression(
+        np.diff(y) / steps, weights=steps, increasing=side > 0
+    )
+    return slopes.blocks
 
 
 STARTS, STARTS_OF_SAMPLE = 10, 3

@@ -20,7 +20,7 @@ import numpy as np
 import scipy
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.statistics.intervals import ALPHA, mean
+from rastrainer_simulator.statistics.intervals import ALPHA, Estimate, mean
 from rastrainer_simulator.statistics.paired import holm
 
 MIN_TRIALS = 4
@@ -44,16 +44,14 @@ class Trend:
     """How a trainee's values change.
 
     Attributes:
-        change: From the first to the last trial on the fitted line over ln(trial); in the unit.
-        interval: 90 % interval of it (Student's t): both ends are one-sided limits at 5 %.
+        change: From the first to the last trial on the fitted line over ln(trial), with its 90 %
+            interval (Student's t): both ends are one-sided limits at 5 %.
         verdict: Falls where p is at most .05 (6 of the 120 orders of five trials); steady where
             not, and the interval holds neither a fall nor a rise by a tenth of the mean; undecided
             where it may be either.
     """
 
-    trials: int
-    change: float
-    interval: tuple[float, float]
+    change: Estimate
     p: float
     verdict: TrendVerdict
 
@@ -70,14 +68,25 @@ def falling_trend(values: Sequence[float] | np.ndarray) -> Trend:
     residuals = y - y.mean() - change * (x - x.mean()) / x[-1]
     error = float(np.sqrt(residuals @ residuals / (len(y) - 2) * (weights @ weights)))
     reach = float(scipy.stats.t.ppf(1 - ALPHA, len(y) - 2)) * error
-    p = _permuted_p(y, weights)
+    # The share of the orders of y whose change is as far below 0.
+    p = float(
+        scipy.stats.permutation_test(
+            (y,),
+            lambda ordered, axis: (np.moveaxis(ordered, axis, -1) * weights).sum(axis=-1),
+            permutation_type="pairings",
+            alternative="less",
+            vectorized=True,
+            n_resamples=MAX_ORDERS,
+            random_state=np.random.default_rng(0),
+        ).pvalue
+    )
     interval = (change - reach, change + reach)
     verdict = TrendVerdict.UNDECIDED
     if p <= ALPHA + 1e-12:
         verdict = TrendVerdict.FALLS
     elif max(-interval[0], interval[1]) < STEADY * float(np.abs(y).mean()):
         verdict = TrendVerdict.STEADY
-    return Trend(len(y), change, interval, p, verdict)
+    return Trend(Estimate(change, interval), p, verdict)
 
 
 def change_weights(trials: int) -> np.ndarray:
@@ -103,20 +112,6 @@ def cohort_trend_p(rows: np.ndarray) -> float:
     return float(scipy.stats.page_trend_test(values, predicted_ranks=falling).pvalue)
 
 
-def _permuted_p(y: np.ndarray, weights: np.ndarray) -> float:
-    """Return the share of the orders of y whose change is as far below 0."""
-    found = scipy.stats.permutation_test(
-        (y,),
-        lambda ordered, axis: (np.moveaxis(ordered, axis, -1) * weights).sum(axis=-1),
-        permutation_type="pairings",
-        alternative="less",
-        vectorized=True,
-        n_resamples=MAX_ORDERS,
-        random_state=np.random.default_rng(0),
-    )
-    return float(found.pvalue)
-
-
 @dataclass(frozen=True)
 class CohortTrend:
     """How one outcome of several trainees changes.
@@ -130,8 +125,7 @@ class CohortTrend:
 
     trainees: int
     means: tuple[float, ...]
-    change: float | None
-    interval: tuple[float, float] | None
+    change: Estimate | None
     p: float | None
     adjusted_p: float | None
     verdicts: Counter[TrendVerdict]
@@ -171,13 +165,12 @@ def _cohort_trend(series: Series, better: int) -> CohortTrend | None:
     rows = np.array([own[:common] for own in long])
     toward = -better
     verdicts = Counter(falling_trend(toward * own).verdict for own in long)
-    change = interval = p = None
+    change = p = None
     if len(rows) > 1:
-        changes = mean(rows @ change_weights(common))
-        change, interval = changes.value, changes.interval
+        change = mean(rows @ change_weights(common))
         p = cohort_trend_p(toward * rows)
     means = tuple(rows.mean(axis=0).tolist())
-    return CohortTrend(len(rows), means, change, interval, p, p, verdicts)
+    return CohortTrend(len(rows), means, change, p, p, verdicts)
 
 
 MIN_FIT_TRIALS = 5
@@ -218,30 +211,13 @@ def fit_learning_curve(values: Sequence[float]) -> LearningCurve:
     if not np.all(np.isfinite(y) & (y >= 0)):
         raise InputError("A learning curve needs times or errors that are finite and not below 0.")
     trials = np.arange(1, len(y) + 1)
-    gains, plateaus, all_squares = _linear_fits(trials ** -RATES[:, None], y)
-    best = int(np.argmin(all_squares))
-    rate, gain = float(RATES[best]), float(gains[best])
-    plateau, squares = float(plateaus[best]), float(all_squares[best])
+    fits = []
+    for rate in RATES.tolist():
+        (gain, plateau), off = scipy.optimize.nnls(
+            np.column_stack([trials**-rate, np.ones(len(y))]), y
+        )
+        fits.append((off**2, gain, rate, plateau))
+    squares, gain, rate, plateau = min(fits, key=lambda fit: fit[0])
     total = float(((y - y.mean()) ** 2).sum())
-    return LearningCurve(
-        gain=gain,
-        rate=rate,
-        plateau=plateau,
-        r_squared=1 - squares / total if total > 0 else 0.0,
-    )
-
-
-def _linear_fits(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return gain, plateau, both at least 0, and sum of squares of y = gain·x + plateau.
-
-    `x` is (k, n), a row a fit; the results are (k,).
-    """
-    centered = x - x.mean(axis=1, keepdims=True)
-    gain = centered @ (y - y.mean()) / (centered**2).sum(axis=1)
-    gain = np.maximum(gain, 0.0)
-    plateau = y.mean() - gain * x.mean(axis=1)
-    without = plateau < 0
-    gain = np.where(without, x @ y / (x**2).sum(axis=1), gain)
-    plateau = np.where(without, 0.0, plateau)
-    squares = ((y - gain[:, None] * x - plateau[:, None]) ** 2).sum(axis=1)
-    return gain, plateau, squares
+    r_squared = float(1 - squares / total) if total > 0 else 0.0
+    return LearningCurve(float(gain), rate, float(plateau), r_squared)
