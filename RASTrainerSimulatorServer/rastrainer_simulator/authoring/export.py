@@ -101,8 +101,8 @@ _SAMPLES = 6
 def without_face_in(volume: HeadVolume, head: HeadMesh) -> HeadVolume:
     """Return the images of a head without its face and without anything around the head.
 
-    What is removed depends on the shield of `without_face`, not on the face: the images reveal no
-    more about it than the exported surface.
+    The shield of `without_face` alone decides what is removed, so that the images reveal no more
+    about the face than the exported surface.
     """
     shield, tip = without_face(head), nose_tip(head)
     grid = Grid(volume.values.shape, volume.ijk_to_ras)
@@ -194,7 +194,7 @@ def draw_face_removal(folder: Path, picture: Path) -> str:
 def pack_for_sharing(
     folder: Path, package: Path, keeps_face: bool = False, keeps_names: bool = False
 ) -> str:
-    """Write a scenario as one zip file and return a sentence about what was removed.
+    """Write a scenario as one zip file, and return a sentence that lists the removed parts.
 
     Args:
         keeps_face: keep the head, its picture, its images and its skull; otherwise head, picture

@@ -22,7 +22,7 @@ MIDLINE_MM = 25.0
 NOSE_BELOW_TOP_SHARE = (0.45, 0.95)
 BESIDE_MM, BESIDE_WITHIN_MM = 18.0, 4.0
 LEAST_NOSE_MM = 5.0
-"""In front of the cheeks beside it: noses have 7 mm and more, the back of a head 1 to 3."""
+"""Measured from the cheeks: noses stand out by 7 mm and more, the back of a head by 1 to 3."""
 
 NOT_BEHIND = 0.5
 
@@ -34,7 +34,7 @@ def face_vertices(mesh: HeadMesh) -> np.ndarray:
 
 
 def _is_on_base(mesh: HeadMesh) -> np.ndarray:
-    """Return which vertices (n,) bool lie on the flat base."""
+    """Return which vertices (n,) bool are on the flat base."""
     heights = mesh.vertices[:, 2]
     return heights < heights.min() + FLAT_MM
 
@@ -66,7 +66,7 @@ def check_front(mesh: HeadMesh) -> str:
 
 
 def _nose_height(mesh: HeadMesh) -> float:
-    """Return how far the tip of the nose is in front of what is beside it, mm."""
+    """Return how far the tip of the nose is in front of the cheeks, mm."""
     tip, vertices = nose_tip(mesh), mesh.vertices
     aside = np.abs(np.abs(vertices[:, 0] - tip[0]) - BESIDE_MM)
     is_beside = (aside < BESIDE_WITHIN_MM) & (np.abs(vertices[:, 2] - tip[2]) < BESIDE_WITHIN_MM)
@@ -91,7 +91,7 @@ def without_face(mesh: HeadMesh) -> HeadMesh:
 
 
 def _relaxed(edges: np.ndarray, values: np.ndarray, moving: np.ndarray) -> np.ndarray:
-    """Return values (n,) of which the moving ones are the mean of their neighbors."""
+    """Return values (n,) in which each moving value is the mean of its neighbors."""
     count = len(values)
     ends = scipy.sparse.coo_matrix((np.ones(len(edges)), edges.T), shape=(count, count))
     rows = scipy.sparse.csgraph.laplacian(ends + ends.T).tocsr()[moving]

@@ -1,10 +1,10 @@
 """Landmarks of a head: proposed on it, read from a file, and checked.
 
-Proposed are those of the head of Colin27, carried to where the head is alike: the reference head is
-turned, shifted and scaled along its three axes until it lies on the other one (ICP; the worst tenth
-of the points does not count). Then the skin around each landmark is moved as a rigid patch until it
-lies on the skin there, because eyes, nose and ears are not where the size of the head alone puts
-them. The result is a proposal, to be checked.
+A proposal carries the landmarks of Colin27's head to similar places of another head: the reference
+head is turned, shifted and scaled along its three axes until it fits the other head (ICP; the worst
+tenth of the points does not count). Then the skin around each landmark is moved as a rigid patch
+until it fits the skin there, because the size of a head alone does not say where eyes, nose and
+ears are. The user checks the result.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def landmarks_on(mesh: HeadMesh) -> tuple[Landmark, ...]:
 
 
 def _whole(reference: HeadMesh, mesh: HeadMesh) -> np.ndarray:
-    """Return the transform (4, 4) that lays the reference on the head: rigid after a scaling.
+    """Return the transform (4, 4) that fits the reference to the head: rigid after a scaling.
 
     Distances are measured along the normals of the other head (point to plane: Chen and Medioni
     1992), to its vertices, which are thinned out.

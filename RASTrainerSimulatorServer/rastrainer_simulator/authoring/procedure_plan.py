@@ -54,7 +54,7 @@ def is_guide_held(
 def check_procedures(planning: PlanningSetup) -> list[str]:
     """Return a sentence for each error in the procedures of a scenario.
 
-    Reach is checked in the nominal pose of the head and in those of some seeds.
+    Reach is checked in the nominal pose of the head and in some seeded poses.
     """
     wrong = []
     for procedure in planning.scenario.procedures:
@@ -134,8 +134,8 @@ def with_procedure(
 ) -> tuple[Scenario, dict[str, HeadMesh]]:
     """Return a scenario with a procedure, in place of one of the same name.
 
-    The second value has the meshes of all its no-go structures by file name. A new mesh whose file
-    name another procedure has for another structure gets a name of its own.
+    The second value has the meshes of all its no-go structures by file name. A new mesh gets
+    another file name if another procedure uses its name for another structure.
     """
     _skull(scenario)
     others = [each for each in scenario.procedures if each.name != procedure.name]

@@ -57,7 +57,7 @@ def play_demo(arguments: argparse.Namespace) -> int:
     move_aside(output)
     output.mkdir(parents=True)
     with Study.open(output / STUDY_FILE) as study:
-        # With consent to research, the study can be reported and exported.
+        # Reports and exports need the consent to research.
         study.create_trainee(TRAINEE, consent=True)
     scenario = load_scenario(asset_path(*DEFAULT_SCENARIO))
     with _simulator(output, seed, speed) as port, _slicer(output, port) as slicer:

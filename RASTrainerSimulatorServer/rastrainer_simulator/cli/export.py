@@ -11,20 +11,11 @@ from rastrainer.files.writing import make_empty_folder, write_text
 from rastrainer.journal.recording import read_trajectory
 from rastrainer.number_text import counted
 from rastrainer.protocol import RegistrationMethod
+from rastrainer.study import tidy_csv
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.study_data import StudyData, TrialRow
-from rastrainer.study.tidy_csv import (
-    aborted_csv,
-    aborted_touches_csv,
-    answers_csv,
-    procedures_csv,
-    ratings_csv,
-    scores_csv,
-    touches_csv,
-    trials_csv,
-)
 from rastrainer_simulator.cli.printing import json_text, read_known_study
 from rastrainer_simulator.export.grades import grade, grades_csv
 from rastrainer_simulator.export.trial_files import write_motion_bids, write_slicer_files
@@ -80,14 +71,14 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
     make_empty_folder(folder)
     if name == "csv":
         tables = {
-            "trials": trials_csv(data.trials),
-            "touches": touches_csv(_stored(data, arguments.study)),
-            "procedures": procedures_csv(data.trials),
-            "aborted": aborted_csv(data.aborted),
-            "aborted_touches": aborted_touches_csv(data.aborted),
-            "scores": scores_csv(data),
-            "answers": answers_csv(data),
-            "ratings": ratings_csv(data),
+            "trials": tidy_csv.trials_csv(data.trials),
+            "touches": tidy_csv.touches_csv(_stored(data, arguments.study)),
+            "procedures": tidy_csv.procedures_csv(data.trials),
+            "aborted": tidy_csv.aborted_csv(data.aborted),
+            "aborted_touches": tidy_csv.aborted_touches_csv(data.aborted),
+            "scores": tidy_csv.scores_csv(data),
+            "answers": tidy_csv.answers_csv(data),
+            "ratings": tidy_csv.ratings_csv(data),
         }
         for table, text in tables.items():
             write_text(folder / f"{table}.csv", text)
@@ -104,7 +95,7 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
 def _home_page(value: str) -> str:
     """Accept the address of a lab's own system, from which IRIs are made."""
     parts = urlsplit(value)
-    # What stands before an "@", such as a password, would be in every statement.
+    # Every statement would show the password before an "@".
     is_safe = not any(sign in value for sign in "@?# ") and parts.hostname
     if parts.scheme not in ("https", "http") or not is_safe:
         raise InputError("--home-page: give an address such as https://lab.example.org.")

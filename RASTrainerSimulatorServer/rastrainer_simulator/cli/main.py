@@ -36,7 +36,7 @@ def read_commands() -> dict[str, CommandEntry]:
     for block in re.split(r"\n(?=[a-z@])", text)[1:]:
         title, _, rest = block.partition("\n")
         name, _, run = title.partition(" = ")
-        # A line that is indented farther continues the one before.
+        # A line that is indented farther continues the line before it.
         paragraphs = re.sub(r"\n {4,}", " ", rest).strip().split("\n\n")
         arguments = []
         if run or name.startswith("@"):
@@ -77,7 +77,7 @@ def _reader(name: str, limits: str) -> Callable[[str], object]:
             try:
                 return VALUES[name](text)
             except InputError as error:
-                # In place of argparse's own sentence, which would repeat what was entered.
+                # Argparse's own sentence would repeat the text that was entered.
                 raise argparse.ArgumentTypeError(str(error)) from None
         try:
             value = kind(text)

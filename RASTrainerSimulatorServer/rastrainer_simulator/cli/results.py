@@ -6,14 +6,7 @@ import argparse
 from dataclasses import replace
 
 from rastrainer.errors import InputError
-from rastrainer.trial.ctps import (
-    CTPS_WARNING,
-    CohortScores,
-    read_notes,
-    read_trials,
-    score_cohort,
-    trials_by_mode,
-)
+from rastrainer.trial import ctps
 from rastrainer.work_progress import print_progress
 from rastrainer_simulator.cli.printing import (
     json_text,
@@ -24,10 +17,10 @@ from rastrainer_simulator.cli.printing import (
 
 
 def score(arguments: argparse.Namespace) -> int:
-    modes = trials_by_mode(read_trials(arguments.trials))
-    notes = read_notes(arguments.trials.with_suffix(".json"))
+    modes = ctps.trials_by_mode(ctps.read_trials(arguments.trials))
+    notes = ctps.read_notes(arguments.trials.with_suffix(".json"))
     means = {**(notes.mean_ct_s if notes else {}), **_mean_times(arguments.mean_ct, list(modes))}
-    scores = {mode: score_cohort(trials, means.get(mode)) for mode, trials in modes.items()}
+    scores = {mode: ctps.score_cohort(trials, means.get(mode)) for mode, trials in modes.items()}
     if arguments.json:
         names = ("overall", "equation_3_overall", "tasks", "subjects", "sd_population", "sd_sample")
         objects = {
@@ -36,18 +29,18 @@ def score(arguments: argparse.Namespace) -> int:
                 "mean_ct": own.reference.mean_ct_s,
                 "best_rmse": own.reference.best_rmse_mm,
                 "trials": len(own.trials),
-                "warning": CTPS_WARNING,
+                "warning": ctps.CTPS_WARNING,
             }
             for mode, own in scores.items()
         }
         print(json_text(objects))
     else:
         print("\n\n".join(_scores_text(mode, own) for mode, own in scores.items()))
-        print(f"\nWarning: {CTPS_WARNING}")
+        print(f"\nWarning: {ctps.CTPS_WARNING}")
     return 0
 
 
-def _scores_text(mode: str, scores: CohortScores) -> str:
+def _scores_text(mode: str, scores: ctps.CohortScores) -> str:
     reference = scores.reference
     rows = [[f"Task {name}", f"{mean:.2f}"] for name, mean in scores.tasks.items()]
     rows += [[f"Subject {name}", f"{mean:.2f}"] for name, mean in scores.subjects.items()]

@@ -110,7 +110,7 @@ def measure_lines(arguments: argparse.Namespace) -> int:
 
 
 def _lines_text(measured: MeasuredProcedure) -> str:
-    """Return the table of a procedure's lines, and what is wrong with it."""
+    """Return the table of a procedure's lines, and its errors."""
     header = [
         *("line", "length (mm)", "angle to the skull (°)", "nearest no-go structure (mm)"),
         *("nearest other line (mm)", "reach"),

@@ -135,7 +135,7 @@ def _mean_text(trials: Sequence[TrialRow], outcome: Outcome) -> str:
 
 
 def shifted_skin(data: StudyData) -> Markup:
-    """Return the section; "" where the skin lay as in the images in all trials."""
+    """Return the section; "" if the skin was never shifted."""
     groups: dict[tuple[float, float, str], list[TrialRow]] = defaultdict(list)
     for trial in data.trials:
         if "skin_shift_mm" in trial.values:

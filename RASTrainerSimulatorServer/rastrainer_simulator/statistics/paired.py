@@ -1,8 +1,8 @@
 """Two conditions on the same subjects: difference, interval, effect size and tests.
 
-A subject has more practice, or is more tired, in the later condition. With balanced orders half of
-the subjects gain by this in one condition and half in the other: the mean difference is right, but
-the differences scatter by twice the effect of the period, so a paired test finds little. The
+A subject has more practice, or is more tired, in the later condition. If orders are balanced, half
+of the subjects gain by this in one condition and half in the other: the mean difference is right,
+but the differences scatter by twice the effect of the period, so a paired test finds little. The
 regression here removes it (for two sequences AB and BA it is the usual analysis of a crossover:
 Hills and Armitage 1979; Senn 2002, chapter 3).
 
@@ -46,7 +46,7 @@ class DifferenceFit:
 
 
 def is_separable(order: np.ndarray | None) -> bool:
-    """Return whether the effect of the period can be separated from that of the conditions.
+    """Return whether the effects of the period and of the conditions can be separated.
 
     Args:
         order: (n,) float, by how many periods each subject did the second condition later than the
@@ -60,7 +60,7 @@ def is_separable(order: np.ndarray | None) -> bool:
 def fit_differences(differences: np.ndarray, order: np.ndarray | None = None) -> DifferenceFit:
     """Return the mean of (…, n) float differences, second condition minus first.
 
-    `order` is that of `is_separable`; where it is not separable, the plain mean is returned.
+    `order` is as in `is_separable`; if the period cannot be separated, the plain mean is returned.
     """
     n = differences.shape[-1]
     means = differences.mean(axis=-1)
@@ -93,9 +93,9 @@ class Sequences:
 
     Attributes:
         later: What one period later adds.
-        between: Mean over both conditions of those who did the second one first, minus that of the
-            others; None with fewer than two subjects in a sequence. Without carry-over it is 0 but
-            for chance.
+        between: Mean over both conditions of the subjects who did the second condition first, minus
+            the mean of the others; None with fewer than two subjects in a sequence. It differs from
+            0 by chance or carry-over.
     """
 
     first_first: int
@@ -109,7 +109,7 @@ def compare_sequences(
 ) -> Sequences:
     """Return the effects of the order on (n,) float values of both conditions.
 
-    `order` is that of `is_separable`, and `fit` that of the differences, with the period.
+    `order` is as in `is_separable`; `fit` is the fit of the differences, with the period.
     """
     if fit.later is None or fit.later_error is None:
         raise ValueError("The effect of the period is not separated.")
@@ -156,7 +156,7 @@ def compare_paired(
     The t-test is Student's (1908), with the period as a covariate where the order allows it. The
     effect size is Cohen's d_z with Hedges' exact correction (1981).
 
-    `order` is that of `is_separable`.
+    `order` is as in `is_separable`.
     """
     first, second = np.asarray(first, dtype=float), np.asarray(second, dtype=float)
     differences, n = second - first, len(first)

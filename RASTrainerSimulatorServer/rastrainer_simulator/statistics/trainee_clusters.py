@@ -53,7 +53,7 @@ def cluster_trainees(
     Any population can be cut, and a skewed one is cut better than a normal one. So groups are
     reported only if there is more than one peak: Hartigans' dip test on the first principal
     component, which is chosen without looking for groups, at 5 % for every population with a single
-    peak. The number of clusters is the one with the best mean silhouette, and every cluster must
+    peak. The number of clusters with the best mean silhouette is taken, and every cluster must
     come back when trainees are resampled. Otherwise, `NoClustersError` says why there are none.
     """
     names = sorted(name for name, values in trainees.items() if set(metrics) <= set(values))
@@ -112,8 +112,8 @@ def dip(values: np.ndarray) -> float:
     unimodal one.
 
     The peak is enclosed from both sides: left of it a unimodal distribution function is convex,
-    right of it concave. Where the greatest convex minorant and the least concave majorant of what
-    is still open are farthest apart, the next, shorter interval begins and ends.
+    right of it concave. The next, shorter interval begins and ends where the greatest convex
+    minorant and the least concave majorant of the present one are farthest apart.
     """
     x, counts = np.unique(np.asarray(values, dtype=float), return_counts=True)
     n = len(values)
@@ -149,8 +149,8 @@ def dip(values: np.ndarray) -> float:
 def dip_p(values: np.ndarray) -> float:
     """Return how often (n,) values of a uniform distribution have so large a dip.
 
-    Of all distributions with a single peak the uniform one has the largest dips, so that this p is
-    too large for every other one, whether skewed or heavy-tailed, and never too small.
+    The uniform distribution has the largest dips of all distributions with a single peak, so that
+    this p is too large for every other distribution, skewed or heavy-tailed, and never too small.
     """
     reference = _uniform_dips(len(values))
     larger = len(reference) - np.searchsorted(reference, dip(values) - 1e-12)

@@ -1,11 +1,11 @@
 """Do times or errors fall from trial to trial? A test that five trials are enough for.
 
 A curve with a free rate and plateau has as many parameters as the published protocol has trials
-to spare, and no criterion can prefer it. Two things are known beforehand, and make a test out of
-five trials: practice does not make slower or worse, so the test is one-sided; and what it gains is
-most at first, so the trials are set against the logarithm of their number. The p-value is the share
-of all orders of the same values that would fall as steeply: exact for every distribution of values
-that do not depend on each other, and skewed or heavy-tailed ones, too. Where they fall, a power law
+to spare, and no criterion can prefer it. Two facts make a test out of five trials:
+practice does not make slower or worse, so the test is one-sided; and it gains most at first, so the
+trials are set against the logarithm of their number. The p-value is the share of all orders of the
+same values that would fall as steeply. It is exact for independent values of any distribution,
+skewed or heavy-tailed, too. Where they fall, a power law
 describes how.
 """
 
@@ -28,7 +28,7 @@ MIN_TRIALS = 4
 STEADY = 0.1
 """A fall by less than this share of the mean is called none; our own convention."""
 MAX_ORDERS = 9999
-"""Up to seven trials, all orders are used; beyond, this many random ones."""
+"""All orders of up to seven trials are used, and this many random orders of more trials."""
 
 
 class TrendVerdict(Enum):
@@ -90,9 +90,9 @@ def falling_trend(values: Sequence[float] | np.ndarray) -> Trend:
 
 
 def change_weights(trials: int) -> np.ndarray:
-    """Return the (n,) float weights whose sum over the values of n trials is the change.
+    """Return the (n,) float weights that sum the values of n trials to their change.
 
-    It is that of the least-squares line over ln(trial), from the first trial to the last.
+    The change is from the first trial to the last on the least-squares line over ln(trial).
     """
     x = np.log(np.arange(1, trials + 1))
     offsets = x - x.mean()
@@ -100,10 +100,9 @@ def change_weights(trials: int) -> np.ndarray:
 
 
 def cohort_trend_p(rows: np.ndarray) -> float:
-    """Return the one-sided p that (m, n) values of m trainees fall over their n trials.
+    """Test by Page (1963) whether (m, n) values of m trainees fall over their n trials.
 
-    It is Page's test (1963), each trainee a block: only the ranks within trainees count, so that
-    slow and quick ones count alike.
+    Only the ranks within trainees count, so that slow and quick trainees count alike. Returns p.
     """
     values = np.asarray(rows, dtype=float)
     if values.ndim != 2 or values.shape[0] < 2 or values.shape[1] < 3:
@@ -144,8 +143,8 @@ Series = Sequence[Sequence[float]]
 def cohort_trends(tested: Sequence[tuple[Series, int]]) -> list[CohortTrend | None]:
     """Return the trend of several trainees in each of some outcomes, with p adjusted (Holm).
 
-    There is none where no trainee has four trials. Of each outcome, `tested` has the values of all
-    trials of each trainee, in their order; and -1 where less is better, 1 where more is.
+    `tested` has, for each outcome, the values of all trials of each trainee, in their order; and -1
+    if less is better, 1 if more is. The trend is None if no trainee has four trials.
     """
     found = [_cohort_trend(*each) for each in tested]
     p_values = {
@@ -181,8 +180,8 @@ RATES = np.geomspace(0.02, 4.0, 200)
 class LearningCurve:
     """The power law of practice y = a·n^−b + c over the trials n = 1, 2, …, fitted.
 
-    It describes (Newell and Rosenbloom 1981), in the unit of what was measured; whether there is
-    learning at all is for the test. The plateau of few trials is a guess: it lies beyond them.
+    It describes (Newell and Rosenbloom 1981), in the unit of the values; the test says whether
+    there is learning at all. The plateau of few trials is a guess: it lies beyond them.
 
     Attributes:
         gain: a, how much the first trial is above the plateau.

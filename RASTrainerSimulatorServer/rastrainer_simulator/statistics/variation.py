@@ -5,7 +5,7 @@ the tasks, and on one level for each trainee in each mode (least squares). The s
 levels, less what chance adds to it, is parted into trainees and trainee × mode by the analysis of
 variance with random effects (Searle, Casella and McCulloch 1992). No estimate is biased: the
 coefficients are linear and the variances quadratic in the logarithms, with the parameters as their
-expected values. A variance may come out below 0 where it is about 0.
+expected values. The estimate of a variance of about 0 may be below 0.
 
 The intervals take the scatter of levels and trials as normal and all trainees as learning alike.
 """
