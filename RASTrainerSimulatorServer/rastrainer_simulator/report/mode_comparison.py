@@ -26,34 +26,28 @@ MAX_PAIRED_CHARTS = 6
 
 
 def mode_comparison(data: StudyData) -> Markup:
-    """Return one chart per outcome, with the modes side by side for every task."""
-    found = {name for trial in data.trials for name in trial.values}
-    outcomes = [each for each in MAIN_OUTCOMES if each.name in SHOWN and each.name in found]
-    titles, pictures = [task_title(task) for task in data.tasks], []
-    for outcome in outcomes:
-        series = []
-        for index, mode in enumerate(data.modes):
-            values = [
-                values_of((t for t in data.of_mode(mode) if t.task == task), outcome.name)
-                for task in data.tasks
-            ]
-            series.append((mode_title(mode), charts.mode_color(mode, index), values))
-        pictures.append(charts.grouped_bars(outcome.heading, titles, series))
-    return render("task_by_task", charts=pictures)
-
-
-def distributions(data: StudyData) -> Markup:
-    """Return one chart per outcome, with a lane for each mode."""
-    pictures = []
+    """Return one chart per outcome by task, and one with a lane for each mode."""
+    modes = [(mode, charts.mode_color(mode, index)) for index, mode in enumerate(data.modes)]
+    by_task, distributions = [], []
     for outcome in MAIN_OUTCOMES:
         lanes = [
-            (short_mode_title(mode), charts.mode_color(mode, index), values)
-            for index, mode in enumerate(data.modes)
+            (short_mode_title(mode), color, values)
+            for mode, color in modes
             if (values := values_of(data.of_mode(mode), outcome.name))
         ]
-        if lanes:
-            pictures.append(charts.distribution(outcome.heading, lanes))
-    return render("distributions", charts=pictures)
+        if not lanes:
+            continue
+        distributions.append(charts.distribution(outcome.heading, lanes))
+        if outcome.name not in SHOWN:
+            continue
+        series = []
+        for mode, color in modes:
+            trials = [[t for t in data.of_mode(mode) if t.task == task] for task in data.tasks]
+            values = [values_of(own, outcome.name) for own in trials]
+            series.append((mode_title(mode), color, values))
+        titles = [task_title(task) for task in data.tasks]
+        by_task.append(charts.grouped_bars(outcome.heading, titles, series))
+    return render("mode_comparison", by_task=by_task, distributions=distributions)
 
 
 def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> Markup:

@@ -18,12 +18,7 @@ from rastrainer.study.tidy_csv import trials_csv
 from rastrainer.work_progress import Progress, no_progress
 from rastrainer_simulator.report.comparisons import compare_modes, compared_method
 from rastrainer_simulator.report.conclusions import answers, left_out_methods, limits, methods
-from rastrainer_simulator.report.mode_comparison import (
-    distributions,
-    mode_comparison,
-    motion,
-    paired_statistics,
-)
+from rastrainer_simulator.report.mode_comparison import mode_comparison, motion, paired_statistics
 from rastrainer_simulator.report.page import render
 from rastrainer_simulator.report.passing import passing, passing_of, started_trials
 from rastrainer_simulator.report.procedures import procedures
@@ -69,7 +64,7 @@ def report_html(
         ("Answers", lambda: answers(data, comparisons, of_methods, passed, left_out)),
         ("The paper's tables", lambda: published_tables(data) + paper_notes(data)),
         ("Comparison of modes", lambda: Markup().join(map(paired_statistics, main))),
-        ("Charts by task", lambda: mode_comparison(data) + distributions(data)),
+        ("Charts by task", lambda: mode_comparison(data)),
         ("Learning", lambda: learning(data)),
         ("Sources of variation", lambda: variation(data)),
         ("Passed trials", lambda: started_trials(data) + passing(data, passed) + curricula(data)),
