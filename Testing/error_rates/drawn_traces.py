@@ -1,8 +1,8 @@
 """Surface matches of traces as people draw them: are interval and warning right?
 
-Points of a drawn trace lie side by side, so that a hundred of them are in a few places of the face.
-`drawn_traces.csv` holds what was matched, a trace a row. `python -m
-Testing.error_rates.drawn_traces` matches what it lacks of `SEEDS` traces for each head and case,
+The points of a drawn trace are neighbors, so that a hundred are in a few places of the face.
+`drawn_traces.csv` has the matched traces, one a row. `python -m
+Testing.error_rates.drawn_traces` matches the missing traces of `SEEDS` for each head and case,
 all cases in turn. It can be stopped at any time: the table says how many traces there were.
 """
 
@@ -143,7 +143,7 @@ def measured(traces: int) -> list[Measured]:
         own = [one for one in drawn if (one.how, one.points, one.shift_mm) == (how, points, shift)]
         matched = [one for one in own if one.warnings != REFUSED]
         is_off = [one.farthest_mm > SLIDE_LIMIT_MM for one in matched]
-        beside = (
+        further = (
             fixed(rms([one.expected_mm for one in matched]), 2),
             fixed(rms([one.error_mm for one in matched]), 2),
             *(share_text(share_of([one.slides for one in matched])), share_text(share_of(is_off))),
@@ -157,14 +157,14 @@ def measured(traces: int) -> list[Measured]:
                 share_of([bool(one.holds) for one in matched]),
                 len(matched),
                 at_least=LEAST_HELD if is_asked else None,
-                beside=beside,
+                further=further,
             )
         )
     return rows
 
 
 def keys(seeds: int) -> Iterator[tuple[str, str, int, float, int]]:
-    """Yield what is matched: head, how it is drawn, points, shift and seed."""
+    """Yield the key of each trace: head, way of drawing, points, shift and seed."""
     for seed in range(seeds):
         for case, head in itertools.product(CASES, HEADS):
             yield (head, *case, seed)

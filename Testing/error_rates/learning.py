@@ -75,7 +75,7 @@ def _series(
         sets,
         at_most=0.06 if asked == "≤" else None,
         at_least=0.8 if asked == "≥" else None,
-        beside=tuple(
+        further=tuple(
             share_text(shares[one]) for one in (TrendVerdict.STEADY, TrendVerdict.UNDECIDED)
         ),
     )
@@ -119,7 +119,7 @@ def null_cohorts(sets: int, seed: int = 3) -> list[Measured]:
             share_of(said[:, column]),
             len(cohorts),
             at_most=0.06 if statement != "any" else 0.11,
-            beside=(share_text(share_of(uncorrected[:, column])),),
+            further=(share_text(share_of(uncorrected[:, column])),),
         )
         for column, statement in enumerate(words)
     ]

@@ -1,7 +1,7 @@
 """The warnings of a surface match: how often they are false, and how often they are missing.
 
-`match_warnings.csv` holds what was matched, five traces a row. `python -m
-Testing.error_rates.match_warnings` matches what it lacks of `CHUNKS` rows for each head and case,
+`match_warnings.csv` has the matched traces, five a row. `python -m
+Testing.error_rates.match_warnings` adds the missing rows of `CHUNKS` for each head and case,
 all cases in turn. It can be stopped at any time: the table says how many traces there were.
 """
 
@@ -177,7 +177,7 @@ def measured(traces: int) -> list[Measured]:
                 slides / near if near else 0.0,
                 max(near, 1),
                 at_most=MOST_FALSE if is_good else None,
-                beside=(
+                further=(
                     share_text(off / max(count - refused, 1)),
                     f"{off - named} of {off}",
                     str(refused),

@@ -1,6 +1,6 @@
 """Every method of registration on Colin27: does its interval hold the truth, and which is better?
 
-`method_errors.csv` holds what was played, fifty trials a row. `python -m
+`method_errors.csv` has the played trials, fifty a row. `python -m
 Testing.error_rates.method_errors` plays the rows that it lacks of 2,000 trials for each method and
 shift, all methods in turn. It can be stopped at any time: the table says how many were played.
 """
@@ -37,7 +37,7 @@ FILE = Path(__file__).with_name("method_errors.csv")
 SHIFTS_MM = (0.0, 2.0)
 CHUNK, TRIALS = 50, 2000
 STARTS = 1
-"""Of a surface match: more of them are to find gross errors of the landmarks, and cost time."""
+"""Starts of a surface match: more would find gross errors of the landmarks, and cost time."""
 LEAST_HELD, MOST_HELD = 0.93, 0.97
 
 
@@ -78,7 +78,7 @@ def measured(trials: int) -> list[Measured]:
                 count,
                 at_most=None if shift else MOST_HELD,
                 at_least=None if shift else LEAST_HELD,
-                beside=(*means, str(count)),
+                further=(*means, str(count)),
             )
         )
     return rows

@@ -1,4 +1,4 @@
-"""The effect of the period is separated from that of the mode."""
+"""The effects of the period and of the mode are separated."""
 
 import itertools
 
@@ -57,7 +57,7 @@ def test_difference_and_period_are_scipys_regression_on_the_order(study):
 
 
 def test_difference_and_period_are_statsmodels_model_of_subject_mode_and_period():
-    """Of statsmodels 0.15.0, `smf.ols("y ~ C(subject) + mode + period", rows).fit()`.
+    """Numbers of statsmodels 0.15.0, `smf.ols("y ~ C(subject) + mode + period", rows).fit()`.
 
     A row is a value of a subject in a mode; mode is 1 for the headset, period 1 for the later one.
     """
