@@ -55,7 +55,7 @@ def touchable(
 
 
 WIDER = 1.2
-"""Factor by which the perturbation of poses for planning exceeds that of trials: a margin."""
+"""Perturbation of the poses for planning over the perturbation in trials: a margin."""
 
 
 class PlanningSetup:
