@@ -76,7 +76,7 @@ class Lab:
         """Start Slicer's side, which scores a number of trials and ends."""
         slicer = SlicerProcess(
             *("--port", str(self.simulator.port), "--trials", str(trials)),
-            *("--scenario", str(asset_path("scenarios", "colin27"))),
+            *("--assets", str(asset_path())),
             *("--output", str(self._folder / "study"), "--timeout", str(TIMEOUT_S)),
         )
         self._stack.callback(slicer.kill)

@@ -51,7 +51,7 @@ class SlicerSide:
         self.points = arrayFromMarkupsControlPoints(node)
 
     def open_logic(self):
-        find = ScenarioCache(COLIN).find
+        find = ScenarioCache(COLIN.parent).find
         services = TrialServices(
             self.scene, self.link, find, lambda: Study.open(self.study), self.work
         )

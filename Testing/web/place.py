@@ -104,7 +104,7 @@ class Place:
         process = subprocess.Popen(
             [
                 *(*SLICER, "--port", str(self.simulator.port), "--trials", "1"),
-                *("--scenario", str(asset_path("scenarios", "colin27"))),
+                *("--assets", str(asset_path())),
                 *("--output", str(self._folder / "study")),
             ],
             stdout=subprocess.PIPE,
