@@ -42,24 +42,6 @@ _FIRST_GROUPS = (b"\x08\x00", b"\x02\x00", b"\x00\x08")
 _NO_HEADS = ("PR", "REG", "RTDOSE", "SEG")
 _LPS_TO_RAS = np.array([-1.0, -1.0, 1.0])
 _DESCRIPTION = ("Rows", "Columns", "BitsAllocated", "BitsStored", "HighBit", "PixelRepresentation")
-_TAGS = [
-    *_DESCRIPTION,
-    "EchoTime",
-    "ImageOrientationPatient",
-    "ImagePositionPatient",
-    "ImageType",
-    "Modality",
-    "PerFrameFunctionalGroupsSequence",
-    "PixelData",
-    "PixelSpacing",
-    "RescaleIntercept",
-    "RescaleSlope",
-    "SamplesPerPixel",
-    "SeriesDescription",
-    "SeriesInstanceUID",
-    "SharedFunctionalGroupsSequence",
-    "SOPClassUID",
-]
 
 
 @dataclass(frozen=True)
@@ -146,7 +128,7 @@ def _content(path: Path) -> bytes:
 def _slices(path: Path) -> Iterator[_Slice]:
     """Yield the slices of a file; none if it is no image that lies in a patient."""
     content = _content(path)
-    header = pydicom.dcmread(io.BytesIO(content), force=True, specific_tags=_TAGS)
+    header = pydicom.dcmread(io.BytesIO(content), force=True)
     kind = header.get("SOPClassUID") or header.file_meta.get("MediaStorageSOPClassUID")
     if kind is None:
         if content[_MAGIC_AT:].startswith(_MAGIC):

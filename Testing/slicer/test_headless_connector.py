@@ -6,14 +6,12 @@ import pytest
 import slicer
 import vtk
 
-from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Point, Points, Status, String
 from rastrainer.igtl.message import Message, crc64, pack
 from rastrainer_headless.command import HeadlessCommand
 from rastrainer_headless.connector import HeadlessConnector
-from rastrainer_headless.peer_sockets import CrashError
+from rastrainer_headless.peer_socket import CrashError
 from Testing.domain.igtl.sent_pose import transform_of
-from Testing.free_port import free_port
 from Testing.slicer.crashes import take_crashes
 from Testing.slicer.simulator_double import SimulatorDouble, wait_until
 
@@ -250,20 +248,6 @@ def test_a_lost_connection_is_reported_only_after_the_next_one(scene):
     with SimulatorDouble(port=simulator.port):
         wait_for(connector, lambda: disconnections)
         connector.Stop()
-
-
-def test_as_a_server_it_accepts_many_clients(scene):
-    connector = HeadlessConnector()
-    scene.AddNode(connector)
-    port = free_port()
-    connector.SetTypeServer(port)
-    connector.Start()
-    with Client(port=port) as first, Client(port=port) as second:
-        first.send(Message("One", String("1")))
-        second.send(Message("Two", String("2")))
-        wait_for(connector, lambda: incoming(connector, "One") and incoming(connector, "Two"))
-    connector.Stop()
-    assert connector.GetState() == connector.StateOff
 
 
 def test_any_call_that_would_crash_slicer_is_an_error_here(connector, simulator):

@@ -39,6 +39,7 @@ from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 
 MODEL, VOLUME = "vtkMRMLModelNode", "vtkMRMLScalarVolumeNode"
+LINE = "vtkMRMLMarkupsLineNode"
 SKIN_COLOR = (0.87, 0.72, 0.62)
 SKULL_COLOR = (0.95, 0.92, 0.82)
 SKIN_OPACITY_OVER_SKULL = 0.5
@@ -53,10 +54,8 @@ def showScenario(scene: Any, scenario: Scenario, later: CallLater = callNow) -> 
     """Show head, skull, targets and trajectory, one after the other by `later`.
 
     Called again, nothing is made twice. Meshes and images come still later, by a `SceneFileLoader`.
-    The first point of the list of targets is the scenario's own, at which the target error is
-    reported.
     """
-    for show in (_showHead, _showSkull, _showTargets, _showTrajectory, requestVolume):
+    for show in (_showHead, _showSkull, _showPlan, requestVolume):
         later(partial(show, scene, scenario))
 
 
@@ -128,25 +127,21 @@ def _requestMesh(
     return True
 
 
-def _showTargets(scene: Any, scenario: Scenario) -> None:
-    node = findOrAddNode(scene, "vtkMRMLMarkupsFiducialNode", Role.TARGET, "Targets")
+def _showPlan(scene: Any, scenario: Scenario) -> None:
+    """Show the targets, the first of which is where the target error is reported, and the line."""
+    targets = findOrAddNode(scene, "vtkMRMLMarkupsFiducialNode", Role.TARGET, "Targets")
     names = [scenario.target_name, *(target.name for target in scenario.targets)]
     places = [scenario.target_position, *(target.position_ras for target in scenario.targets)]
-    setPoints(node, names, np.array(places, dtype=float))
-    showAsPlanned(node)
-
-
-def _showTrajectory(scene: Any, scenario: Scenario) -> None:
+    setPoints(targets, names, np.array(places))
+    showAsPlanned(targets)
     planned = scenario.trajectory
     if planned is None:
-        removeNode(scene, "vtkMRMLMarkupsLineNode", Role.TRAJECTORY)
+        removeNode(scene, LINE, Role.TRAJECTORY)
         return
-    node = findOrAddNode(scene, "vtkMRMLMarkupsLineNode", Role.TRAJECTORY, planned.name)
-    node.SetName(planned.name)
-    setPoints(
-        node, ("Entry", "Target"), np.array([planned.entry_ras, planned.target_ras], dtype=float)
-    )
-    showAsPlanned(node)
+    line = findOrAddNode(scene, LINE, Role.TRAJECTORY, planned.name)
+    line.SetName(planned.name)
+    setPoints(line, ("Entry", "Target"), np.array([planned.entry_ras, planned.target_ras]))
+    showAsPlanned(line)
 
 
 def showAsPlanned(node: Any) -> None:
@@ -242,8 +237,9 @@ class SceneFileLoader:
             if requested != self._requested.get(role, ()):
                 self._requested[role] = requested
                 if requested:
+                    read = read_nrrd if className == VOLUME else _readMesh
                     self._work.do(
-                        partial(_readFile, className, Path(requested[-1])),
+                        partial(read, Path(requested[-1])),
                         partial(self._take, role, requested),
                         partial(self._refuse, role, requested, problem),
                     )
@@ -290,9 +286,7 @@ class SceneFileLoader:
         return node if requestedFile(node) == requested else None
 
 
-def _readFile(className: str, path: Path) -> HeadMesh | tuple[np.ndarray, np.ndarray]:
-    if className == VOLUME:
-        return read_nrrd(path)
+def _readMesh(path: Path) -> HeadMesh:
     mesh = read_head_mesh(path)
     mesh.vertex_normals  # noqa: B018 (computed here, in the background, and kept)
     return mesh
