@@ -55,7 +55,7 @@ class OutgoingCommand(NamedTuple):
 class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
     """The part of the connector that we use; the host calls `PeriodicProcess` every few ms.
 
-    Method names, constants and event numbers are those of the real class.
+    Method names, constants and event numbers match the real class.
     """
 
     StateOff, StateWaitConnection, StateConnected = range(3)
@@ -137,7 +137,7 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         self._outgoing.append(OutgoingCommand(command.commandId, deadline, weakref.ref(command)))
 
     def PeriodicProcess(self) -> None:
-        """Put what has arrived into the scene, and notify the observers.
+        """Put all arrivals into the scene, and notify the observers.
 
         Does nothing while there is no connection: Slicer's timer does not call it then.
         """

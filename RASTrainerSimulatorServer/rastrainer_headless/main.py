@@ -212,7 +212,7 @@ def _run(arguments: argparse.Namespace) -> None:
     output, scene = arguments.output, HeadlessScene()
     session = openSession(scene, output, arguments.assets)
     try:
-        # What is wrong with it is reported before anyone plays.
+        # Problems are reported before anyone plays.
         scenario = session.scenarios.find(arguments.scenario)
         session.openStudyPatiently().close()
         printer = TrialPrinter(session, output / RESULTS)

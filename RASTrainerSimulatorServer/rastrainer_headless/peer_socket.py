@@ -31,7 +31,7 @@ _VERSIONS = (b"\0\1", b"\0\2")
 
 
 class PeerSocket:
-    """Keeps a connection to a server, on a thread of its own.
+    """Keeps a connection to a server, on a separate thread.
 
     There `received` is called with each raw message, and `changed` when the connection is open, and
     when it is lost.
@@ -97,7 +97,7 @@ class PeerSocket:
 def _readMessage(stream) -> tuple[wire.Header, bytes] | None:
     """Return the next message, None at the end.
 
-    The real client takes whatever comes for a header, and makes room for as much as it reads there.
+    The real client takes any bytes for a header, and allocates the size that it reads there.
     """
     start = stream.read(len(_VERSIONS[0]))
     if len(start) < len(_VERSIONS[0]):

@@ -65,7 +65,7 @@ def missingOrientation(path: Path) -> str:
 
 
 def beginOf(path: Path) -> bytes:
-    """Return the first bytes of a file, or of the header beside an image; unpacked."""
+    """Return the first bytes of a file, or of an image's separate header; unpacked."""
     beside = path.with_suffix(".hdr")
     path = beside if path.suffix == ".img" and beside.is_file() else path
     try:

@@ -44,7 +44,7 @@ another program answers."""
 CONNECTOR_NAME = "RASTrainerLink"
 NOWHERE = 0
 """The port that the connector is given once it is connected: no program can listen there. Otherwise
-it would reconnect 0.1 s after a loss, to whatever has the simulator's port by then."""
+it would reconnect 0.1 s after a loss, perhaps to another program on that port."""
 CONNECT_WITHIN_S = 1.0
 """How long the connector may connect to a simulator that has answered; then it is tested again."""
 LONGEST_LOOK_S = 1.5
@@ -53,7 +53,7 @@ up, such as by loading a volume, it hears no one."""
 
 
 class SimulatorConnection:
-    """One connection to a simulator, for as long as it is wanted.
+    """One connection to a simulator, restored until `endConnection`.
 
     The connector is started only when a simulator has just answered, as anything else might end
     Slicer: see `rastrainer.slicer.link.probe`.
@@ -96,7 +96,7 @@ class SimulatorConnection:
         self.seen = LinkObservation()
 
     def followConnection(self) -> bool:
-        """Restore what was lost; return whether the connection has just been opened."""
+        """Restore a lost connection; return whether it has just been opened."""
         if self._kit is None or not self.seen.address:
             return False
         wasOpen = self.seen.isOpen

@@ -48,8 +48,8 @@ SOON_S, REST_S = 0.1, 1.0
 POSES_HZ = 30.0
 """Requested rate of poses; software graphics renders them 20 times a second at best."""
 MAX_KEPT = 256
-"""Most commands that may wait. The sender has to repeat further ones, as the simulator does with
-trials and answers until they are acknowledged."""
+"""Most commands that may wait. The sender has to repeat further commands, as the simulator does
+with trials and answers until they are acknowledged."""
 COMMANDS_A_TURN, CHARACTERS_A_TURN = 16, 200_000
 """How much is processed before the application may do something else."""
 
@@ -156,7 +156,7 @@ class Link(SimulatorConnection):
         self._pending.send(Request(name, content, timeoutS, onReply))
 
     def process(self) -> None:
-        """Connect, judge the heartbeat, and emit what has arrived."""
+        """Connect, judge the heartbeat, and emit all arrivals."""
         self._isCallDue = False
         if self._scene.IsBatchProcessing():
             return
@@ -202,7 +202,7 @@ class Link(SimulatorConnection):
         self._guard.run("A command's event", self._processSoon)
 
     def _processSoon(self) -> None:
-        """Have what has arrived processed soon; called from inside VTK."""
+        """Have arrivals processed soon; called from inside VTK."""
         if not self._isCallDue:
             self._isCallDue = True
             self._callSoon(self._processArrivals)

@@ -14,7 +14,7 @@ from rastrainer.slicer.translation import _
 
 
 class Peer(str, Enum):
-    """Who may answer at a port."""
+    """Programs that may answer at a port."""
 
     SIMULATOR = "simulator"
     UNREACHABLE = "unreachable"
@@ -29,7 +29,7 @@ class Peer(str, Enum):
 
 @dataclass(frozen=True)
 class ProbeResult:
-    """Who answered at an IPv4 address; the version is that of a simulator's protocol."""
+    """The program at an IPv4 address, with the protocol version of a simulator."""
 
     peer: Peer
     ip: str = ""
@@ -95,7 +95,7 @@ NOT_INSTALLED = LinkStatus(
 
 @dataclass
 class LinkObservation:
-    """What is known of a connection.
+    """The observed state of a connection.
 
     The `address` is as the user gave it, empty if no connection is wanted. `silenceS` are seconds
     since the last heartbeat, or since the TCP connection was opened, without those in which Slicer

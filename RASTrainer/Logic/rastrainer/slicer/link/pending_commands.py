@@ -1,4 +1,4 @@
-"""Commands in transit to the simulator: each gets exactly one reply, whatever happens."""
+"""Commands in transit to the simulator: each gets exactly one reply in any case."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class PendingCommands:
         self._refused.append((onReply, Reply(False, sentence)))
 
     def poll(self, isOpen: bool) -> None:
-        """Deliver replies that have come or will never come; send what is waiting."""
+        """Deliver replies that have come or will never come; send waiting commands."""
         self._sendingS = 0.0
         replies, self._refused = self._refused, []
         sent, self._sent = self._sent, []

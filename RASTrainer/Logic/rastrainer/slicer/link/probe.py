@@ -1,7 +1,7 @@
 """Looks up an address and tests once what answers there, without blocking.
 
-Slicer's connector must never meet anything but a simulator: OpenIGTLink's client takes whatever
-comes for a message, and ends Slicer over the sizes that it reads from, say, a web page.
+Slicer's connector must never meet anything but a simulator: OpenIGTLink's client takes any bytes
+for a message, and crashes Slicer at the sizes that it reads from, say, a web page.
 """
 
 from __future__ import annotations
@@ -140,7 +140,7 @@ class Probe:
             except OSError:
                 return Peer.UNREACHABLE
             self._isAsked = True
-            with contextlib.suppress(OSError):  # What the peer has sent before may still be read.
+            with contextlib.suppress(OSError):  # Earlier bytes from the peer may still be read.
                 self._socket.send(question)
             with contextlib.suppress(OSError):
                 while self._recognition.peer is None and (data := self._socket.recv(_PIECE_BYTES)):

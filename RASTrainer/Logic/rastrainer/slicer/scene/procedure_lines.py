@@ -54,7 +54,7 @@ def planLines(scene: Any) -> list[Any]:
 
 
 def raiseLine(scene: Any, line: Any) -> None:
-    """Have a line of the plan carried out before the one above it; the first one stays."""
+    """Move a line of the plan up by one place."""
     lines = planLines(scene)
     place = lines.index(line)
     if place > 0:
@@ -162,13 +162,13 @@ def _noteOrder(lines: list[Any]) -> None:
 TRAJECTORY_ATTRIBUTE = "RASTrainer.trajectory"
 """On a line: the name of its trajectory."""
 THICKNESS = 0.3
-"""Of the arrows, which are true to scale, as a factor on those of residuals."""
+"""Thickness of the arrows, which are true to scale, relative to arrows of residuals."""
 
 
 def showPlannedLines(scene: Any, procedure: Procedure | None) -> None:
-    """Show the planned lines of a procedure, in the head, in place of those of another one.
+    """Show the planned lines of a procedure in the head; they replace other planned lines.
 
-    What was shown of an earlier procedure's errors goes. With None, nothing stays.
+    The errors of an earlier procedure are removed. None removes all lines.
     """
     for role in (Role.REGISTERED_LINE, Role.TRUE_LINE):
         _showLines(scene, role, "{}", {})
@@ -183,9 +183,9 @@ def showPlannedLines(scene: Any, procedure: Procedure | None) -> None:
 def showProcedureErrors(scene: Any, analysis: ProcedureAnalysis, lines: Sequence[TrueLine]) -> Any:
     """Show all lines of a procedure, arrows of its errors, and their table, which is returned.
 
-    The registered lines are where the plan, as it was shown, truly lay in the head. At entry and
-    target, arrows lead from the planned point to where the registration put it, and from there on
-    to what was reached; they are true to scale.
+    The registered lines are the true positions of the plan as the trainee saw it. At entry and
+    target, an arrow leads from the planned point to its registered position, and another from there
+    to the reached point; both are true to scale.
     """
     for role, title, member in (
         (Role.PLANNED_LINE, "{}", "planned"),

@@ -1,4 +1,4 @@
-"""Shows a scenario in the scene: head, images, what is planned, and the fiducials of a task.
+"""Shows a scenario in the scene: head, images, plan, and the fiducials of a task.
 
 Meshes and images are requested at once, and shown when they have been read.
 """
@@ -44,7 +44,7 @@ SKIN_COLOR = (0.87, 0.72, 0.62)
 SKULL_COLOR = (0.95, 0.92, 0.82)
 SKIN_OPACITY_OVER_SKULL = 0.5
 OUTLINE_PIXELS = 2
-"""Of head and skull in the slice views: one is hardly seen on an MRI."""
+"""Width of the outlines of head and skull in slice views: one pixel is hardly visible on an MRI."""
 
 FIDUCIAL_COLOR = (0.25, 0.55, 0.95)
 TARGET_COLOR = (0.2, 0.75, 0.35)
@@ -67,7 +67,7 @@ def showTask(
 ) -> Any:
     """Show the fiducials of a task, in RAS mm, and return their `vtkMRMLMarkupsFiducialNode`.
 
-    Of a trial by another method the landmarks that it has touched are shown instead.
+    A trial by another method shows its touched landmarks instead.
     """
     task = task_by_method(scenario, taskName, method)
     node = findOrAddNode(
@@ -181,7 +181,7 @@ def showAsBackground(scene: Any, volume: Any, later: CallLater = callNow) -> Non
 
 
 FILE_ATTRIBUTE = "RASTrainer.file"
-"""Of a node that is not filled yet: the file that it is to show."""
+"""On a node without content yet: its file."""
 
 
 def isFileShown(node: Any | None, scenario: str, path: Path | None) -> bool:
@@ -197,7 +197,7 @@ def requestFile(node: Any, scenario: str, path: Path) -> None:
 
 
 def requestedFile(node: Any | None) -> tuple[str, ...]:
-    """Return which file a node is to show, empty where it is filled or not there."""
+    """Return the file that a node waits for; empty if there is no such node or it is filled."""
     if node is None or not node.GetAttribute(FILE_ATTRIBUTE):
         return ()
     attributes = (node.GetAttribute(name) or "" for name in (CONTENT_ATTRIBUTE, FILE_ATTRIBUTE))
@@ -209,14 +209,14 @@ _SHOWN = (
     (MODEL, Role.SKULL, _("No skull is shown: {problem}")),
     (VOLUME, Role.HEAD_VOLUME, _("There are no images in the slice views: {problem}")),
 )
-"""Class and role of each node that shows a file, and what to say of one that cannot be used."""
+"""Class and role of each node that shows a file, and the message for an unusable file."""
 
 
 class SceneFileLoader:
     """Fills the nodes of `showScenario` from files: read in the background, one shown in a turn.
 
-    A node holds what was in the file itself, so that a saved scene carries it. It has no file of
-    its own: Slicer's *Save* would offer to write over the scenario's.
+    A node holds the file's content, so that a saved scene carries it. It has no storage node:
+    Slicer's *Save* would offer to overwrite the scenario's file.
 
     Attributes:
         shown: emits each node that has been filled, in a later turn.
@@ -279,7 +279,7 @@ class SceneFileLoader:
                 self.problemFound.emit(problem.format(problem=error))
 
     def _awaiting(self, role: str, requested: tuple[str, ...]) -> Any | None:
-        """Return the node that still requests this file; None where there is none."""
+        """Return the node that still requests this file; None if there is none."""
         # In a cleared scene the next node has the same ID, and may request the same at once.
         self._requested[role] = ()
         node = self._scene.GetNodeByID(requested[0])

@@ -56,7 +56,7 @@ class Row:
 
 @dataclass(frozen=True)
 class GroupComparison:
-    """A value beside those of a group.
+    """A value compared with the values of a group.
 
     `betterThan` is the share of the others that the trial is better than, 0 to 1.
     """
@@ -169,8 +169,8 @@ def standings(
 ) -> list[GroupComparison]:
     """Compare a trial with the trainee's own others, with everyone else's, and with a cohort.
 
-    Only trials of the same task and mode are compared, and only scores of the same method. Of a
-    cohort, such as the published one, times and FRE are known.
+    Only trials of the same task and mode are compared, and only scores of the same method. A
+    cohort, such as the published study, has only times and FRE.
     """
     record, rigid = trial.record, trial.registrations.get(RIGID)
     outcomes = study.outcomes(record.task, record.mode)

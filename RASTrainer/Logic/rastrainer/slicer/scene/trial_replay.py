@@ -29,7 +29,7 @@ from rastrainer.slicer.scene.robot_description import ArmChain
 TRANSFORM, MODEL, TEXT = "vtkMRMLLinearTransformNode", "vtkMRMLModelNode", "vtkMRMLTextNode"
 LIST, BROWSER = "vtkMRMLMarkupsFiducialNode", "vtkMRMLSequenceBrowserNode"
 SAMPLE_HZ = 10.0
-"""Of what is shown; the journal has 50 samples a second."""
+"""Displayed samples a second; the journal has 50."""
 TRIAL_ATTRIBUTE = "RASTrainer.trial"
 """On a replay's browser: UUID of the trial."""
 STATES_A_SLICE = 50
@@ -169,7 +169,7 @@ def goTo(scene: Any, timeS: float) -> None:
 
 
 def moment(scene: Any) -> tuple[float, str] | None:
-    """Return the replay's time in s and what is said about the clearance; None without one."""
+    """Return the replay's time in s and its text about the clearance; None without a replay."""
     browser = findReplay(scene)
     text = findNode(scene, TEXT, _CLEARANCE)
     if browser is None or text is None or browser.GetMasterSequenceNode() is None:
@@ -214,7 +214,7 @@ def removeReplay(scene: Any, rest: Callable[[float], None] = lambda _share: None
 def emptyReplay(scene: Any) -> Iterator[None]:
     """Keep the states of the replay that is in the scene, and release them slice by slice.
 
-    To be called before the scene is closed, which would delete thousands of them at once.
+    Call this before the scene is closed: that would delete thousands of states at once.
     """
     sequences = _nodesOfReplay(scene, "vtkMRMLSequenceNode")
     return itertools.chain.from_iterable(map(_slicesOf, sequences))
@@ -258,7 +258,7 @@ def _touchStates(trajectory: Trajectory) -> Iterator[tuple[float, Any]]:
 
 
 def _traceStates(trajectory: Trajectory) -> Iterator[tuple[float, Any]]:
-    """Yield what has been traced so far, at the start and after some points each."""
+    """Yield the trace so far, at the start and after every few points."""
     made = trajectory.traced
     places = np.array([point.position_mm for point in made])
     for count in (*range(0, len(made), POINTS_A_STATE), len(made)):

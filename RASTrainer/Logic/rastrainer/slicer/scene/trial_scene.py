@@ -61,7 +61,7 @@ def setTouchesVisible(scene: Any, visible: bool) -> None:
 
 
 def showOnlyTouchesOf(scene: Any, scenario: str, task: str) -> None:
-    """Hide touches that belong to another task than the one that is shown."""
+    """Hide touches that belong to another task than the task on display."""
     touched = capturedPointsNode(scene).GetAttribute(TASK_ATTRIBUTE)
     setTouchesVisible(scene, touched in (None, taskKey(scenario, task)))
 
@@ -146,7 +146,7 @@ def setApplied(transformNode: Any, applied: bool) -> None:
     if moving is not None:
         moving.SetAndObserveTransformNodeID(transformNode.GetID() if applied else None)
         if moving.GetDisplayNode() is not None:
-            # On the head, the fiducials beside them have the same numbers.
+            # On the head, the fiducials next to them have the same numbers.
             moving.GetDisplayNode().SetPointLabelsVisibility(not applied)
 
 
@@ -181,7 +181,7 @@ def showTrial(
 ) -> None:
     """Replace what the scene shows by this trial, one part after the other by `later`.
 
-    The touches are those of its record.
+    The touches come from its record.
     """
     record, rigid = analysis.record, analysis.rigid
     errors = [analysis.target_errors[kind] for kind in analysis.fits]
