@@ -141,7 +141,7 @@ class Application(Checked):
 def _settings_of_last_time(folder: Path) -> QtCore.QSettings:
     """Return the settings that an earlier Slicer has left in the folder.
 
-    Qt would hand out what it still has in memory, with its types; a new file is read as a text.
+    Qt would return values that it still has in memory, with their types; a new file holds texts.
     """
     earlier = sorted(folder.glob("Slicer-*.ini"))
     path = folder / f"Slicer-{len(earlier):03d}.ini"

@@ -152,7 +152,7 @@ class Host(User):
             raise AssertionError(f"{path} was not written.")
 
     def load_scene(self, path: Path) -> None:
-        """Close the scene and open that of a bundle (.mrb), by Slicer's menu."""
+        """Close the scene and open a bundle (.mrb), by Slicer's menu."""
         slicer.util.loadScene(str(path), {"clear": True})
         self.process_events()
 

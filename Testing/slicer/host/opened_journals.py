@@ -1,4 +1,4 @@
-"""Which processes open trials' journals: Slicer's own, or those of its Python."""
+"""Finds the processes that open trials' journals: Slicer's own, or its Python's."""
 
 from __future__ import annotations
 

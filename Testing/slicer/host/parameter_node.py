@@ -18,7 +18,7 @@ from Testing.slicer.host.parameter_gui import Binding
 
 
 def parameterNodeWrapper(kind: type) -> type:
-    """Turn a class with annotations into one that stores its values in a node."""
+    """Have a class with annotations store its values in a node."""
     hints = typing.get_type_hints(kind, include_extras=True)
     namespace: dict[str, Any] = {"__doc__": kind.__doc__, "allParameters": {}}
     for name, hint in hints.items():

@@ -1,4 +1,4 @@
-"""What a user of Slicer does and sees: presses, choices, texts and pictures."""
+"""The actions and the view of a user of Slicer: presses, choices, texts and pictures."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class User:
         return wrap(found)
 
     def press(self, name: str) -> None:
-        """Press a button; one that is disabled or hidden cannot be pressed."""
+        """Press a button, which must be enabled and visible."""
         self._click(self._usable(name))
 
     def choose(self, name: str, choice: Any) -> None:
@@ -132,14 +132,14 @@ class User:
             self._wait()
 
     def finish_work(self) -> None:
-        """Wait until the module has shown what it computes in the background."""
+        """Wait until the module has shown the results of its background work."""
         work = self.widget.logic.session.work
-        # What was requested begins when the module's timer notices it.
+        # A request begins when the module's timer notices it.
         self.widget.onTimeout()
         self.wait_until(lambda: not work.isBusy, "all work is done")
 
     def _now(self) -> str:
-        """Return what may explain why nothing happens."""
+        """Return a possible explanation for why nothing happens."""
         found = [message.text for message in self.messages]
         work = None if self.widget is None else vars(self.widget.logic.session.work)
         return (
@@ -262,11 +262,11 @@ class User:
         self.process_events()
 
     def _usable(self, name: str) -> Any:
-        """Return a widget, in an open section: a user opens the one that is needed."""
+        """Return a widget, in an open section: a user opens it first."""
         self.unfold(name)
         deadline = time.monotonic() + TIMEOUT_S
         # One that was just recreated or unfolded is shown by an event. Slicer's panel scrolls:
-        # no widget is squeezed to nothing where many sections are open.
+        # no widget is squeezed to nothing if many sections are open.
         rounds = 0
         while not _has_area(self.find(name)._qt):
             rounds += 1
