@@ -1,4 +1,4 @@
-"""What the status line says about the link, and what to do about it."""
+"""The status line describes the link, and a remedy."""
 
 from dataclasses import replace
 

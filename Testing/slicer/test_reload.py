@@ -41,7 +41,7 @@ def living(host):
 
 
 def settled(host, before, threads):
-    """Return what lives once what was under way in the background has ended, with its threads.
+    """Return the living objects once all background work has ended, with its threads.
 
     `before` is what lived before the module was opened, and `threads` how many: tests of before may
     have left theirs.

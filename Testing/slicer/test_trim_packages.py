@@ -1,4 +1,4 @@
-"""What is cut off from libraries is what no loader reads."""
+"""Only bytes that no loader reads are cut off from libraries."""
 
 import ctypes
 import shutil
