@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -90,27 +89,9 @@ def findOrAddNode(scene: Any, className: str, role: str, name: str) -> Any:
     return node
 
 
-SCENARIO_ATTRIBUTE = "RASTrainer.scenario"
 TASK_ATTRIBUTE = "RASTrainer.task"
 CONTENT_ATTRIBUTE = "RASTrainer.content"
-"""Stamp of what a node shows: a rebuilt scenario may keep its name."""
-
-
-def isShown(node: Any, attribute: str, name: str, content: str) -> bool:
-    return (node.GetAttribute(attribute), node.GetAttribute(CONTENT_ATTRIBUTE)) == (name, content)
-
-
-def noteShown(node: Any, attribute: str, name: str, content: str) -> None:
-    node.SetAttribute(attribute, name)
-    node.SetAttribute(CONTENT_ATTRIBUTE, content)
-
-
-def stampOf(path: Path) -> str:
-    """Return a stamp that changes with a file, without reading it; empty if there is none."""
-    if not path.is_file():
-        return ""
-    status = path.stat()
-    return f"{status.st_mtime_ns} {status.st_size}"
+"""Stamp of a node's content: a rebuilt scenario may keep its name."""
 
 
 def surfaceOf(model: Any | None) -> tuple:

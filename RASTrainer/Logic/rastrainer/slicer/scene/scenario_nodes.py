@@ -23,17 +23,13 @@ from rastrainer.slicer.background_work import BackgroundWork, CallLater, callNow
 from rastrainer.slicer.polydata import meshPolyData, vtkArray
 from rastrainer.slicer.scene.nodes import (
     CONTENT_ATTRIBUTE,
-    SCENARIO_ATTRIBUTE,
     TASK_ATTRIBUTE,
     Role,
     findNode,
     findOrAddNode,
-    isShown,
     nodesOfClass,
-    noteShown,
     removeNode,
     setPoints,
-    stampOf,
 )
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
@@ -73,8 +69,9 @@ def showTask(
     node = findOrAddNode(
         scene, "vtkMRMLMarkupsFiducialNode", Role.FIXED_FIDUCIALS, f"{task.title} fiducials"
     )
-    name, digest = taskKey(scenario.name, task.name), sha256(task.fiducials.tobytes()).hexdigest()
-    if not isShown(node, TASK_ATTRIBUTE, name, digest):
+    name = taskKey(scenario.name, task.name)
+    stamp = f"{name} {sha256(task.fiducials.tobytes()).hexdigest()}"
+    if node.GetAttribute(CONTENT_ATTRIBUTE) != stamp:
         display = node.GetDisplayNode()
         with slicer.util.NodeModify(node), slicer.util.NodeModify(display):
             node.SetName(f"{task.title} fiducials")
@@ -83,7 +80,8 @@ def showTask(
             display.SetSelectedColor(FIDUCIAL_COLOR)
             display.SetGlyphScale(2.0)
             display.SetTextScale(3.5)
-        noteShown(node, TASK_ATTRIBUTE, name, digest)
+        node.SetAttribute(TASK_ATTRIBUTE, name)
+        node.SetAttribute(CONTENT_ATTRIBUTE, stamp)
     return node
 
 
@@ -112,9 +110,9 @@ def _requestMesh(
 ) -> bool:
     """Have a node show a mesh of a scenario; return whether it was not shown before."""
     # Called before every trial: the file is read only if it is not shown yet.
-    if isFileShown(node, scenario.name, path):
+    if node.GetAttribute(CONTENT_ATTRIBUTE) == _stamp(scenario, path):
         return False
-    requestFile(node, scenario.name, path)
+    _requestFile(node, scenario, path)
     # Another scenario's head does not belong to these points.
     node.SetAndObservePolyData(None)
     display = node.GetDisplayNode()
@@ -155,13 +153,14 @@ def requestVolume(scene: Any, scenario: Scenario) -> None:
     Called again, nothing is read twice: window, level and what the views show stay as they are.
     """
     node, file = findNode(scene, VOLUME, Role.HEAD_VOLUME), scenario.volume
-    if file is not None and isFileShown(node, scenario.name, file.file):
+    stamp = None if file is None else _stamp(scenario, file.file)
+    if node is not None and node.GetAttribute(CONTENT_ATTRIBUTE) == stamp:
         return
     removeNode(scene, VOLUME, Role.HEAD_VOLUME)
     if file is None:
         return
     node = findOrAddNode(scene, VOLUME, Role.HEAD_VOLUME, scenario.title)
-    requestFile(node, scenario.name, file.file)
+    _requestFile(node, scenario, file.file)
     display = node.GetDisplayNode()
     display.SetAutoWindowLevel(False)
     display.SetWindowLevel(file.window, file.level)
@@ -184,15 +183,14 @@ FILE_ATTRIBUTE = "RASTrainer.file"
 """On a node without content yet: its file."""
 
 
-def isFileShown(node: Any | None, scenario: str, path: Path | None) -> bool:
-    """Return whether a node shows, or is going to, a scenario's file as it is on the disk."""
-    if node is None or path is None:
-        return False
-    return isShown(node, SCENARIO_ATTRIBUTE, scenario, stampOf(path))
+def _stamp(scenario: Scenario, path: Path) -> str:
+    """Return a stamp that changes with a file of a scenario, without reading it."""
+    status = path.stat() if path.is_file() else None
+    return f"{scenario.name} {status and (status.st_mtime_ns, status.st_size)}"
 
 
-def requestFile(node: Any, scenario: str, path: Path) -> None:
-    noteShown(node, SCENARIO_ATTRIBUTE, scenario, stampOf(path))
+def _requestFile(node: Any, scenario: Scenario, path: Path) -> None:
+    node.SetAttribute(CONTENT_ATTRIBUTE, _stamp(scenario, path))
     node.SetAttribute(FILE_ATTRIBUTE, str(path))
 
 
