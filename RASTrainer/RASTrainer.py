@@ -82,7 +82,7 @@ def registerSampleData():
 
 @parameterNodeWrapper
 class RASTrainerParameterNode:
-    """What the user has chosen of the scene, as it is saved with it.
+    """The user's choices of nodes, which are saved with the scene.
 
     What else is chosen stays with the user: see `rastrainer.slicer.settings`.
 
@@ -124,7 +124,7 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
 
     @property
     def logic(self) -> Optional["RASTrainerLogic"]:
-        """The logic; whoever asks for it has the panel built at once, if it is not yet."""
+        """The logic; reading it finishes building the panel."""
         if self._building is not None:
             self._building.finish()
         return self._logic
@@ -249,7 +249,7 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
 
 
 class RASTrainerLogic(ScriptedLoadableModuleLogic):
-    """What the module can do without its widgets; the parts are in `rastrainer.slicer`."""
+    """The module's functions without its widgets; the parts are in `rastrainer.slicer`."""
 
     def __init__(self) -> None:
         from rastrainer.panels.application import callSoon, findPlaces

@@ -1,4 +1,4 @@
-"""A module without work costs Slicer nothing: it paints, lays out and requests nothing."""
+"""A module without work costs Slicer nothing: it neither paints nor requests anything."""
 
 import json
 

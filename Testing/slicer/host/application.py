@@ -22,7 +22,7 @@ NAME = "3D Slicer of the tests"
 
 
 class Application(Checked):
-    """Stands in for `qSlicerApplication`; its folders lie in a temporary one."""
+    """Stands in for `qSlicerApplication`; its folders are in a temporary folder."""
 
     measured = frozenset(FACTS["slicer.app"])
     title = "slicer.app"

@@ -168,8 +168,8 @@ class Host(User):
     def reload(self) -> Any:
         """Press Reload; return the new widget.
 
-        As `slicer.util.reloadScriptedModule` does: the module's own file is read anew, but nothing
-        that it imports; what is in the frame is hidden, not deleted, and a new widget is laid in.
+        As `slicer.util.reloadScriptedModule` does: the module's own file is read again, but not its
+        imports; the frame's widgets are hidden, not deleted, and a new widget is added.
         """
         self.made_widget()
         self._execute_module()

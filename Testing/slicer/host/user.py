@@ -118,8 +118,8 @@ class User:
         """Process events until something is true.
 
         Raises:
-            AssertionError: it is not true in time, or something failed meanwhile; `what` says
-                what was awaited.
+            AssertionError: it is not true in time, or something failed meanwhile; `what` names the
+                condition.
         """
         deadline = time.monotonic() + timeout_s
         while not condition():

@@ -27,7 +27,7 @@ class Turns:
         callSoon(self._go)
 
     def finish(self) -> None:
-        """Do now what is left, unless a step asks for that itself."""
+        """Do the remaining steps now, unless a step asks for that itself."""
         while not (self.isOver or self._isAtWork):
             self._step()
 
