@@ -116,14 +116,14 @@ class SimulatorProgram:
         self._forwardLines(child)
         if isOver:
             self._child = None
-            self._change(*self._ended(child.exitStatus))
+            self._change(*self._ended(child.process.poll()))
             command, self._next = self._next, None
             if command is not None:
                 try:
                     self.start(command)
                 except InputError as error:
                     self._change(ProgramState.FAILED, str(error))
-        elif child.exitStatus is not None and self.state is not ProgramState.STOPPING:
+        elif child.process.poll() is not None and self.state is not ProgramState.STOPPING:
             # Its window, or the real Python of a launcher that was killed.
             self._change(ProgramState.STOPPING, _("The simulator is ending."))
 

@@ -152,13 +152,13 @@ class SimulatorSetup:
         if not isOver:
             return
         self._child = None
-        if child.exitStatus == 0 and not self._isTrimming and not self.isCanceled:
+        if child.process.poll() == 0 and not self._isTrimming and not self.isCanceled:
             self._isTrimming = True
             self._child = ChildProcess(
                 private_command(self._python, self._partial, TRIMMER, str(self._partial))
             )
             return
-        error = self._finish(child.exitStatus)
+        error = self._finish(child.process.poll())
         self.changed.emit()
         self.finished.emit(error)
 
