@@ -68,7 +68,6 @@ class RASTrainer(ScriptedLoadableModule):
 
 
 def registerSampleData():
-    """Add the MRI that comes with this module to the module Sample Data."""
     from rastrainer.panels.sample_data import assetsFolder
     from rastrainer.panels.sample_data import registerSampleData as register
 

@@ -74,7 +74,6 @@ class Job(Generic[T]):
 
     @property
     def isDone(self) -> bool:
-        """Whether the thread has ended."""
         isDone = not self.thread.is_alive()
         if isDone:
             self.leave()

@@ -20,7 +20,6 @@ class Turns:
     def __init__(
         self, steps: Iterator[object], callSoon: Callable[[Callable[[], None]], None]
     ) -> None:
-        """Begin in the next turn, in which `callSoon` calls a function."""
         self.isOver = self._isAtWork = False
         self._steps = steps
         self._callSoon = callSoon

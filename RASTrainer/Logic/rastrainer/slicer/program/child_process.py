@@ -100,7 +100,6 @@ class ChildProcess:
         return hasEnded and time.monotonic() > self._killAt + LAST_OUTPUT_S
 
     def takeLines(self) -> list[str]:
-        """Return the lines that it has written since the last call."""
         return [self._lines.popleft() for _ in range(len(self._lines))]
 
     def end(self) -> None:
@@ -119,8 +118,6 @@ class ChildProcess:
                 self.process.wait(LAST_OUTPUT_S)
 
     def abandon(self) -> None:
-        """Ask it to end, and make sure that it does, in the background."""
-
         def finish() -> None:
             while not self.poll():
                 time.sleep(PERIOD_S)
@@ -196,7 +193,6 @@ class OwnProcess:
     """Runs functions, each in a separate process; called in a worker, as it waits for them."""
 
     def __init__(self, python: Path) -> None:
-        """`python` runs the processes."""
         self._python = python
 
     def __call__(self, function: str, progress: Progress, *arguments: Any, **named: Any) -> Any:
@@ -233,7 +229,6 @@ def runHere(function: str, progress: Progress, *arguments: Any, **named: Any) ->
 
 
 def main(folder: str) -> None:
-    """Do the task in a folder, and leave its outcome there."""
     path = Path(folder)
     try:
         function, arguments, named = pickle.loads((path / TASK).read_bytes())

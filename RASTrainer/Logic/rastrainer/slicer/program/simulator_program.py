@@ -63,7 +63,6 @@ class SimulatorProgram:
 
     @property
     def isRunning(self) -> bool:
-        """Whether the process, or anything that it has started, is there."""
         return self._child is not None
 
     @property
@@ -137,7 +136,6 @@ class SimulatorProgram:
             self._change(ProgramState.STOPPED, _("The simulator was stopped."))
 
     def _ended(self, status: int | None) -> tuple[ProgramState, str]:
-        """Return state and sentence after an end with an exit status."""
         if self._isAskedToEnd:
             return ProgramState.STOPPED, _("The simulator was stopped.")
         if status == 0:

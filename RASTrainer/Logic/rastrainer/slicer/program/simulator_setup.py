@@ -84,7 +84,6 @@ class SimulatorSetup:
 
     @property
     def isCurrent(self) -> bool:
-        """Whether the simulator that came with this module is set up."""
         mark = self._read(MARK)
         return (mark.get("version"), mark.get("origin")) == (__version__, self.package.origin())
 
@@ -122,14 +121,12 @@ class SimulatorSetup:
         self.changed.emit()
 
     def cancel(self) -> None:
-        """Cancel the set-up, which ends soon; an earlier set-up stays."""
         if self._child is not None:
             self.isCanceled = True
             self._child.end()
             self.changed.emit()
 
     def remove(self) -> None:
-        """Remove the private folder with all that was set up."""
         if self.isRunning:
             raise InputError(_("Cancel the set-up first."))
         discard(self.folder)

@@ -93,7 +93,6 @@ def showTask(
 
 
 def taskKey(scenarioName: str, taskName: str) -> str:
-    """Return what `TASK_ATTRIBUTE` says of a list of points that belongs to a task."""
     return f"{scenarioName}/{taskName}"
 
 
