@@ -31,7 +31,8 @@ LAYERS = {
         rastrainer.registration
         rastrainer.procedure
         rastrainer.motion, rastrainer.scenario
-        rastrainer.journal, rastrainer.trial
+        rastrainer.journal
+        rastrainer.trial
         rastrainer.study.database
         rastrainer.study.protocol
         rastrainer.study.curriculum

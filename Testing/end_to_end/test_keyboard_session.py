@@ -75,7 +75,7 @@ def kill_while_moving(lab: Lab, trainee: StreamTrainee, window) -> dict:
 def touches_of(lab: Lab) -> list[dict]:
     """Return what the journal of the one trial of Task 1 says of its touches."""
     records = [read_journal(path) for path in lab.records.glob("*.journal")]
-    (journal,) = [record for record in records if record.header["task"] == "task-1"]
+    (journal,) = [record for record in records if record.header.task == "task-1"]
     return list(journal.of_kind("touch"))
 
 

@@ -10,6 +10,8 @@ import numpy as np
 
 from rastrainer.commands import CommandName
 from rastrainer.head.mesh import read_head_mesh
+from rastrainer.journal import entries
+from rastrainer.journal.entries import StartingPoint
 from rastrainer.protocol import Phase, Proximity
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
@@ -24,13 +26,11 @@ from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.state import (
     Answer,
     Event,
-    EventKind,
     Motion,
     OperatorCommand,
     OperatorInput,
     PlanInWorld,
     SimulationState,
-    StartingPoint,
     StepResult,
 )
 from rastrainer_simulator.teleoperation.commanded_motion import (
@@ -136,8 +136,7 @@ class Simulation:
         motion_request = self._motion_request(dt, operator_input)
         sim_time = before.sim_time + dt
         if motion_request.ended is not None:
-            data = {"outcome": motion_request.ended.value}
-            events.append(Event(EventKind.MOTION, sim_time, data))
+            events.append(Event(sim_time, entries.MotionEnd(motion_request.ended.value)))
         if motion_request.motion is not Motion.NONE:
             events.extend(self._move(dt, motion_request, sim_time))
             if motion_request.motion is Motion.STICK:
@@ -165,9 +164,10 @@ class Simulation:
             return TrainingReply(True, data=listed(self.setup.scenario))
         if command.name == CommandName.SET_CAMERA:
             self._axes.camera = arguments["camera"]
-            return TrainingReply(True, events=(Event(EventKind.CAMERA, sim_time, dict(arguments)),))
+            event = Event(sim_time, entries.CameraChange(arguments["camera"]))
+            return TrainingReply(True, events=(event,))
         if command.name == CommandName.PLAN_TARGET:
-            return self._plan(arguments, sim_time)
+            return self._plan(arguments)
         if command.name == CommandName.FEED:
             self._procedure_motion.drive.start(arguments["velocityMmS"], arguments["durationS"])
             self._operator = command.sender
@@ -189,14 +189,13 @@ class Simulation:
         self._operator = command.sender
         return TrainingReply(True)
 
-    def _plan(self, arguments: Mapping[str, Any], sim_time: float) -> TrainingReply:
+    def _plan(self, arguments: Mapping[str, Any]) -> TrainingReply:
         """Show what was planned and answer whether the robot can carry it out."""
         position, entry = in_meters(arguments["positionMm"]), arguments["entryMm"]
         entry = None if entry is None else in_meters(entry)
         answer = self._plan_reach.judge(position, entry)
         self._planned_target = PlanInWorld(arguments["name"], position, entry, answer.reachable)
-        event = Event(EventKind.PLAN, sim_time, {**arguments, "reachable": answer.reachable})
-        return TrainingReply(True, data=answer._asdict(), events=(event,))
+        return TrainingReply(True, data=answer._asdict())
 
     def _motion_request(self, dt: float, operator_input: OperatorInput) -> MotionRequest:
         """Return the requested motion; none while the trial is paused or the guide locked."""
@@ -251,8 +250,7 @@ class Simulation:
         self._obstacle = moved.stopped_by if moved.stopped_by in BEHIND_THE_TOOL else ""
         if before == (self._is_within_reach, self._obstacle):
             return []
-        data = {"isWithinReach": self._is_within_reach, "obstacle": self._obstacle}
-        return [Event(EventKind.REACH, sim_time, data)]
+        return [Event(sim_time, entries.Reach(self._is_within_reach, self._obstacle))]
 
     def _moved(self, dt: float, motion_request: MotionRequest) -> Moved:
         q, tip = self._posture.q, self._posture.tip.position
@@ -336,11 +334,10 @@ def listed(scenario: Scenario) -> dict[str, Any]:
 def _proximity(
     before: Proximity, state: SimulationState, pressing: Pressing, sim_time: float
 ) -> Event:
-    data: dict[str, Any] = {
-        "from": before.value,
-        "to": state.proximity.value,
-        "clearanceMm": MM_PER_M * state.clearance,
-    }
-    if before is Proximity.CONTACT:
-        data["depthMm"] = MM_PER_M * pressing.deepest
-    return Event(EventKind.PROXIMITY, sim_time, data)
+    change = entries.ProximityChange(
+        from_=before,
+        to=state.proximity,
+        clearance_mm=MM_PER_M * state.clearance,
+        depth_mm=MM_PER_M * pressing.deepest if before is Proximity.CONTACT else None,
+    )
+    return Event(sim_time, change)

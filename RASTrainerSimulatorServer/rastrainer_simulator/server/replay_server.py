@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
@@ -89,7 +88,6 @@ def _preferred_language() -> str:
     return Preferences().language
 
 
-_OF_SETUP = ("scenario", "robot", "settings", "procedure", "method")
 """What a journal's header says about the set-up."""
 
 
@@ -126,7 +124,9 @@ class ReplayLoader:
         """Return the playback of a trial; takes seconds. Never in two threads at once."""
         try:
             track = find_track(self._records, trial_id)
-            key = json.dumps([track.header.get(name) for name in _OF_SETUP], sort_keys=True)
+            header = track.header
+            same = header.scenario, header.robot, header.settings, header.procedure, header.method
+            key = repr(same)
             if key not in self._setups:
                 self._setups[key] = setup_of(track.header, self._scenario)
             setup = self._setups[key]

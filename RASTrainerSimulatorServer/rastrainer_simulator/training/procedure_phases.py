@@ -12,10 +12,11 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rastrainer.commands import CommandName
+from rastrainer.journal.entries import AcceptedCheckpoint, Rejected
 from rastrainer.procedure.record import MAX_ATTEMPTS, MAX_TOUCHED_CHECKPOINTS, UsedRegistration
 from rastrainer.protocol import STAND_OFF_LIMIT_MM, Phase, TouchRule
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.state import EventKind, OperatorCommand, TrainingState
+from rastrainer_simulator.state import OperatorCommand, TrainingState
 from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training.feed import NO_FEED, Feed, ProcedureSettings
 from rastrainer_simulator.training.head_pose import RegisteredPlan
@@ -30,6 +31,7 @@ from rastrainer_simulator.trial_state import (
     TraceState,
     TrajectoryState,
 )
+from rastrainer_simulator.vectors import in_millimeters
 
 if TYPE_CHECKING:
     from rastrainer.procedure.plan import Procedure
@@ -99,8 +101,7 @@ class ProcedurePhases:
         return TrialStep(running, AT_EACH_STAGE[procedure.stage], {"name": name})
 
     def _verify(self, moment: ProcedureMoment) -> TrialStep:
-        elapsed_s = moment.state.completed_s
-        data = {"completionTimeS": elapsed_s}
+        data = {"completion_time_s": moment.state.completed_s}
         return TrialStep(moment.entering(Phase.VERIFYING), "verifying", data=data)
 
     def _use_registration(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
@@ -121,35 +122,27 @@ class ProcedurePhases:
             ),
         )
         state = replace(moment.state, procedure=procedure)
-        data = {
-            "registration": {
-                "matrix": list(used.matrix),
-                "freMm": used.fre_mm,
-                "expectedTreMm": used.expected_tre_mm,
-            }
-        }
-        return TrialStep(state, "verify", {"fre": used.fre_mm}, data)
+        return TrialStep(state, "verify", {"fre": used.fre_mm}, data={"registration": used})
 
     def _check_point(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
         """Touch the nearest checkpoint; its error is by the trainee's own registration."""
         procedure, now = moment.procedure, moment.now
         name, error = self._nearest_checkpoint(procedure, now)
-        place = {
+        place: dict[str, Any] = {
             "checkpoint": name,
-            "positionMm": [MM_PER_M * value for value in now.tip],
-            "clearanceMm": MM_PER_M * now.tip_clearance,
-            "depthMm": MM_PER_M * now.depth,
+            "position_mm": in_millimeters(now.tip),
+            "clearance_mm": MM_PER_M * now.tip_clearance,
+            "depth_mm": MM_PER_M * now.depth,
         }
         sentence = self._refused_check(procedure, name, error, now)
         if sentence is not None:
-            return RefusedStep(sentence, {**place, "message": sentence})
+            return RefusedStep(sentence, Rejected(**place, message=sentence))
         checked = CheckedPoint(name, now.tip, error, now.sim_time, moment.elapsed)
         checkpoints = (*procedure.checkpoints, checked)
         state = replace(moment.state, procedure=replace(procedure, checkpoints=checkpoints))
         error_mm = MM_PER_M * error
-        data = {**place, "errorMm": error_mm, "kept": len(checkpoints)}
-        said = {"name": name, "error": error_mm}
-        return TrialStep(state, "checked", said, data, kind=EventKind.CHECKPOINT)
+        entry = AcceptedCheckpoint(**place, error_mm=error_mm, kept=len(checkpoints))
+        return TrialStep(state, "checked", {"name": name, "error": error_mm}, entry)
 
     def _nearest_checkpoint(self, procedure: ProcedureState, now: TouchMoment) -> tuple[str, float]:
         """Return the checkpoint nearest to the tip by the registration in use, and how far, m."""
@@ -223,11 +216,8 @@ class ProcedurePhases:
             _with_current(entered, locked),
             "drill",
             {"name": locked.line.name},
-            {
-                "positionMm": [MM_PER_M * value for value in now.tip],
-                "direction": list(now.direction),
-            },
-            {"ahead": ahead.to_json()},
+            data={"position_mm": in_millimeters(now.tip), "direction": now.direction},
+            ahead=ahead.recorded(),
             feed=Feed(ahead=ahead),
         )
 

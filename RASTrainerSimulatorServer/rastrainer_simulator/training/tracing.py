@@ -9,13 +9,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from rastrainer.journal.entries import Stroke, TracePoint
 from rastrainer.protocol import MIN_TRACE_POINTS, TRACE_SPACING_MM, Phase
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.state import Event, EventKind, TrainingState
+from rastrainer_simulator.state import Event, TrainingState
 from rastrainer_simulator.training.replies import TrialStep
 from rastrainer_simulator.training.rules import PRESSED_MM, TouchMoment, TrainingSettings
 from rastrainer_simulator.trial_state import TracedPoint, TraceState
-from rastrainer_simulator.vectors import Vector, distance
+from rastrainer_simulator.vectors import Vector, distance, in_millimeters
 
 
 def takes_point(trace: TraceState | None, now: TouchMoment, settings: TrainingSettings) -> bool:
@@ -40,27 +41,25 @@ def with_point(
 
 def point_event(state: TrainingState, now: TouchMoment) -> Event:
     assert state.trace is not None
-    data = {**tip_data(now, state.trace.points[-1].position), "kept": len(state.trace.points)}
-    return Event(EventKind.TRACE, now.sim_time, data)
+    place = tip_places(now.tip, state.trace.points[-1].position)
+    return Event(now.sim_time, TracePoint(**place, kept=len(state.trace.points)))
 
 
-def tip_data(now: TouchMoment, measured: Vector) -> dict[str, Any]:
+def tip_places(tip: Vector, measured: Vector) -> dict[str, Any]:
     """Return where the tip is, mm, and where it is measured, if that is elsewhere."""
-    place = {"positionMm": [MM_PER_M * value for value in now.tip]}
-    if measured == now.tip:
-        return place
-    return {**place, "measuredMm": [MM_PER_M * value for value in measured]}
+    elsewhere = None if measured == tip else in_millimeters(measured)
+    return {"position_mm": in_millimeters(tip), "measured_mm": elsewhere}
 
 
-def stroke_data(trace: TraceState) -> dict[str, Any]:
-    """Return the data of a trace where a stroke begins, ends or is undone."""
-    return {"on": trace.is_on, "kept": len(trace.points), "strokes": len(trace.strokes)}
+def stroke_entry(trace: TraceState, undone: bool = False) -> Stroke:
+    """Return the entry of a trace where a stroke begins, ends or is undone."""
+    return Stroke(trace.is_on, len(trace.points), len(trace.strokes), undone)
 
 
-def stroke(state: TrainingState, **others: bool) -> TrialStep:
+def stroke(state: TrainingState, undone: bool = False) -> TrialStep:
     assert state.trace is not None
-    data = {**stroke_data(state.trace), **others}
-    return TrialStep(state, instruction(state), counts(state.trace), data, kind=EventKind.STROKE)
+    entry = stroke_entry(state.trace, undone)
+    return TrialStep(state, instruction(state), counts(state.trace), entry)
 
 
 def begun(state: TrainingState) -> TrainingState:

@@ -4,22 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
+from rastrainer.journal.entries import AcceptedTouch, Rejected, Undo
+from rastrainer.json_records import record_to_json
 from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.state import Event, EventKind, OperatorCommand, TrainingState
+from rastrainer_simulator.state import Event, OperatorCommand, TrainingState
 from rastrainer_simulator.texts.texts import say
 from rastrainer_simulator.training import tracing
-from rastrainer_simulator.training.feed import ProcedureSettings, recorded_feed
+from rastrainer_simulator.training.feed import ProcedureSettings
 from rastrainer_simulator.training.head_pose import PlacedHead, Truth
 from rastrainer_simulator.training.procedure_phases import ProcedurePhases
 from rastrainer_simulator.training.replies import (
     RefusedStep,
     TrainingReply,
     TrialStep,
+    phase_change,
     summary,
     take_registration,
     take_score,
@@ -178,7 +181,7 @@ class Training:
         self.trial_seed, self._task, self._phases = started.seed, started.task, started.phases
         self._head, self._clock = started.head, TrialClock(now.sim_time)
         self._kept.begin(TrainingState(revision=self.state.revision))
-        event = self._enter(started.state, "start", now)
+        event = self._enter(TrialStep(started.state, "start"), now)
         return TrainingReply(True, data=summary(self.state), events=(event,))
 
     def _in_procedure(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
@@ -191,26 +194,25 @@ class Training:
 
     def _taken(self, step: TrialStep, now: TouchMoment) -> TrainingReply:
         """Adopt the state of a step; a step without a change of phase may lead to one."""
-        answer = {**step.data, **step.answered}
-        if step.kind is EventKind.PHASE:
-            event = self._enter(step.state, step.key, now, **step.values)
-            event = replace(event, data={**event.data, **step.data, **step.recorded})
-            answer = {**summary(self.state), **answer}
+        if step.entry is None:
+            event = self._enter(step, now)
+            answer = {**summary(self.state, **step.data), **step.answered}
             return TrainingReply(True, data=answer, events=(event,), feed=step.feed)
-        events = [Event(step.kind, now.sim_time, step.data)]
+        answer = {**record_to_json(step.entry), **step.answered}
+        events = [Event(now.sim_time, step.entry)]
         if step.state.phase is self.state.phase:
-            self._keep(step.state, step.key, **step.values)
+            self._keep(step)
         else:
-            events.append(self._enter(step.state, step.key, now, **step.values))
+            events.append(self._enter(step, now))
         return TrainingReply(True, data=answer, events=tuple(events), feed=step.feed)
 
     def _refused(self, step: RefusedStep, now: TouchMoment) -> TrainingReply:
-        if step.data is None:
+        if step.entry is None:
             return TrainingReply(False, step.sentence)
         task = self.state.instruction if self._refused_over is None else self._refused_over[1]
         self._refused_over = now.sim_time + REFUSAL_S, task
         self.state = replace(self.state, instruction=step.sentence)
-        event = Event(EventKind.REJECTED, now.sim_time, step.data)
+        event = Event(now.sim_time, step.entry)
         return TrainingReply(False, step.sentence, events=(event,))
 
     def _capture(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
@@ -221,18 +223,17 @@ class Training:
         assert label is not None
         assert task is not None, "the phase allows no touch before a task is chosen"
         sentence = refused_touch(now, label, self._head.fiducials, self._settings, state.method)
-        place = {
+        place: dict[str, Any] = {
             "label": label,
-            **tracing.tip_data(now, measured := self._head.measured(now.tip)),
-            "clearanceMm": MM_PER_M * now.tip_clearance,
-            "depthMm": MM_PER_M * now.depth,
+            **tracing.tip_places(now.tip, measured := self._head.measured(now.tip)),
+            "clearance_mm": MM_PER_M * now.tip_clearance,
+            "depth_mm": MM_PER_M * now.depth,
         }
         if sentence is not None:
             self.state = replace(state, rejected=state.rejected + 1)
-            return self._refused(RefusedStep(sentence, {**place, "message": sentence}), now)
+            return self._refused(RefusedStep(sentence, Rejected(**place, message=sentence)), now)
         touch = TouchState(label, measured, now.sim_time, self._clock.elapsed(now.sim_time))
         touches = (*state.touches, touch)
-        data = {**place, "kept": len(touches)}
         following = task.labels[len(touches)] if len(touches) < len(task.labels) else None
         touched = replace(state, touches=touches, next_point=following)
         answered: Mapping[str, object] = {"nextPoint": following}
@@ -243,15 +244,15 @@ class Training:
         elif following is None:
             touched = replace(touched, phase=Phase.COMPLETE)
             key, values, answered = "complete", {}, {}
-        step = TrialStep(touched, key, values, data, answered=answered, kind=EventKind.TOUCH)
-        return self._taken(step, now)
+        entry = AcceptedTouch(**place, kept=len(touches))
+        return self._taken(TrialStep(touched, key, values, entry, answered=answered), now)
 
     def _trace(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         """Begin or end a stroke; a repeated command changes nothing."""
         trace, on = self.state.trace, command.arguments["on"]
         assert trace is not None, "the method has a trace"
         if on == trace.is_on:
-            return TrainingReply(True, data=tracing.stroke_data(trace))
+            return TrainingReply(True, data=record_to_json(tracing.stroke_entry(trace)))
         state = tracing.begun(self.state) if on else tracing.ended(self.state)
         return self._taken(tracing.stroke(state), now)
 
@@ -272,7 +273,6 @@ class Training:
         if not state.touches:
             return TrainingReply(False, say("nothing to undo", point=state.next_point))
         label = state.touches[-1].label
-        data = {"label": label, "kept": len(state.touches) - 1, "nextPoint": label}
         undone = replace(
             state,
             phase=Phase.RUNNING,
@@ -280,8 +280,8 @@ class Training:
             next_point=label,
             undone=state.undone + 1,
         )
-        step = TrialStep(undone, "undone", {"label": label}, data, kind=EventKind.UNDO)
-        return self._taken(step, now)
+        entry = Undo(label, kept=len(state.touches) - 1, next_point=label)
+        return self._taken(TrialStep(undone, "undone", {"label": label}, entry), now)
 
     def _register(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         if self._phases is not None:
@@ -295,7 +295,7 @@ class Training:
         self._leave()
         idle = TrainingState(revision=aborted.revision)
         self._kept.begin()
-        event = self._enter(idle, "aborted", now, trainee=aborted.trainee)
+        event = self._enter(TrialStep(idle, "aborted", {"trainee": aborted.trainee}), now)
         return TrainingReply(True, data={"trialId": aborted.trial_id}, events=(event,))
 
     def _pause(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
@@ -311,8 +311,10 @@ class Training:
         return self._entered(resumed(self.state), now)
 
     def _take_registration(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
-        taken = take_registration(command.arguments, self.state, self.truth)
-        return self._taken(taken, now) if isinstance(taken, TrialStep) else taken
+        taken = take_registration(command.arguments, command.sender, self.state, self.truth)
+        if not isinstance(taken, TrialStep):
+            return taken
+        return replace(self._taken(taken, now), data=taken.answered)
 
     def _scored(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         scored = take_score(command.arguments, self.state, self.truth)
@@ -337,7 +339,8 @@ class Training:
             self._leave()
         back = replace(kept, revision=self.state.revision)
         then = replace(now, feed=feed)
-        event = self._enter(back, "not recorded", then, reason=command.arguments["reason"])
+        step = TrialStep(back, "not recorded", {"reason": command.arguments["reason"]})
+        event = self._enter(step, then)
         return TrainingReply(True, message=sentence, events=(event,), feed=feed)
 
     def _interrupted(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
@@ -348,27 +351,24 @@ class Training:
 
     def _entered(self, step: TrialStep, now: TouchMoment) -> TrainingReply:
         """Enter another phase, with nothing more to answer than that."""
-        return TrainingReply(True, events=(self._enter(step.state, step.key, now, **step.values),))
+        return TrainingReply(True, events=(self._enter(step, now),))
 
-    def _enter(self, state: TrainingState, key: str, now: TouchMoment, **values: object) -> Event:
-        self._keep(state, key, **values)
-        data = {
-            **summary(self.state),
-            "instruction": self.state.instruction,
-            **recorded_feed(now.feed),
-        }
-        return Event(EventKind.PHASE, now.sim_time, data)
+    def _enter(self, step: TrialStep, now: TouchMoment) -> Event:
+        self._keep(step)
+        entry = phase_change(self.state, now.feed, **step.data, ahead=step.ahead)
+        return Event(now.sim_time, entry)
 
-    def _keep(self, state: TrainingState, key: str, **values: object) -> None:
+    def _keep(self, step: TrialStep) -> None:
         """Adopt a state that must not be lost, with its instruction."""
-        words = {
+        state = step.state
+        words: dict[str, Any] = {
             "trainee": state.trainee,
             "point": state.next_point,
             "count": self._count,
-            **values,
+            **step.values,
         }
         revision = state.revision + 1
-        instruction = say(key, **words)
+        instruction = say(step.key, **words)
         self._refused_over = None
         self.state = replace(state, revision=revision, instruction=instruction)
         self._kept.keep(self.state)

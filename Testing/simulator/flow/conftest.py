@@ -7,6 +7,7 @@ from unittest import mock
 
 import pytest
 
+from rastrainer.journal.entries import AT_ZERO
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.running_presenter import RunningPresenter
@@ -16,7 +17,7 @@ from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.ops import instructor_pin
 from rastrainer_simulator.ops.instructor_pin import InstructorPin
-from rastrainer_simulator.state import Answer, OperatorCommand, OperatorInput, StartingPoint
+from rastrainer_simulator.state import Answer, OperatorCommand, OperatorInput
 from rastrainer_simulator.viewpoint.best_view import TouchViews
 from Testing.sdl_virtual_gamepad import VirtualGamepad
 from Testing.simulator.at_once import at_once
@@ -101,7 +102,7 @@ def put_back(simulation):
     commands = (OperatorCommand("Abort"), OperatorCommand("StartTask", start))
     simulation.step(0.004, OperatorInput(commands=(*commands, OperatorCommand("Abort"))))
     simulation._training._starter._number = 0
-    simulation.restart_from(StartingPoint())
+    simulation.restart_from(AT_ZERO)
 
 
 @pytest.fixture

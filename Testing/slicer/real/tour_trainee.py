@@ -82,9 +82,9 @@ def _places(scenario: Any, header: dict[str, Any]) -> list[tuple[Any, Any]]:
     from rastrainer import transforms
     from rastrainer.trial.score_reference import fiducial_normals
 
-    head_to_world = scenario.perturbed_head_to_world(header["seed"])
-    fiducials = transforms.apply(head_to_world, scenario.task(header["task"]).fiducials)
-    normals = fiducial_normals(scenario, header["task"]) @ head_to_world[:3, :3].T
+    head_to_world = scenario.perturbed_head_to_world(header.seed)
+    fiducials = transforms.apply(head_to_world, scenario.task(header.task).fiducials)
+    normals = fiducial_normals(scenario, header.task) @ head_to_world[:3, :3].T
     return list(zip(fiducials, normals, strict=True))
 
 
@@ -94,8 +94,8 @@ def _checkpoint(scenario: Any, header: dict[str, Any], number: int) -> tuple[Any
 
     from rastrainer import transforms
 
-    head_to_world = scenario.perturbed_head_to_world(header["seed"])
-    position = scenario.procedure(header["procedure"]["name"]).checkpoints[number - 1].position
+    head_to_world = scenario.perturbed_head_to_world(header.seed)
+    position = scenario.procedure(header.procedure.name).checkpoints[number - 1].position
     outward = np.asarray(position) - scenario.target_position
     outward /= np.linalg.norm(outward)
     return transforms.apply(head_to_world, position), head_to_world[:3, :3] @ outward
@@ -106,7 +106,7 @@ def _depth(scenario: Any, header: dict[str, Any], is_drill: bool) -> float:
     from rastrainer.procedure.checks import planned_bone
     from rastrainer.procedure.plan import read_procedure_meshes
 
-    procedure = scenario.procedure(header["procedure"]["name"])
+    procedure = scenario.procedure(header.procedure.name)
     line = procedure.trajectories[0]
     if not is_drill:
         return STAND_OFF_MM + line.length_mm
