@@ -18,7 +18,7 @@ from rastrainer_simulator.presentation.messages import InstructorOrder
 from rastrainer_simulator.presentation.presenter import Presenter, ViewUpdate
 from rastrainer_simulator.presentation.screen import Fact, Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.rating.rating_work import RatingWork
-from rastrainer_simulator.replay.playback import Playback, ShownPlayback
+from rastrainer_simulator.replay.playback import Playback, PlaybackSwitch
 from rastrainer_simulator.replay.replay_presenter import RATE, ReplayPresenter
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label, pair_label
@@ -45,7 +45,7 @@ class RatingPresenter(Presenter):
         self.work = work
         self.texts = Texts(LANGUAGES[language])
         self.pages = OpenPages(self._happened)
-        self.shown = ShownPlayback(first)
+        self.shown = PlaybackSwitch(first)
         self.leave = end
         self._language, self._load = language, load
         self._loading: Future[Playback] | None = None
@@ -74,7 +74,7 @@ class RatingPresenter(Presenter):
     def watch(self) -> None:
         """Show the present replay again, from where it was left or, at its end, the beginning."""
         self.pages.show(None)
-        self.shown.playback.pause(False)
+        self.playback.pause(False)
         self._refresh()
 
     def load(self, go: Callable[[], object]) -> None:
@@ -86,7 +86,7 @@ class RatingPresenter(Presenter):
 
     def rate(self) -> None:
         """Open the next domain that has no mark, or the marks of the replay."""
-        self.shown.playback.pause(True)
+        self.playback.pause(True)
         open_ = self.work.open_domain
         self.pages.show(RatedPage(self) if open_ is None else DomainPage(self, *open_))
         self._refresh()
@@ -177,6 +177,7 @@ class RatingPresenter(Presenter):
         """Show a replay from its beginning, under its number."""
         place = {"number": self.work.place + 1, "count": len(self.work.trial_ids)}
         blinded = self.texts.say("rating.replay", **place)
+        self.playback = playback
         self.shown.show(playback)
         self._replay = ReplayPresenter(playback, self._language, self.rate, blinded)
         self._replay.updates.add(self._pass_on)

@@ -88,9 +88,6 @@ def _preferred_language() -> str:
     return Preferences().language
 
 
-"""What a journal's header says about the set-up."""
-
-
 def trials_to_show(study: Study, records: Path) -> tuple[str, ...]:
     """Return the finished trials of consenting trainees whose journals are in a folder.
 
@@ -157,13 +154,12 @@ def serve_rating(
         async def serve() -> None:
             stop = asyncio.Event()
             presenter = RatingPresenter(work, first, load, _preferred_language(), stop.set)
-            shown = presenter.shown
 
             def advance(seconds: float) -> None:
-                shown.playback.advance(seconds)
+                presenter.playback.advance(seconds)
                 presenter.advance(seconds)
 
-            await _show_until(stop, shown, presenter, advance, port, has_window, announce)
+            await _show_until(stop, presenter.shown, presenter, advance, port, has_window, announce)
 
         first = load(work.trial_id).result()
         asyncio.run(serve())
