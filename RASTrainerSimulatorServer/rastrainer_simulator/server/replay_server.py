@@ -156,7 +156,8 @@ def serve_rating(
             presenter = RatingPresenter(work, first, load, _preferred_language(), stop.set)
 
             def advance(seconds: float) -> None:
-                presenter.playback.advance(seconds)
+                if presenter.shown.playback is not None:
+                    presenter.shown.playback.advance(seconds)
                 presenter.advance(seconds)
 
             await _show_until(stop, presenter.shown, presenter, advance, port, has_window, announce)

@@ -14,7 +14,6 @@ from rastrainer.journal.entries import (
     FinalRegistration,
     PhaseChange,
     ProcedureAt,
-    Rejected,
 )
 from rastrainer.json_records import record_to_json
 from rastrainer.procedure.record import UsedRegistration
@@ -29,7 +28,10 @@ from rastrainer_simulator.vectors import in_millimeters
 
 @dataclass(frozen=True)
 class TrainingReply:
-    """The answer to a command; `feed` is the new feed in the guide, None if it stays."""
+    """The answer to a command; `feed` is the new feed in the guide, None if it stays.
+
+    A refused touch is an event, too.
+    """
 
     ok: bool
     message: str = ""
@@ -45,12 +47,12 @@ class TrialStep:
     Attributes:
         key: of the instruction that goes with it.
         values: that are filled in.
-        entry: goes into the answer, too, and is followed by a change of the phase if there is one;
-            None if the step is such a change.
+        entry: what happened. It goes into the answer, too, unless it is a registration, and a
+            change of the phase follows if there is one; None if that change is all.
         data: of the change of the phase, by the names of `PhaseChange`; goes into the answer, too.
         ahead: goes into the change of the phase: clients never learn it.
         answered: goes into the answer alone.
-        feed: what is in the guide from now on; None as before.
+        feed: the new feed in the guide; None if it stays.
     """
 
     state: TrainingState
@@ -61,14 +63,6 @@ class TrialStep:
     ahead: Ahead | None = None
     answered: Mapping[str, Any] = field(default_factory=dict)
     feed: Feed | None = None
-
-
-@dataclass(frozen=True)
-class RefusedStep:
-    """Why a command is refused; `entry` describes a touch that does not count."""
-
-    sentence: str
-    entry: Rejected | None = None
 
 
 def phase_change(state: TrainingState, feed: Feed = NO_FEED, **data: Any) -> PhaseChange:
@@ -128,7 +122,6 @@ def revealed(truth: Truth, state: TrainingState, matrix: tuple[float, ...]) -> d
 
 
 def trial_data(state: TrainingState, truth: Truth) -> dict[str, Any]:
-    """Return the answer to GetTrial of the present trial; the truth once it is revealed."""
     data = {**summary(state), **given(state)}
     if state.registration is not None:
         data.update(revealed(truth, state, state.registration.matrix))
