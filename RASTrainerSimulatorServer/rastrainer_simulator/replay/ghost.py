@@ -12,6 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.journal.recording import ReplayTrack, read_track
 from rastrainer.protocol import GhostRule, Phase
 from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.core.interrupted_trial import seed_of
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.net.views.outgoing import GHOST_LINKS
 from rastrainer_simulator.replay.recorded_trial import JournalLoading
