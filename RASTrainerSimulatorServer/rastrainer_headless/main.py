@@ -36,13 +36,12 @@ from rastrainer.json_records import record_to_json
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
 from rastrainer.registration.fits import RIGID
 from rastrainer.scenario.scenario import Scenario, load_scenario
+from rastrainer.sections.procedure_logic import ProcedureLogic
+from rastrainer.sections.scenario_cache import ScenarioCache
+from rastrainer.sections.trial_logic import AbortedTrialLogic, TrialLogic
+from rastrainer.sections.trial_services import TrialServices
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic.delivery_queue import AbortedTrialLogic
-from rastrainer.slicer.logic.procedure_logic import ProcedureLogic
-from rastrainer.slicer.logic.scenario_cache import ScenarioCache
-from rastrainer.slicer.logic.trial_logic import TrialLogic
-from rastrainer.slicer.logic.trial_services import TrialServices
 from rastrainer.slicer.scene.error_colors import magnification
 from rastrainer.slicer.scene.nodes import labelsOf
 from rastrainer.slicer.scene.scenario_nodes import SceneFileLoader, showScenario

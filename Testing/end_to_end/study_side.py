@@ -9,8 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rastrainer.protocol import DEFAULT_HOST
-from rastrainer.slicer.logic.module_paths import ModulePaths
-from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.sections.module_session import ModulePaths, ModuleSession
 from rastrainer.slicer.program.simulator_package import SimulatorPackage
 from rastrainer.study.database.database import PostgresAddress, study_place
 from rastrainer_headless.connector import headlessKit

@@ -12,8 +12,7 @@ import pytest
 from rastrainer.commands import CommandName
 from rastrainer.protocol import DEFAULT_HOST, PROCEDURE_PHASES, Phase
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.logic.module_paths import ModulePaths
-from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.sections.module_session import ModulePaths, ModuleSession
 from rastrainer.slicer.program.simulator_package import SimulatorPackage
 from rastrainer.slicer.scene.nodes import Role, nodesOf, nodesOfClass
 from rastrainer.slicer.scene.procedure_lines import LINE

@@ -3,10 +3,10 @@
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.sections.trial_logic import MAX_WAITING, AbortedTrialLogic
+from rastrainer.sections.trial_services import TrialServices
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic.delivery_queue import MAX_WAITING, AbortedTrialLogic
-from rastrainer.slicer.logic.trial_services import TrialServices
 from rastrainer.study.database.study import Study
 from rastrainer_headless.connector import headlessKit
 from Testing.domain.trial.trial_records import make_aborted

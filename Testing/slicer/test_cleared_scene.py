@@ -12,9 +12,9 @@ from rastrainer.errors import InputError
 from rastrainer.journal.recording import find_track
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.logic import head_preview
-from rastrainer.slicer.logic.replay_logic import SLICES_A_TURN
-from rastrainer.slicer.logic.scenario_maker import NewScenarioOptions
+from rastrainer.sections import head_preview
+from rastrainer.sections.new_scenario_logic import NewScenarioOptions
+from rastrainer.sections.score_logic import SLICES_A_TURN
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints
 from rastrainer.slicer.scene.robot_description import readArmChain
 from rastrainer.slicer.scene.trial_replay import STATES_A_SLICE, showReplay

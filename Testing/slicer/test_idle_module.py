@@ -76,7 +76,7 @@ def test_a_state_of_a_trial_is_shown_without_a_poll(host, simulator):
 
 
 def test_a_sentence_is_shown_and_hidden_in_a_closed_section_without_a_layout(host):
-    from rastrainer.panels.widgets import setText
+    from rastrainer.widgets.controls import setText
 
     host.open()
     label = host.find("pairingText")

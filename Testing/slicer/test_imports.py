@@ -80,9 +80,9 @@ def heavy(imported, *packages):
 
 
 def test_the_start_of_slicer_imports_no_library_and_hardly_anything_of_ours(found):
-    assert [name for name in found["started"] if name.count(".") > 1 or "panels" in name] == [
-        "rastrainer.panels",
-        "rastrainer.panels.sample_data",
+    assert [name for name in found["started"] if name.count(".") > 1 or "sections" in name] == [
+        "rastrainer.sections",
+        "rastrainer.sections.sample_data",
     ]
     assert heavy(found["at_start"], *HEAVY) == []
     assert any(importer == "RASTrainer" for importer, *_more in found["at_start"])

@@ -12,10 +12,10 @@ from rastrainer.head.trial_head import Perturbation
 from rastrainer.scenario.library import pack, unpack, user_library
 from rastrainer.scenario.setup import SetUp
 from rastrainer.scenario.writer import new_folder, write_scenario
+from rastrainer.sections import head_preview, scenario_logic, scenario_maker
+from rastrainer.sections.head_preview import editedHead
 from rastrainer.slicer.head.extraction import findHead
 from rastrainer.slicer.head.volume import HeadSettings, Volume, forSegment, volumeOfSegment
-from rastrainer.slicer.logic import head_preview, scenario_logic, scenario_maker
-from rastrainer.slicer.logic.head_preview import editedHead
 from rastrainer.slicer.scene.nodes import Role, findNode, setPoints
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario, png
 from Testing.slicer.head.phantoms import phantom

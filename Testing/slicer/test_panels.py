@@ -13,7 +13,6 @@ import slicer
 from PySide6 import QtCore
 
 from rastrainer import transforms
-from rastrainer.panels.plain_text import toolTip
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
@@ -21,6 +20,7 @@ from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, se
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
+from rastrainer.widgets.plain_text import toolTip
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli.main import main
 from Testing.end_to_end.module.installed_simulator import write_program

@@ -10,10 +10,10 @@ import pytest
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.scenario.points import LABELS, PlannedTarget, PlannedTrajectory
+from rastrainer.sections.registration_logic import RegistrationLogic
+from rastrainer.sections.target_plan_logic import PlanLogic, targetsOf
+from rastrainer.sections.views import jumpTo
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic.registration_logic import RegistrationLogic
-from rastrainer.slicer.logic.target_plan_logic import PlanLogic, targetsOf
-from rastrainer.slicer.logic.views import jumpTo
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints, worldPoints
 from rastrainer.slicer.scene.plan_points import startPlacing, stopPlacing
 from rastrainer.slicer.scene.scenario_nodes import showTask

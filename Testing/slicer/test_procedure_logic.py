@@ -10,9 +10,9 @@ from rastrainer import transforms
 from rastrainer.igtl.content import String
 from rastrainer.protocol import DeviceName
 from rastrainer.scenario.points import LABELS
+from rastrainer.sections.procedure_logic import ProcedureLogic, ProcedureStatus
+from rastrainer.sections.trial_services import TrialServices
 from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.logic.procedure_logic import ProcedureLogic, ProcedureStatus
-from rastrainer.slicer.logic.trial_services import TrialServices
 from Testing.slicer.simulator_double import run_logic_until, run_until_received
 from Testing.slicer.training_room import TRIAL, Room
 

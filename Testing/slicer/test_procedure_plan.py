@@ -8,7 +8,7 @@ import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.procedure.plan import MAX_NO_GO_TRIANGLES
-from rastrainer.slicer.logic.procedure_plan_logic import (
+from rastrainer.sections.procedure_plan_logic import (
     PlanDescription,
     ProcedurePlanLogic,
     noGoMeshes,

@@ -14,8 +14,8 @@ from rastrainer.registration.localization_error import error_along_surface
 from rastrainer.registration.registration import register, register_all_kinds
 from rastrainer.registration.target_error import expected_tre, target_error
 from rastrainer.scenario.points import LABELS
+from rastrainer.sections.registration_logic import RegistrationLogic
 from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.logic.registration_logic import RegistrationLogic
 from rastrainer.slicer.scene.error_colors import TRE_SCALARS
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints, worldPoints
 from rastrainer.slicer.scene.registration_input import Choices

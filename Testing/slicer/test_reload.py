@@ -11,10 +11,10 @@ from Testing.slicer.test_images_in_module import wait_for_images
 
 KEPT = (
     "RASTrainer.RASTrainerWidget",
-    "rastrainer.panels.panel_stack.PanelStack",
-    "rastrainer.panels.score_panel.ScorePanel",
+    "rastrainer.sections.panel_stack.PanelStack",
+    "rastrainer.sections.score_panel.ScorePanel",
     "rastrainer.slicer.link.link.Link",
-    "rastrainer.slicer.logic.module_session.ModuleSession",
+    "rastrainer.sections.module_session.ModuleSession",
 )
 
 

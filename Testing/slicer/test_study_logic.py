@@ -9,8 +9,8 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.json_records import record_from_json
 from rastrainer.protocol import StepKind
-from rastrainer.slicer.logic.study_logic import StudyLogic
-from rastrainer.slicer.logic.trainee_logic import TraineeLogic
+from rastrainer.sections.study_logic import StudyLogic
+from rastrainer.sections.trainees_logic import TraineeLogic
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import moment
 from rastrainer.study.protocol.study_progress import StudyProgress

@@ -11,9 +11,9 @@ from vtk.util.numpy_support import vtk_to_numpy
 from rastrainer import transforms
 from rastrainer.scenario.points import Landmark
 from rastrainer.scenario.scenario import Camera
+from rastrainer.sections.trace_logic import DISTANCE_SCALARS, MODEL, TraceLogic
+from rastrainer.sections.trial_services import TrialServices
 from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.logic.trace_logic import DISTANCE_SCALARS, MODEL, TraceLogic
-from rastrainer.slicer.logic.trial_services import TrialServices
 from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.scenario_nodes import SceneFileLoader
 from Testing.slicer.scene_bundle import load_bundle

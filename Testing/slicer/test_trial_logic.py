@@ -11,12 +11,12 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.igtl.content import String
 from rastrainer.protocol import DeviceName
+from rastrainer.sections import trial_logic
+from rastrainer.sections.trial_logic import TrialLogic
+from rastrainer.sections.trial_services import TrialServices
 from rastrainer.slicer import background_work
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic import delivery_queue, trial_logic
-from rastrainer.slicer.logic.trial_logic import TrialLogic
-from rastrainer.slicer.logic.trial_services import TrialServices
 from rastrainer.slicer.scene.nodes import Role, findNode
 from rastrainer.slicer.scene.trial_scene import isApplied
 from rastrainer.study.database.database import LockWait, StudyUnreachableError
@@ -402,7 +402,7 @@ def test_a_flood_of_forged_trials_waits_in_a_short_queue_and_the_excess_is_repor
     lab, make_record, monkeypatch
 ):
     waiting = 8
-    monkeypatch.setattr(delivery_queue, "MAX_WAITING", waiting)
+    monkeypatch.setattr(trial_logic, "MAX_WAITING", waiting)
     lab.logic.trialKept.connect(lambda _record: kept.append(True))
     kept = []
     for number in range(3 * waiting):

@@ -5,7 +5,7 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.protocol import DeviceName
-from rastrainer.slicer.logic.views import LEAST_MOVE_MM, PERIOD_S, SliceFollower, jumpTo, poseOnHead
+from rastrainer.sections.views import LEAST_MOVE_MM, PERIOD_S, SliceFollower, jumpTo, poseOnHead
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, prepareNodes
 from rastrainer.slicer.scene.scenario_nodes import showTask
 from rastrainer.slicer.scene.trial_scene import showPlannedPlace

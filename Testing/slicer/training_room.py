@@ -5,8 +5,8 @@ import uuid
 
 from rastrainer.igtl.content import Status, String
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
+from rastrainer.sections.training_logic import TrainingLogic
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic.training_logic import TrainingLogic
 from rastrainer.slicer.scene.nodes import findNode
 from rastrainer_headless.connector import headlessKit
 from rastrainer_simulator.texts.texts import ENGLISH
