@@ -212,7 +212,7 @@ def test_a_trial_of_a_step_with_a_procedure_is_started_with_it(lab):
     state = {"phase": "running", "task": "task-1", "mode": "desktop", "trainee": "T001"}
     for name, is_asked in (("dbs", True), ("biopsy", False)):
         lab.room.tell(**state, procedure={"name": name})
-        lab.room.run_until(lambda name=name: lab.room.logic.status.procedure == name)
+        lab.room.run_until(lambda name=name: lab.room.logic.status.procedure.name == name)
         assert (lab.logic.offProtocolSentence() == "") is is_asked
     assert "with the procedure biopsy" in lab.logic.offProtocolSentence()
 

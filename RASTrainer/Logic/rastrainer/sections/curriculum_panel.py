@@ -7,7 +7,6 @@ from typing import Any
 
 import slicer
 
-from rastrainer.number_text import fixed
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, connectClick
 from rastrainer.slicer.translation import _
@@ -19,7 +18,7 @@ from rastrainer.study.curriculum.standing import (
     state_of,
     title_of,
 )
-from rastrainer.widgets.controls import fillTable, setEnabled, setText
+from rastrainer.widgets.controls import fillTable, numberOrDash, setEnabled, setText
 from rastrainer.widgets.plain_text import toolTip
 
 
@@ -63,12 +62,7 @@ class CurriculumPanel(Panel):
         everybody = self._logic.standings()
         ui.assignmentsTable.visible, ui.classTable.visible = bool(rows), bool(everybody)
         assignments = [
-            (
-                title_of(each),
-                short_progress_of(each),
-                "–" if each.mean is None else fixed(each.mean, 0),
-            )
-            for each in rows
+            (title_of(each), short_progress_of(each), numberOrDash(each.mean, 0)) for each in rows
         ]
         fillTable(ui.assignmentsTable, assignments, tips)
         fillTable(

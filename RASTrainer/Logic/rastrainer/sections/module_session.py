@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rastrainer.procedure.errors import true_lines
 from rastrainer.protocol import Phase, RegistrationMethod
 from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario, playable_methods
@@ -282,9 +281,8 @@ class ModuleSession:
         record, present = analysis.record, self.training.status
         self.plan.takeTruth(analysis)
         isOtherOpen = self._isTrialOpen() and present.trialId != record.trial_id
-        if record.procedure is not None and analysis.truth is not None and not isOtherOpen:
-            lines = true_lines(record.procedure, analysis.truth.matrix)
-            self.procedure.showOutcome(analysis.procedure, lines)
+        if analysis.procedure is not None and not isOtherOpen:
+            self.procedure.showOutcome(analysis.procedure, record.procedure, analysis.truth)
         self.replay.takeFeedback(record.trial_id, analysis.feedback)
         self._showTrainees()
 

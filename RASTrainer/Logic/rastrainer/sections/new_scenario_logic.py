@@ -1,6 +1,7 @@
 """Makes scenarios of volumes in the scene: the head is made here, and the simulator plans on it.
 
-Fiducials and tasks need the robot, so the simulator's program proposes them.
+The head is shown first, to be accepted or changed. Fiducials and tasks need the robot, so the
+simulator's program proposes them.
 """
 
 from __future__ import annotations
@@ -20,41 +21,49 @@ from rastrainer.scenario.points import touch_order
 from rastrainer.scenario.scenario import UNKNOWN_LICENSE, Scenario
 from rastrainer.scenario.setup import SetUp
 from rastrainer.scenario.writer import HeadDraft, write_draft
-from rastrainer.sections.head_preview import editedHead, hideHead, showHead
-from rastrainer.sections.scenario_logic import ScenarioFiles, planArguments
+from rastrainer.sections.scenario_logic import ScenarioFiles, findSkin, planArguments
 from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.program.child_process import Run, runChild
 from rastrainer.slicer.scene.nodes import (
     ROLE_ATTRIBUTE,
+    Role,
+    findNode,
+    findOrAddNode,
     isUsed,
     labelsOf,
+    nodesOf,
     nodesOfClass,
     usedPoints,
     worldPoints,
 )
+from rastrainer.slicer.scene.scenario_nodes import SKIN_COLOR, meshPolyData
 from rastrainer.slicer.translation import _
 from rastrainer.work_progress import Progress, no_progress
 
 if TYPE_CHECKING:
-    from rastrainer.slicer.head.volume import HeadSettings
+    from rastrainer.slicer.head.volume import HeadSettings, SegmentImage
 
 MAKE_DRAFT = "rastrainer.slicer.head.head_draft:makeDraft"
-SOURCE = "The volume {name} in 3D Slicer."
+SEGMENTATION, MODEL = "vtkMRMLSegmentationNode", "vtkMRMLModelNode"
+PREVIEWED_ATTRIBUTE = "RASTrainer.previewed"
+SETTINGS_ATTRIBUTE = "RASTrainer.previewedWith"
 
 
 @dataclass(frozen=True)
 class NewScenarioOptions:
-    """Options of a new scenario besides its volume, which stands in for empty texts.
+    """Options of a new scenario; the name of its volume stands in for empty texts.
 
     Attributes:
-        threshold: value that parts air from skin; None finds it.
-        cutMm: height (S) of the flat base; None finds it.
+        volume: the `vtkMRMLScalarVolumeNode`, a T1-weighted MRI or CT of a head.
+        threshold: value that separates air from skin; found if None.
+        cutMm: height (S) of the flat base; found if None.
         hasVolume: whether the scenario carries the images.
         targets: a `vtkMRMLMarkupsFiducialNode`, or None.
         trajectory: a `vtkMRMLMarkupsLineNode` from the entry to the target, or None.
         isHandPlaced: whether the scene's own point lists of 15 are the tasks, in their order.
     """
 
+    volume: Any
     title: str = ""
     source: str = ""
     license: str = ""
@@ -67,59 +76,73 @@ class NewScenarioOptions:
     trajectory: Any = None
     isHandPlaced: bool = False
 
+    @property
+    def headSettings(self) -> HeadSettings:
+        from rastrainer.slicer.head.volume import HeadSettings
+
+        return HeadSettings(threshold=self.threshold, baseMm=self.cutMm)
+
 
 class ScenarioMaker:
-    """What the panel New scenario does."""
+    """Shows the head in a volume, and makes a scenario of it.
+
+    `progress` may raise to cancel: then nothing is left behind.
+    """
 
     def __init__(self, scene: Any, files: ScenarioFiles, run: Run) -> None:
         self._scene = scene
         self._files = files
         self._run = run
 
-    def preview(
-        self, volumeNode: Any, options: NewScenarioOptions, progress: Progress
-    ) -> list[str]:
+    def preview(self, options: NewScenarioOptions, progress: Progress) -> list[str]:
         """Show the head that is found, and return warnings, one sentence each.
 
-        The Segment Editor may change its segment; `make` then takes it as it is.
+        It is shown as a model, and as a segment that the Segment Editor may change; `make` then
+        takes the segment as it is.
         """
-        return showHead(self._run, volumeNode, _settings(options), progress)
+        from rastrainer.slicer.head.volume import showSegment
 
-    def make(
-        self, volumeNode: Any, options: NewScenarioOptions, progress: Progress
-    ) -> tuple[Scenario, list[str]]:
-        """Make a scenario of a T1-weighted MRI or CT of a head, and return it with warnings.
+        volume, settings = options.volume, options.headSettings
+        found, skin, warnings = findSkin(self._run, volume, settings, progress)
+        draft = findOrAddNode(self._scene, SEGMENTATION, Role.HEAD_SEGMENT, "Head to be edited")
+        model = findOrAddNode(self._scene, MODEL, Role.HEAD_PREVIEW, "Head as found")
+        for node in (draft, model):
+            # It is shown where it was found.
+            node.SetAndObserveTransformNodeID(None)
+        showSegment(draft, found)
+        draft.SetReferenceImageGeometryParameterFromVolumeNode(volume)
+        draft.SetAttribute(PREVIEWED_ATTRIBUTE, volume.GetID())
+        draft.SetAttribute(SETTINGS_ATTRIBUTE, repr(settings))
+        model.SetAndObservePolyData(meshPolyData(skin))
+        model.GetDisplayNode().SetColor(SKIN_COLOR)
+        for node in (draft, model):
+            node.SetDisplayVisibility(True)
+        return warnings
 
-        `progress` may raise to cancel: then nothing is left behind.
-        """
-        title = options.title.strip() or volumeNode.GetName()
+    def make(self, options: NewScenarioOptions, progress: Progress) -> tuple[Scenario, list[str]]:
+        """Make a scenario, and return it with warnings."""
         warnings: list[str] = []
         scenario = self._files.add(
-            title,
-            lambda folder: warnings.extend(self._plan(volumeNode, options, progress, folder)),
+            options.title.strip() or options.volume.GetName(),
+            lambda folder: warnings.extend(self._plan(options, progress, folder)),
         )
-        hideHead(self._scene, volumeNode)
+        self._hidePreview(options.volume)
         return scenario, warnings
 
-    def check(self, volumeNode: Any, options: NewScenarioOptions, progress: Progress) -> list[str]:
+    def check(self, options: NewScenarioOptions, progress: Progress) -> list[str]:
         """Check set-up, plan and fiducials as `make` does, without making anything."""
-        options = replace(options, hasSkull=False, hasVolume=False)
-        return self._plan(volumeNode, options, progress)
+        return self._plan(replace(options, hasSkull=False, hasVolume=False), progress)
 
     def _plan(
-        self,
-        volumeNode: Any,
-        options: NewScenarioOptions,
-        progress: Progress,
-        folder: Path | None = None,
+        self, options: NewScenarioOptions, progress: Progress, folder: Path | None = None
     ) -> list[str]:
-        """Make a scenario in a folder, or only check what it is to be made of; return warnings."""
+        """Make a scenario in a folder, or only check its parts; return warnings."""
         from rastrainer.slicer.head.volume import imageOfNode
 
-        image, settings = imageOfNode(volumeNode), _settings(options)
-        segment = editedHead(volumeNode, settings)
-        title = options.title.strip() or volumeNode.GetName()
-        source = options.source.strip() or SOURCE.format(name=volumeNode.GetName())
+        volume, settings = options.volume, options.headSettings
+        image, segment = imageOfNode(volume), editedHead(volume, settings)
+        title = options.title.strip() or volume.GetName()
+        source = options.source.strip() or f"The volume {volume.GetName()} in 3D Slicer."
         terms = options.license.strip() or UNKNOWN_LICENSE
         words = [f"--title={title}", f"--source={source}", f"--license={terms}"]
         lists, leftOut = list[Any](), list[str]()
@@ -127,14 +150,9 @@ class ScenarioMaker:
             lists, leftOut = handPlacedLists(self._scene, options.targets)
 
         def make(report: Progress) -> tuple[HeadDraft, list[str]]:
+            kept = {"segment": segment, "hasVolume": options.hasVolume}
             made: tuple[HeadDraft, list[str]] = self._run(
-                MAKE_DRAFT,
-                report,
-                image,
-                settings,
-                options.hasSkull,
-                segment=segment,
-                hasVolume=options.hasVolume,
+                MAKE_DRAFT, report, image, settings, options.hasSkull, **kept
             )
             return made
 
@@ -151,11 +169,32 @@ class ScenarioMaker:
             folder = folder or Path(temporary, "none")
             return [*leftOut, *planScenario(make, folder, words, command, progress)]
 
+    def _hidePreview(self, volume: Any) -> None:
+        """Hide the head as found, and a rendering of its volume: the result is shown instead."""
+        for className, role in ((SEGMENTATION, Role.HEAD_SEGMENT), (MODEL, Role.HEAD_PREVIEW)):
+            for node in nodesOf(self._scene, className, role):
+                node.SetDisplayVisibility(False)
+        for index in range(volume.GetNumberOfDisplayNodes()):
+            display = volume.GetNthDisplayNode(index)
+            if display is not None and display.IsA("vtkMRMLVolumeRenderingDisplayNode"):
+                display.SetVisibility(False)
 
-def _settings(options: NewScenarioOptions) -> HeadSettings:
-    from rastrainer.slicer.head.volume import HeadSettings
 
-    return HeadSettings(threshold=options.threshold, baseMm=options.cutMm)
+def editedHead(volume: Any, settings: HeadSettings) -> SegmentImage | None:
+    """Return the segment of the head that is shown of a volume; None if none is."""
+    from rastrainer.slicer.head.volume import SEGMENT_NAME, readSegment
+
+    node = findNode(volume.GetScene(), SEGMENTATION, Role.HEAD_SEGMENT)
+    if node is None or node.GetAttribute(PREVIEWED_ATTRIBUTE) != volume.GetID():
+        return None
+    if node.GetAttribute(SETTINGS_ATTRIBUTE) != repr(settings):
+        raise InputError(
+            _(
+                "The threshold or the cut has been changed since the head was found: find the "
+                "head again, or reset it."
+            )
+        )
+    return readSegment(node, node.GetSegmentation().GetSegmentIdBySegmentName(SEGMENT_NAME))
 
 
 MAX_LISTS = 6

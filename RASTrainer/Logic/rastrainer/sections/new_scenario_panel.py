@@ -105,7 +105,7 @@ class NewScenarioPanel(Panel):
 
     def preview(self) -> None:
         """Show the head that is found, to accept it or to change it."""
-        warnings = self._work.run(lambda report: self._maker.preview(*self._wanted(), report))
+        warnings = self._work.run(lambda report: self._maker.preview(self._wanted(), report))
         if warnings is not None:
             text = _(
                 "This is the head that was found. Change the threshold or the cut and find it "
@@ -115,19 +115,19 @@ class NewScenarioPanel(Panel):
             fitThreeDViews()
 
     def check(self) -> None:
-        warnings = self._work.run(lambda report: self._maker.check(*self._wanted(), report))
+        warnings = self._work.run(lambda report: self._maker.check(self._wanted(), report))
         if warnings is not None:
             self._showMessage(_("Set-up, plan and fiducials can be used."), *warnings)
 
     def make(self) -> None:
-        made = self._work.run(lambda report: self._maker.make(*self._wanted(), report))
+        made = self._work.run(lambda report: self._maker.make(self._wanted(), report))
         if made is not None:
             scenario, warnings = made
             self._session.scenarioMade.emit(scenario.name)
             text = _("{title} was made and is chosen above.").format(title=scenario.title)
             self._showMessage(text, *warnings)
 
-    def _wanted(self) -> tuple[Any, NewScenarioOptions]:
+    def _wanted(self) -> NewScenarioOptions:
         ui = self._ui
         values = {name: tuple(box.value for box in boxes) for name, boxes in self._setUp.items()}
         setUp = SetUp(
@@ -137,7 +137,8 @@ class NewScenarioPanel(Panel):
             stand=Stand(*values["stand"]),
             robot_base_mm=values["base"],
         )
-        return ui.scanComboBox.currentNode(), NewScenarioOptions(
+        return NewScenarioOptions(
+            volume=ui.scanComboBox.currentNode(),
             title=ui.titleLineEdit.text,
             source=ui.sourceLineEdit.text,
             license=ui.licenseLineEdit.text,

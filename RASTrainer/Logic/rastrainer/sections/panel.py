@@ -33,9 +33,11 @@ class Panel:
         self._listening = Listening(*pairs)
 
 
-def connectClick(button: Any, action: Callable[[], object], failure: str) -> None:
-    """Have a click do something; where that fails, `failure` says what was not done."""
-    button.connect("clicked()", guardedAction(action, failure))
+def connectClick(button: Any, action: Callable[[], object], failure: str) -> Callable[[], None]:
+    """Have a click do something, and return that; if it fails, `failure` says what was not done."""
+    guarded = guardedAction(action, failure)
+    button.connect("clicked()", guarded)
+    return guarded
 
 
 def chosenScenario(ui: Any, session: ModuleSession) -> Scenario:

@@ -13,12 +13,12 @@ from rastrainer.procedure.errors import TrajectoryErrors
 from rastrainer.protocol import Phase
 from rastrainer.sections.module_session import ModuleSession
 from rastrainer.sections.panel import Panel, connectClick
-from rastrainer.sections.procedure_logic import ProcedureStatus
+from rastrainer.sections.trial_status import TrialStatus
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.settings import SLICES_LIE_ALONG
 from rastrainer.slicer.translation import _
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
-from rastrainer.widgets.controls import bind, fillTable, setEnabled, setText
+from rastrainer.widgets.controls import bind, fillTable, numberOrDash, setEnabled, setText
 
 FEED_MM, FEED_MM_S = 1.0, 2.0
 """How far one press of a button feeds drill or instrument, and how fast."""
@@ -88,10 +88,10 @@ class ProcedurePanel(Panel):
             advice = _("The touches could not be registered: have all points touched again.")
         setText(ui.procedureInstructionText, advice if isConnected else "")
         for step in STEPS:
-            isReady = status.isRegistered or Phase.VERIFYING not in step.phases
+            isReady = status.procedure.registrationInUse or Phase.VERIFYING not in step.phases
             # If registration fails, the only remedy is to touch again.
             isReady |= isFailed and step.command == CommandName.REGISTER_AGAIN
-            isNow = status.isUnderWay and status.phase in [phase.value for phase in step.phases]
+            isNow = status.isProcedureUnderWay and status.phase in step.phases
             when = _(" or ").join(WHEN[phase] for phase in step.phases)
             reason = _("Only {when}.").format(when=when)
             if isNow and not isReady:
@@ -128,29 +128,30 @@ class ProcedurePanel(Panel):
             self._session.slices.show(self._logic.lines[row].planned[1])
 
 
-def stateText(status: ProcedureStatus, isConnected: bool) -> str:
+def stateText(status: TrialStatus, isConnected: bool) -> str:
     """Return the state of the procedure, with the numbers that the trainee also sees."""
     if not isConnected:
         return _("Connect to the simulator first.")
-    if not status.name:
+    procedure = status.procedure
+    if not procedure.name:
         return _("No trial with a procedure is open: choose one in the section Training.")
     line = _("{name}, line {number} of {count}").format(
-        name=status.name, number=status.trajectory + 1, count=status.trajectories
+        name=procedure.name, number=procedure.trajectory + 1, count=procedure.trajectories
     )
-    if status.phase == Phase.ALIGNING.value and status.entryDistanceMm is not None:
+    if status.phase == Phase.ALIGNING.value and procedure.entryDistanceMm is not None:
         return _(
             "{line}: the guide is {entry} mm and {angle}° off, {standOff} mm before the entry."
         ).format(
             line=line,
-            entry=fixed(status.entryDistanceMm, 2),
-            angle=fixed(status.angleDeg or 0.0, 2),
-            standOff=fixed(status.standOffMm or 0.0, 1),
+            entry=fixed(procedure.entryDistanceMm, 2),
+            angle=fixed(procedure.angleDeg or 0.0, 2),
+            standOff=fixed(procedure.standOffMm or 0.0, 1),
         )
     if status.phase in (Phase.DRILLING.value, Phase.INSERTING.value):
         return _("{line}: {depth} mm beyond the guide.").format(
-            line=line, depth=fixed(status.feedMm, 1)
+            line=line, depth=fixed(procedure.feedMm, 1)
         )
-    return line if status.trajectories else status.name
+    return line if procedure.trajectories else procedure.name
 
 
 NEXT = {
@@ -168,16 +169,16 @@ NEXT = {
 }
 
 
-def instruction(status: ProcedureStatus) -> str:
+def instruction(status: TrialStatus) -> str:
     """Return the next thing to do in the procedure, if any."""
-    text = NEXT[status.phase] if status.isUnderWay else ""
+    text = NEXT[status.phase] if status.isProcedureUnderWay else ""
     if not text or status.phase != Phase.VERIFYING.value:
         return text
-    if not status.isRegistered:
+    if not status.procedure.registrationInUse:
         return _("The touches are being registered.")
     checked = _("No checkpoint has been touched.")
-    if status.lastCheckMm is not None:
-        mm = fixed(status.lastCheckMm, 1)
+    if status.procedure.lastCheckMm is not None:
+        mm = fixed(status.procedure.lastCheckMm, 1)
         checked = _("The last checkpoint was {error} mm off.").format(error=mm)
     return f"{checked} {text}"
 
@@ -205,7 +206,6 @@ def _tip(errors: TrajectoryErrors) -> str:
     if errors.self_aligned:
         entry = _("Entry: registration {shown} mm, robot {hand} mm.")
         angle = _("Angle: registration {shown}°, robot {hand}°.")
-    plunge = "–" if errors.plunge_mm is None else f"{fixed(errors.plunge_mm, 1)} mm"
     deviation = _(
         "Radial error {radial} mm, depth error {depth} mm (registration {shown}, hand {hand})."
     )
@@ -222,7 +222,7 @@ def _tip(errors: TrajectoryErrors) -> str:
             shown=fixed(errors.angular_deviation_by_registration_deg, 2),
             hand=fixed(errors.angular_deviation_by_hand_deg, 2),
         ),
-        _("Plunge depth {plunge}.").format(plunge=plunge),
+        _("Plunge depth {plunge}.").format(plunge=numberOrDash(errors.plunge_mm, 1, "mm")),
         *(kept.format(mm=fixed(mm, 1), name=name) for name, mm in errors.kept_mm.items()),
     ]
     return "\n".join(lines)

@@ -8,7 +8,6 @@ from typing import Any
 
 import slicer
 
-from rastrainer.number_text import fixed
 from rastrainer.procedure.checks import LineMeasures, MeasuredProcedure
 from rastrainer.procedure.plan import ProcedureKind
 from rastrainer.sections.module_session import ModuleSession
@@ -37,6 +36,7 @@ from rastrainer.widgets.controls import (
     chosenData,
     fillComboBox,
     fillTable,
+    numberOrDash,
     offerEntries,
     setEnabled,
     setProperty,
@@ -262,18 +262,14 @@ class ProcedurePlanPanel(Panel):
 
 
 def _row(line: Any, measured: LineMeasures | None) -> tuple[str, ...]:
-    first = (line.GetName(), _fixed(lengthMm(line)))
+    first = (line.GetName(), numberOrDash(lengthMm(line), 1))
     if measured is None:
         return (*first, "–", "–", "–", "–")
     nearest = measured.nearest_no_go
     return (
         *first,
-        _fixed(measured.skull_angle_deg),
-        _fixed(measured.no_go_mm.get(nearest), f" {nearest}"),
-        _fixed(measured.nearest_line_mm, f" {measured.nearest_line}"),
+        numberOrDash(measured.skull_angle_deg, 1),
+        numberOrDash(measured.no_go_mm.get(nearest), 1, nearest),
+        numberOrDash(measured.nearest_line_mm, 1, measured.nearest_line),
         REACH[measured.is_held],
     )
-
-
-def _fixed(value: float | None, name: str = "") -> str:
-    return "–" if value is None else f"{fixed(value, 1)}{name}"

@@ -22,8 +22,9 @@ from rastrainer.widgets.controls import (
     blockedSignals,
     chosenData,
     fillTable,
-    setChecked,
+    numberOrDash,
     setEnabled,
+    setSilently,
     setText,
     textLabel,
 )
@@ -77,7 +78,9 @@ class RegistrationPanel(Panel):
 
     def _showApplied(self) -> None:
         transform = self._logic.transform
-        setChecked(self._ui.appliedCheckBox, transform is not None and isApplied(transform))
+        setSilently(
+            self._ui.appliedCheckBox, "checked", transform is not None and isApplied(transform)
+        )
         self._ui.appliedCheckBox.enabled = transform is not None
 
     def _chooseLists(self, _node: Any = None) -> None:
@@ -112,7 +115,7 @@ class RegistrationPanel(Panel):
             self._labels = shown.labels
             without = comparison.leaveOneOut.get(shown.kind, [None] * len(shown.labels))
             rows = [
-                (label, _number(residual), _number(alone), _number(sizes.get(label)))
+                (label, *(numberOrDash(each, 2) for each in (residual, alone, sizes.get(label))))
                 for label, residual, alone in zip(
                     shown.labels, shown.residuals_mm, without, strict=True
                 )
@@ -198,11 +201,6 @@ def _fitRows(comparison: Comparison) -> list[tuple[str, ...]]:
             rows.append((title, "–", "–", "–", "–"))
             continue
         interval = "–" if error is None else "{:.2f}–{:.2f}".format(*error.interval_mm)
-        expected = None if error is None else error.expected_mm
-        lengths = (fit.fre_mm, fit.residuals_mm.max(), expected)
-        rows.append((title, *map(_number, lengths), interval))
+        lengths = (fit.fre_mm, fit.residuals_mm.max(), error and error.expected_mm)
+        rows.append((title, *(numberOrDash(each, 2) for each in lengths), interval))
     return rows
-
-
-def _number(value: float | None) -> str:
-    return "–" if value is None else f"{value:.2f}"

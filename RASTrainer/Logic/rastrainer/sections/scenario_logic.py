@@ -8,13 +8,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer.scenario.library import unpack
 from rastrainer.scenario.scenario import Scenario, load_scenario
-from rastrainer.sections.head_preview import findSkin
 from rastrainer.sections.scenario_cache import ScenarioCache
 from rastrainer.sections.simulator_logic import SimulatorLogic
 from rastrainer.slicer.background_work import BackgroundWork, inBackground
@@ -46,6 +45,10 @@ from rastrainer.slicer.scene.trial_scene import (
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.work_progress import Progress, no_progress
+
+if TYPE_CHECKING:
+    from rastrainer.head.mesh import HeadMesh
+    from rastrainer.slicer.head.volume import HeadBody, HeadSettings
 
 
 class ScenarioLogic:
@@ -236,6 +239,30 @@ def planArguments(*planned: Any | None) -> list[str]:
         else:
             raise InputError(_("The trajectory needs two points: its entry and its target."))
     return words
+
+
+FIND_SKIN = "rastrainer.slicer.head.head_draft:findSkin"
+
+
+def findSkin(
+    run: Run, volume: Any, settings: HeadSettings | None, progress: Progress
+) -> tuple[HeadBody, HeadMesh, list[str]]:
+    """Return the head in a `vtkMRMLScalarVolumeNode`, its skin, and warnings."""
+    from rastrainer.slicer.head.volume import imageOfNode
+
+    image, scene = imageOfNode(volume), volume.GetScene()
+
+    def find(report: Progress) -> tuple[HeadBody, HeadMesh, list[str]]:
+        found, skin, warnings = run(FIND_SKIN, report, image, settings)
+        # Computed here rather than when the segment is shown.
+        _ = found.labels
+        return found, skin, warnings
+
+    found = inBackground(find, progress)
+    if volume.GetScene() is not scene:
+        # In a cleared scene the next volume has the same ID, and would be taken for this one.
+        raise InputError(_("The volume was removed before its head was found."))
+    return found
 
 
 LIMIT_BYTES = 1 << 20

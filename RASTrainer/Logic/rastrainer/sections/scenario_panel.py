@@ -26,8 +26,8 @@ from rastrainer.widgets.controls import (
     fillComboBox,
     fillTable,
     offerEntries,
-    setChecked,
     setEnabled,
+    setSilently,
     setText,
     showPercent,
 )
@@ -79,7 +79,7 @@ class ScenarioPanel(Panel):
             (self._logic.problemFound, self._showMessage),
             (
                 session.sceneChanged,
-                lambda: setChecked(ui.robotCheckBox, self._logic.isRobotShown),
+                lambda: setSilently(ui.robotCheckBox, "checked", self._logic.isRobotShown),
             ),
         )
         self._fill(session.settings.get(SCENARIO))

@@ -12,7 +12,6 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import ReplayTrack
-from rastrainer.procedure.errors import true_lines
 from rastrainer.registration.fits import RIGID
 from rastrainer.sections.trial_services import TrialServices
 from rastrainer.slicer.background_work import inBackground
@@ -45,7 +44,8 @@ class ReplayLogic:
     Attributes:
         feedbackFound: emits nothing, whenever the feedback on another trial is known.
         shown: emits nothing, whenever another trial is shown, with its touches to be registered.
-        procedureShown: emits the `ProcedureOutcome` of that trial, None without one.
+        procedureShown: emits `ProcedureOutcome`, `ProcedureRecord` and `RevealedTruth` of that
+            trial; None for each that it has not.
         isReleasing: whether states of a closed scene's replay are left, which `process` releases.
     """
 
@@ -183,10 +183,7 @@ class ReplayLogic:
         inTurn(lambda: showTask(scene, scenario, record.task, record.method))
         inTurn(lambda: showTouches(scene, record))
         self.shown.emit()
-        lines = []
-        if record.procedure is not None and trial.truth is not None and outcome is not None:
-            lines = true_lines(record.procedure, trial.truth.matrix)
-        self.procedureShown.emit(outcome, lines)
+        self.procedureShown.emit(outcome, record.procedure, trial.truth)
         if track is None:
             goTo(scene, 0.0)
         else:

@@ -34,8 +34,8 @@ from rastrainer.widgets.controls import (
     chosenData,
     fillTable,
     offerEntries,
-    setChecked,
     setEnabled,
+    setSilently,
     setText,
     showPercent,
 )
@@ -133,7 +133,7 @@ class ScorePanel(Panel):
             self._work.run(lambda report: self._session.replay.showWorstTouch(trial, report))
 
     def _showReplay(self) -> None:
-        setChecked(self._ui.showTablesButton, self._session.layout.purpose == TABLES)
+        setSilently(self._ui.showTablesButton, "checked", self._session.layout.purpose == TABLES)
         if not self._work.isUnderWay:
             now = moment(slicer.mrmlScene)
             text = _("{time:.1f} s, clearance {clearance}")

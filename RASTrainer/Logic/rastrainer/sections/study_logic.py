@@ -247,7 +247,7 @@ class StudyLogic(Listening):
             "{trainee} is doing {task} by {method} in the mode {mode}, which the study does not "
             "ask for now: it will not count."
         )
-        if trial.procedure:
+        if trial.procedure.name:
             text = _(
                 "{trainee} is doing {task} by {method} with the procedure {procedure} in the mode "
                 "{mode}, which the study does not ask for now: it will not count."
@@ -260,9 +260,9 @@ class StudyLogic(Listening):
                 )
             else:
                 step = progress.check_start(trial.mode, trial.task)
-                if (step.procedure, step.method) == (trial.procedure, trial.method):
+                if (step.procedure, step.method) == (trial.procedure.name, trial.method):
                     return ""
-        return text.format(**vars(trial))
+        return text.format(**(vars(trial) | {"procedure": trial.procedure.name}))
 
     def uncountedSentence(self) -> str:
         """Say why the last trial of the kind that comes next did not count; empty if none is so."""

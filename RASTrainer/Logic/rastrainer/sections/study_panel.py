@@ -28,7 +28,6 @@ from rastrainer.widgets.controls import (
     textLabel,
 )
 from rastrainer.widgets.plain_text import toolTip
-from rastrainer.widgets.shown_errors import guardedAction
 
 TIMED = (StepKind.TRIAL_RUN, StepKind.BREAK)
 
@@ -43,13 +42,13 @@ class StudyPanel(Panel):
         self._progress: StepProgress | None = None
         connectClick(ui.beginStudyButton, self.begin, _("The study was not started."))
         connectClick(ui.enrollButton, self._logic.enroll, _("The trainee was not enrolled."))
-        self.startStep = guardedAction(self._logic.startStep, _("The step was not started."))
+        failure = _("The step was not started.")
+        self.startStep = connectClick(ui.startStepButton, self._logic.startStep, failure)
         question = _("Why is the aborted trial repeated? The reason goes into the report.")
         title, explain = _("Repeat the step"), self._logic.explainRepeat
         ask = partial(self._withReason, title, question, explain)
-        self.explainRepeat = guardedAction(ask, _("The reason was not saved."))
-        ui.startStepButton.connect("clicked()", self.startStep)
-        ui.repeatStepButton.connect("clicked()", self.explainRepeat)
+        failure = _("The reason was not saved.")
+        self.explainRepeat = connectClick(ui.repeatStepButton, ask, failure)
         connectClick(ui.skipStepButton, self.skipStep, _("The step was not skipped."))
         connectClick(
             ui.saveAnswersButton,

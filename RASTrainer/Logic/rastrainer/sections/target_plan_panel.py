@@ -24,7 +24,7 @@ from rastrainer.widgets.controls import (
     chosenData,
     fillComboBox,
     isFilled,
-    millimeters,
+    numberOrDash,
     setEnabled,
     setLight,
     setText,
@@ -106,7 +106,7 @@ class PlanPanel(Panel):
         setText(ui.reachableText, logic.sentence or "–")
         unknown = _("known once the trial is scored and the plan is shown")
         true = logic.trueErrorMm
-        setText(ui.planTrueText, unknown if true is None else millimeters(true))
+        setText(ui.planTrueText, unknown if true is None else numberOrDash(true, 2, "mm"))
 
     def _read(self) -> tuple[PlanOnImages | None, str]:
         """Return the plan, or why there is none."""

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,8 +14,8 @@ import numpy as np
 from rastrainer.commands import CommandName
 from rastrainer.protocol import Phase
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.sections.training_logic import knownNumber
 from rastrainer.sections.trial_services import Question, Steps, TrialServices
+from rastrainer.sections.trial_status import TraceStatus, readStatus
 from rastrainer.slicer.scene.error_colors import colorSkin, removeHeadColors
 from rastrainer.slicer.scene.nodes import (
     Role,
@@ -38,15 +37,8 @@ PERIOD_S = 1.0
 _TRACED_PHASES = (Phase.RUNNING.value, Phase.PAUSED.value, Phase.COMPLETE.value)
 
 
-@dataclass(frozen=True)
-class _Wanted:
-    """What the simulator says about a trace; another one is to be shown."""
-
-    trialId: str
-    kept: int
-    strokes: int
-    isDrawing: bool
-    isGuided: bool
+Wanted = tuple[str, TraceStatus]
+"""A trial and the state of its trace; another one is to be shown."""
 
 
 class TraceLogic(Listening):
@@ -63,8 +55,8 @@ class TraceLogic(Listening):
         self._clock = clock
         self._scenario: Scenario | None = None
         self._follower: TraceFollower | None = None
-        self._wanted: _Wanted | None = None
-        self._shown: _Wanted | None = None
+        self._wanted: Wanted | None = None
+        self._shown: Wanted | None = None
         self._isAsking = False
         self._asked = -PERIOD_S
         super().__init__(
@@ -93,17 +85,10 @@ class TraceLogic(Listening):
         self._services.converse(self._updating(self._scenario, wanted))
 
     def _follow(self, state: Mapping[str, Any]) -> None:
-        trace, wasShown = state.get("trace"), self._wanted is not None
+        trial, wasShown = readStatus(state), self._wanted is not None
         self._wanted = None
-        isOpen = state.get("phase") in _TRACED_PHASES and not state.get("nextPoint")
-        if isinstance(trace, Mapping) and isOpen:
-            self._wanted = _Wanted(
-                str(state.get("trialId", "")),
-                int(knownNumber(trace.get("kept")) or 0),
-                int(knownNumber(trace.get("strokes")) or 0),
-                trace.get("on") is True,
-                trace.get("isGuided") is True,
-            )
+        if trial.trace and trial.phase in _TRACED_PHASES and not trial.nextPoint:
+            self._wanted = trial.trialId, trial.trace
         if self._wanted is None and wasShown:
             self._shown = None
             forgetTrace(self._services.scene)
@@ -111,25 +96,26 @@ class TraceLogic(Listening):
     def _beginAgain(self) -> None:
         self._isAsking, self._shown = False, None
 
-    def _updating(self, scenario: Scenario, wanted: _Wanted) -> Steps:
+    def _updating(self, scenario: Scenario, wanted: Wanted) -> Steps:
+        trialId, trace = wanted
         try:
-            answer = yield Question(CommandName.GET_TRIAL, {"trialId": wanted.trialId})
+            answer = yield Question(CommandName.GET_TRIAL, {"trialId": trialId})
 
             def follow() -> FollowedTrace:
                 if self._follower is None:
                     self._follower = TraceFollower(scenario)
                 given = GivenPoints.of_answer(answer, least_traced=0)
-                return self._follower.follow(given, wanted.isDrawing)
+                return self._follower.follow(given, trace.on)
 
-            trace = yield follow
+            followed = yield follow
         except Exception:
             # Wait for another state: what cannot be shown is reported at registration.
             self._shown = wanted
         else:
-            isSameTrial = self._wanted is not None and self._wanted.trialId == wanted.trialId
+            isSameTrial = self._wanted is not None and self._wanted[0] == trialId
             if isSameTrial and self._scenario is scenario:
                 self._shown = wanted
-                showTrace(self._services.scene, trace, wanted.isGuided)
+                showTrace(self._services.scene, followed, trace.isGuided)
         finally:
             self._isAsking = False
 

@@ -27,9 +27,9 @@ from rastrainer.widgets.controls import (
     connectAsPressed,
     fillComboBox,
     fillTable,
-    millimeters,
-    setChecked,
+    numberOrDash,
     setEnabled,
+    setSilently,
     setText,
 )
 from rastrainer.widgets.plain_text import toolTip
@@ -136,7 +136,7 @@ class TraineesPanel(Panel):
             try:
                 self._logic.change(consent=consent)
             except InputError:
-                setChecked(self._ui.consentCheckBox, not consent)
+                setSilently(self._ui.consentCheckBox, "checked", not consent)
                 raise
 
     def setArchived(self, isArchived: bool) -> None:
@@ -226,8 +226,8 @@ class TraineesPanel(Panel):
 
     def _showPlots(self) -> None:
         purpose = self._session.layout.purpose
-        setChecked(self._ui.learningCurveButton, purpose == CURVE)
-        setChecked(self._ui.calibrationButton, purpose == CALIBRATION)
+        setSilently(self._ui.learningCurveButton, "checked", purpose == CURVE)
+        setSilently(self._ui.calibrationButton, "checked", purpose == CALIBRATION)
 
     def _fold(self, isFolded: bool) -> None:
         if isFolded:
@@ -255,7 +255,7 @@ class TraineesPanel(Panel):
         entries.insert(0, (_("Choose a trainee"), ""))
         ui.pseudonymLineEdit.placeholderText = self._logic.study.next_pseudonym()
         fillComboBox(ui.traineeComboBox, entries, trainee.pseudonym if trainee else "")
-        setChecked(ui.consentCheckBox, trainee is not None and trainee.consent)
+        setSilently(ui.consentCheckBox, "checked", trainee is not None and trainee.consent)
         self._showDeleting()
         ui.consentCheckBox.enabled = trainee is not None
         isArchived = trainee is not None and trainee.archived
@@ -308,6 +308,6 @@ def _historyRow(number: int, trial: StoredTrial) -> tuple[str, ...]:
         record.started_utc[5:16].replace("T", " "),
         task if record.mode == Mode.DESKTOP.value else f"{task}, {short_mode_title(record.mode)}",
         f"{record.completion_time_s:.1f}",
-        millimeters(trial.true_tre_mm).removesuffix(" mm"),
-        "–" if trial.score is None else f"{trial.score.score:.1f}",
+        numberOrDash(trial.true_tre_mm, 2),
+        numberOrDash(trial.score and trial.score.score, 1),
     )

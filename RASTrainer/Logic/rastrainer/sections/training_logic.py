@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 from rastrainer.commands import CommandName
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
-from rastrainer.json_checks import is_number
-from rastrainer.protocol import FIDUCIAL_COUNT, OPEN_PHASES, TRIAL_RUN, Phase, RegistrationMethod
+from rastrainer.protocol import FIDUCIAL_COUNT, TRIAL_RUN, Phase, RegistrationMethod
 from rastrainer.scenario.scenario import Scenario, method_of
+from rastrainer.sections.trial_status import TrialStatus, readStatus
 from rastrainer.slicer.background_work import CallLater, callNow
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.link.link_status import LinkState
@@ -30,37 +30,6 @@ from rastrainer.slicer.translation import _
 LOADING = _("The simulator is still loading a scenario: wait until it says that it uses it.")
 LOADING_S = 30.0
 """How long the simulator may take to load a scenario."""
-
-
-@dataclass(frozen=True)
-class TrialStatus:
-    """State of the simulator's trial; without one, its phase is `idle`.
-
-    Attributes:
-        touched: how many points are kept.
-        total: how many there are to touch.
-        instruction: what the trainee reads.
-        procedure: that the trial continues with; empty for the touches alone.
-    """
-
-    trialId: str = ""
-    phase: str = Phase.IDLE.value
-    trainee: str = ""
-    task: str = ""
-    mode: str = ""
-    nextPoint: str = ""
-    touched: int = 0
-    total: int = FIDUCIAL_COUNT
-    elapsedS: float = 0.0
-    proximity: str = ""
-    instruction: str = ""
-    procedure: str = ""
-    method: str = RegistrationMethod.FIDUCIALS.value
-
-    @property
-    def isOpen(self) -> bool:
-        """Whether a trial is being played, paused, or waits to be registered."""
-        return self.phase in OPEN_PHASES
 
 
 class TrainingLogic(Listening):
@@ -92,8 +61,8 @@ class TrainingLogic(Listening):
         self._findScenario = findScenario
         self._clock = clock
         self._later = later
-        self._state: Mapping[str, Any] = {}
-        self._stateTime = 0.0
+        self._said = TrialStatus()
+        self._saidAt = 0.0
         self._shownTrial = ""
         self._total = FIDUCIAL_COUNT
         self.loadings = 0
@@ -105,23 +74,13 @@ class TrainingLogic(Listening):
     @property
     def status(self) -> TrialStatus:
         """State of the trial now; its time continues between two messages."""
-        state = self._state
-        elapsed = knownNumber(state.get("elapsedS")) or 0.0
-        if state.get("phase") == Phase.RUNNING.value:
-            elapsed += self._clock() - self._stateTime
+        said, elapsed = self._said, self._said.elapsedS
+        if said.phase == Phase.RUNNING.value:
+            elapsed += self._clock() - self._saidAt
         touches = findNode(self._scene, "vtkMRMLMarkupsFiducialNode", Role.CAPTURED_POINTS)
-        procedure = state.get("procedure")
-        texts = ("trialId", "trainee", "task", "mode", "proximity", "instruction")
-        return TrialStatus(
-            phase=str(state.get("phase", Phase.IDLE.value)),
-            nextPoint=str(state.get("nextPoint") or ""),
-            touched=touches.GetNumberOfControlPoints() if state and touches is not None else 0,
-            total=self._total,
-            elapsedS=elapsed,
-            procedure=str(procedure.get("name", "")) if isinstance(procedure, Mapping) else "",
-            method=str(state.get("method") or RegistrationMethod.FIDUCIALS.value),
-            **{name: str(state.get(name, "")) for name in texts},
-        )
+        isKnown = said.trialId and touches is not None
+        touched = touches.GetNumberOfControlPoints() if isKnown else 0
+        return replace(said, touched=touched, total=self._total, elapsedS=elapsed)
 
     def start(
         self,
@@ -205,7 +164,7 @@ class TrainingLogic(Listening):
 
     def _follow(self, state: Mapping[str, Any]) -> None:
         before = replace(self.status, elapsedS=0.0)
-        self._state, self._stateTime = state, self._clock()
+        self._said, self._saidAt = readStatus(state), self._clock()
         self._showScene()
         if before != replace(self.status, elapsedS=0.0):
             self.changed.emit()
@@ -217,24 +176,23 @@ class TrainingLogic(Listening):
 
     def _showScene(self) -> None:
         """Have the scene of the open trial shown, unless it is."""
-        trial = str(self._state.get("trialId", ""))
-        if self._state.get("phase") in OPEN_PHASES:
+        if self._said.isOpen:
             self.learner = ""
-            if trial != self._shownTrial:
-                self._shownTrial = trial
+            if self._said.trialId != self._shownTrial:
+                self._shownTrial = self._said.trialId
                 forgetStoredTouches(self._scene)
                 self._link.send(CommandName.LIST_TASKS, {}, self._showTrialScene)
 
     def _showTrialScene(self, reply: Reply) -> None:
         """Show head and fiducials of the trial that runs, so that touches appear on them."""
-        if self._state.get("phase") not in OPEN_PHASES:
+        if not self._said.isOpen:
             return
         if not reply.ok:
             self._shownTrial = ""
             return
         try:
             scenario = self._findScenario(str(reply.data.get("scenario", "")))
-            task, method = str(self._state.get("task", "")), method_of(self._state.get("method"))
+            task, method = self._said.task, method_of(self._said.method)
         except InputError as error:
             self.answered.emit(str(error))
             return
@@ -259,8 +217,3 @@ def tutorialSentence(trainee: str) -> str:
         "{trainee} does the tutorial first, at the simulator: about two minutes. Then start the "
         "trial run here, or let the trainee start it."
     ).format(trainee=trainee)
-
-
-def knownNumber(value: Any) -> float | None:
-    """Return a number that the simulator has sent; None where it is none."""
-    return float(value) if is_number(value) else None

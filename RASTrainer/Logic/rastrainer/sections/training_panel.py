@@ -85,14 +85,14 @@ class TrainingPanel(Panel):
         for box in (ui.slicesNextPointCheckBox, ui.slicesToolCheckBox):
             box.connect("toggled(bool)", self._moveSlices)
         notStarted, logic = _("The trial was not started."), self._logic
-        self.startTrialRun = guardedAction(lambda: self._start(TRIAL_RUN), notStarted)
-        self.startTask = guardedAction(self._startTask, notStarted)
+        self.startTrialRun = connectClick(
+            ui.startTrialRunButton, lambda: self._start(TRIAL_RUN), notStarted
+        )
+        self.startTask = connectClick(ui.startTaskButton, self._startTask, notStarted)
         pause = partial(logic.command, CommandName.PAUSE)
         self.pause = guardedAction(pause, _("The trial was not paused."))
         resume = partial(logic.command, CommandName.RESUME)
         self.resume = guardedAction(resume, _("The trial was not resumed."))
-        ui.startTrialRunButton.connect("clicked()", self.startTrialRun)
-        ui.startTaskButton.connect("clicked()", self.startTask)
         connectAsPressed(
             ui.pauseButton,
             lambda: self.resume if logic.status.phase == Phase.PAUSED.value else self.pause,

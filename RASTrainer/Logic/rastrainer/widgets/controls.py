@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 import qt
 import slicer
 
+from rastrainer.number_text import fixed
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.settings import Setting, Settings
 from rastrainer.slicer.translation import _
@@ -158,13 +159,9 @@ def chosenData(combo: Any) -> str:
     return combo.itemData(combo.currentIndex) if combo.currentIndex >= 0 else ""
 
 
-def setChecked(box: Any, checked: bool) -> None:
-    setSilently(box, "checked", checked)
-
-
-def millimeters(value: float | None) -> str:
-    """Return a length with its unit, or a dash if it is unknown."""
-    return "–" if value is None else f"{value:.2f} mm"
+def numberOrDash(value: float | None, digits: int, unit: str = "") -> str:
+    """Return a number, with a space before its unit, or a dash if it is unknown."""
+    return "–" if value is None else f"{fixed(value, digits)} {unit}".rstrip()
 
 
 _CHANGES = {
