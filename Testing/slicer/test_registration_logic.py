@@ -335,12 +335,12 @@ def threads(monkeypatch):
             found.setdefault(function.__name__, set()).add(threading.get_ident())
             return function(*arguments)
 
-        monkeypatch.setattr(f"rastrainer.slicer.{place}.{function.__name__}", watched)
+        monkeypatch.setattr(f"rastrainer.{place}.{function.__name__}", watched)
 
-    watch("scene.registration_input", nearest_on_mesh)
-    watch("logic.registration_comparison", register_all_kinds)
-    watch("logic.registration_comparison", target_error)
-    watch("logic.registration_comparison", expected_tre)
+    watch("slicer.scene.registration_input", nearest_on_mesh)
+    watch("sections.registration_logic", register_all_kinds)
+    watch("sections.registration_logic", target_error)
+    watch("sections.registration_logic", expected_tre)
     return found
 
 

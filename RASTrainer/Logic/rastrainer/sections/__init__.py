@@ -1,1 +1,1 @@
-"""The sections of the module: of each, what it does without Qt, and the panel that shows it."""
+"""The sections of the module: each has logic without Qt, and a panel that shows it."""

@@ -133,7 +133,7 @@ ANSWER_S = 10.0
 def downloadSample(scene: Any, logic: Any, name: str, progress: Progress) -> Any:
     """Return the volume of a sample, downloaded unless Slicer has kept it from before.
 
-    `logic` is that of the module Sample Data.
+    `logic` belongs to the module Sample Data.
     """
     source = logic.sourceForSampleName(name)
     if source is None:

@@ -1,6 +1,6 @@
 """The landmarks of a scenario's head: placed, proposed, undone, checked, and saved in a copy of it.
 
-The order of the list in the scene is that of touching; the module Markups can change it.
+Landmarks are touched in the order of the list in the scene; the module Markups can change it.
 """
 
 from __future__ import annotations
@@ -80,14 +80,14 @@ class LandmarkPoints(UndoablePoints):
 
 
 class LandmarkLogic:
-    """What the Landmarks panel does with the landmarks of the scene, its `points`."""
+    """Work of the group Landmarks with the landmarks of the scene, its `points`."""
 
     def __init__(self, scene: Any, files: ScenarioFiles) -> None:
         self.points = LandmarkPoints(scene)
         self._files = files
 
     def propose(self, scenario: Scenario, progress: Progress = no_progress) -> str:
-        """Replace the landmarks in the scene by proposed ones; return a sentence about them."""
+        """Propose landmarks in place of those in the scene; return a sentence about them."""
         with tempfile.TemporaryDirectory() as temporary:
             path = Path(temporary) / FILE
             words = ["landmarks", str(scenario.folder), str(path), "--propose"]

@@ -62,7 +62,7 @@ class ModulePaths:
         study: file of the study, until another is chosen.
         records: folder of the journals of the simulator that is started from here.
         library: folder of the user's own scenarios, which the simulator knows too.
-        studyAddress: of the study in PostgreSQL; None for that of the file.
+        studyAddress: of the study in PostgreSQL; None if the study is a file.
     """
 
     assets: Path
@@ -213,7 +213,7 @@ class ModuleSession:
         return self.link.restS or (REST_S if isWatched else None)
 
     def process(self) -> None:
-        """Do what is due; while a scene is loaded or cleared, nothing is."""
+        """Do all due work; there is none while a scene is loaded or cleared."""
         self.simulator.process()
         if self._scene.IsBatchProcessing():
             return

@@ -1,4 +1,4 @@
-"""What comes next in a session: the one thing to do now, and the section that belongs to it.
+"""The next step of a session, and the section that belongs to it.
 
 One button leads from an empty Slicer to a score; each step can also be done in its section.
 """
@@ -62,8 +62,7 @@ class WorkflowState:
 
     Attributes:
         isElsewhere: the simulator is to be on another computer.
-        runningSentence: that a simulator runs already which was not started from here; empty where
-            none does.
+        runningSentence: says that a simulator not started from here is running; empty if none is.
         trainee: pseudonym of the chosen trainee; empty if none is.
         hasPracticed: the chosen trainee has played before, be it the trial run alone.
         isLearning: the chosen trainee does the tutorial before the trial run.
@@ -97,7 +96,7 @@ class WorkflowState:
 
 
 def nextStep(now: WorkflowState) -> NextStep:
-    """Return what comes next."""
+    """Return the next thing to do."""
     if now.link.state is not LinkState.CONNECTED:
         return _untilConnected(now)
     isScoring = now.phase == Phase.REGISTERED.value and not now.isUnscored

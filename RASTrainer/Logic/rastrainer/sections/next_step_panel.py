@@ -1,4 +1,4 @@
-"""The line at the top: the state of the link, who trains what, and the one thing to do now."""
+"""The line at the top: the state of the link, the trainee, the task, and the next step."""
 
 from __future__ import annotations
 

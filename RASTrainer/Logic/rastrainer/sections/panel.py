@@ -34,7 +34,7 @@ class Panel:
 
 
 def connectClick(button: Any, action: Callable[[], object], failure: str) -> Callable[[], None]:
-    """Have a click do something, and return that; if it fails, `failure` says what was not done."""
+    """Connect a click to an action, which is returned; `failure` is shown if it fails."""
     guarded = guardedAction(action, failure)
     button.connect("clicked()", guarded)
     return guarded

@@ -8,10 +8,8 @@ from typing import Any
 
 import slicer
 
-from rastrainer.sections.curriculum_panel import CurriculumPanel
-from rastrainer.sections.landmarks_panel import LandmarksPanel
 from rastrainer.sections.module_session import ModuleSession
-from rastrainer.sections.new_scenario_panel import NewScenarioPanel
+from rastrainer.sections.new_scenario_panel import LandmarksPanel, NewScenarioPanel
 from rastrainer.sections.next_step_logic import NextAction
 from rastrainer.sections.next_step_panel import NextStepPanel
 from rastrainer.sections.procedure_panel import ProcedurePanel
@@ -24,7 +22,7 @@ from rastrainer.sections.simulator_panel import (
     SetupPanel,
     SimulatorPanel,
 )
-from rastrainer.sections.study_panel import StudyPanel
+from rastrainer.sections.study_panel import CurriculumPanel, StudyPanel
 from rastrainer.sections.target_plan_panel import PlanPanel
 from rastrainer.sections.trainees_panel import TraineesPanel
 from rastrainer.sections.training_panel import TrainingPanel

@@ -22,7 +22,7 @@ from rastrainer.trial.touch_registration import GivenPoints, TouchRegistration
 
 
 class ProcedureLogic(Listening):
-    """What the Procedure panel does; answers come by a later `process` of the link.
+    """Work of the section Procedure; answers come by a later `process` of the link.
 
     The touches of an open trial with a procedure are registered here, without being asked: the
     simulator waits for that as long as Slicer is connected. Nothing is revealed by it.

@@ -64,7 +64,7 @@ class PlanDescription:
 
 
 class ProcedurePlanLogic:
-    """What the panel of a procedure's plan does."""
+    """Shows, reads, checks and saves the plan of a procedure."""
 
     def __init__(self, scene: Any, files: ScenarioFiles) -> None:
         self._scene = scene

@@ -121,7 +121,7 @@ class ProcedurePlanPanel(Panel):
         self.showState()
 
     def raiseLine(self) -> None:
-        """Have the chosen line carried out before the one above it; it stays chosen."""
+        """Move the chosen line up in the order of the procedure; it stays chosen."""
         line, table = self._line(), self._ui.linesTable
         if line is not None:
             raiseLine(slicer.mrmlScene, line)

@@ -48,14 +48,14 @@ class Comparison:
     Attributes:
         shown: the fit of the wanted kind; the rigid one where the pairs do not allow that kind.
         fits: by kind; those that the pairs allow, rigid always.
-        localizations: by kind, the error of the touches along and across the skin; None where
-            nothing but an error that is alike in all directions is known.
+        localizations: by kind, the error of the touches along and across the skin; None if only
+            an isotropic error is known.
         errors: by kind, what to expect at the target; those that are known.
         leaveOneOut: by kind, (n,) float, mm, how far each touch lies from where the other pairs
             put it; those for which the pairs are enough.
         remedies: the warnings, each with what one click can do.
-        headErrors: (v,) float, mm, what to expect at each point of the head with the shown fit;
-            None where the head is not colored, or nothing is known.
+        headErrors: (v,) float, mm, expected at each point of the head with the shown fit; None if
+            the head is not colored, or nothing is known.
     """
 
     pairs: Pairs
@@ -85,8 +85,8 @@ def compareFits(
     Args:
         choices: by which they were chosen.
         kind: of the fit that is shown.
-        target: (3,) float, RAS mm, where errors are reported; None where there is no target.
-        skin: of the head; None where there is no head.
+        target: (3,) float, RAS mm, the place of the reported errors; None if there is no target.
+        skin: of the head; None if there is no head.
         headPoints: (v, 3) float, RAS mm, the points of a head that is to be colored, else None.
     """
     fits = register_all_kinds(
@@ -121,12 +121,11 @@ class RegistrationLogic:
     """Registers two lists of the scene whenever one of them changes.
 
     Nodes are searched in every turn: any of them may be deleted at any time. Fits are computed in
-    the background, and what they change in the scene is shown in several turns, as each takes
-    Slicer's views long.
+    the background, and shown in several turns, as each part takes Slicer's views long.
 
     Attributes:
         changed: emits nothing, whenever another `comparison` or `problem` is shown.
-        comparison: the present fits; None where there are none.
+        comparison: the present fits; None if there are none.
         problem: why there are none, a sentence; empty otherwise.
         kind: of the fit that the transform and the arrows show.
         isHeadColored: the head shows the target error to expect.
@@ -149,7 +148,7 @@ class RegistrationLogic:
 
     @property
     def choices(self) -> Choices:
-        """What the user has changed about the pairs."""
+        """The user's changes to the pairs."""
         return self._history[-1]
 
     @property
@@ -164,7 +163,7 @@ class RegistrationLogic:
     def lists(self) -> list[Any | None]:
         """Return the moving points, the fixed points, and the list whose first is the target.
 
-        Those of the trial and its task, where none are chosen.
+        The lists of the trial and its task stand in for lists that are not chosen.
         """
         pairs = zip(self._chosen, ROLES, strict=True)
         return [
@@ -174,7 +173,7 @@ class RegistrationLogic:
         ]
 
     def chooseLists(self, *lists: Any | None) -> None:
-        """Choose `lists`; None means that of the trial or its task."""
+        """Choose `lists`; None means the list of the trial or its task."""
         former = self._chosen
         self._chosen = [node.GetID() if node else "" for node in lists]
         if self._chosen[:2] != former[:2]:
@@ -205,7 +204,7 @@ class RegistrationLogic:
             self._compute()
 
     def reset(self) -> None:
-        """Forget the changes: what comes next is another trial."""
+        """Forget the changes: another trial comes next."""
         self._history = [Choices()]
         self._seen = ()
 
@@ -228,7 +227,7 @@ class RegistrationLogic:
         return *lists, *tasks, surfaceOf(self._head())
 
     def _compute(self) -> None:
-        """Register the lists as they are now; what is being computed is outdated."""
+        """Register the lists as they are now; a running computation is outdated."""
         moving, fixed, target = self.lists()
         if moving is None or moving.GetNumberOfControlPoints() == 0:
             self.reset()

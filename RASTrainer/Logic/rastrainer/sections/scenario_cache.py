@@ -26,7 +26,7 @@ LONGEST_STEM = 30
 class ScenarioCache:
     """Reads scenarios when they are needed, and again after they were rebuilt.
 
-    `refresh` finds new ones. May be used in any thread.
+    Call `refresh` after one is added. May be used in any thread.
     """
 
     def __init__(self, *folders: Path, areLibraries: bool = False) -> None:
@@ -45,7 +45,7 @@ class ScenarioCache:
         return listed
 
     def _listOne(self, folder: Path) -> ListedScenario:
-        """List a scenario, which takes long, only where one of its files has changed since."""
+        """List a scenario again, which takes long, only if one of its files has changed."""
         stamp, line = self._lines.get(folder, ((), None))
         present = tuple((str(path), _stamp(path)) for path in sorted(folder.rglob("*")))
         if line is None or stamp != present:

@@ -195,7 +195,7 @@ class ScenarioFiles:
         keepsNames: bool = False,
         progress: Progress = no_progress,
     ) -> str:
-        """Write a scenario as a zip file and return a sentence that says what was removed.
+        """Write a scenario as a zip file; return a sentence about removed parts.
 
         Args:
             keepsFace: whether the head keeps its face and skull; otherwise the user has seen what
@@ -288,7 +288,7 @@ class ComparedMethod:
 
 
 KEYS = ("residual_mm", "expected_tre_mm", "true_tre_mm", "interval_holds_share")
-"""Of a method in the program's output: the last four above."""
+"""Keys of the last four fields above, in the program's output."""
 
 
 def compareMethods(

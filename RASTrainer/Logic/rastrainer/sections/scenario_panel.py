@@ -163,7 +163,7 @@ class ScenarioPanel(Panel):
             self.loadIntoSimulator()
 
     def _frame(self, node: Any) -> None:
-        """Fit the views to a newly loaded head or images, in place of the previous ones."""
+        """Fit the views to a newly loaded head, or to newly loaded images."""
         if node.IsA("vtkMRMLModelNode"):
             fitThreeDViews()
             return

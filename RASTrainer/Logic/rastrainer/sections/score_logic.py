@@ -1,4 +1,4 @@
-"""Says what was good and bad in a trial, and replays it, or its worst touch."""
+"""Feedback on a trial, and the replay of a trial or of its worst touch."""
 
 from __future__ import annotations
 
@@ -187,7 +187,7 @@ class ReplayLogic:
         if track is None:
             goTo(scene, 0.0)
         else:
-            # What shows the scenario has its turn before the states go into the scene.
+            # The steps that show the scenario run before the states go into the scene.
             progress(_("Showing"), 0.0)
             name, matrix = f"{record.trainee}, {record.task}", np.reshape(rigid.matrix, (4, 4))
             browser = showReplay(

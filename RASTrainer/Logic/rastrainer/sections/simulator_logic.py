@@ -1,4 +1,4 @@
-"""Start and stop the simulator from Slicer, connect to it, and find one that already runs.
+"""Start and stop the simulator from Slicer, connect to it, and find a running simulator.
 
 A crash of Slicer may have left one behind, with the trial that was running; it keeps another
 simulator from recording.
@@ -34,7 +34,7 @@ class RunningSimulator:
     """Finds who records in the folder of the journals.
 
     Attributes:
-        holder: the simulator that does; None where there is none.
+        holder: the simulator that records there; None if none does.
         isEnding: whether it was asked to end.
         changed: emits nothing, whenever one of them has changed.
     """
@@ -96,7 +96,7 @@ class RunningSimulator:
         """Ask it to end, with its window; `process` notices the end, and kills it if needed."""
         shown = _process(self.holder)
         self.look()
-        # Another that has started since is not the one to be ended.
+        # A simulator that has started since must not be ended.
         if not self.canEnd or _process(self.holder) != shown:
             return
         self._signal(isAsked=True)
@@ -160,7 +160,7 @@ class SimulatorLogic:
         return self.setup.isRunning or isInBetween or self.running.isEnding
 
     def start(self, port: int, hasWindow: bool = False, hasNetwork: bool = False) -> None:
-        """Start the simulator on this computer, or find one that runs already; see `running`.
+        """Start the simulator on this computer, or find a running one in `running`.
 
         Where another program listens on the port, any free one is taken. By `hasNetwork` views of
         the local network come in, by https.
@@ -209,7 +209,7 @@ class SimulatorLogic:
         self.setup.begin(index.strip(), Path(wheels) if wheels else None)
 
     def removeSetup(self) -> None:
-        """Remove what was set up; trials and settings stay."""
+        """Remove the installed simulator; trials and settings stay."""
         if self.program.isRunning or self.running.look():
             raise InputError(_("End the simulator that is running before removing it."))
         self.setup.remove()
@@ -221,7 +221,7 @@ class SimulatorLogic:
         self.running.process()
 
     def close(self) -> None:
-        """End what was started from here: Slicer quits."""
+        """End all processes started from here: Slicer quits."""
         self.setup.close()
         self.program.close()
 

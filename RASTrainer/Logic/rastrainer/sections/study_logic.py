@@ -134,7 +134,7 @@ TRIALS = (StepKind.TRIAL, StepKind.TRIAL_RUN)
 
 
 class StudyLogic(Listening):
-    """What the Study panel does for the chosen trainee, and for all enrolled trainees.
+    """Work of the section Study for the chosen trainee, and for all enrolled trainees.
 
     Everything done is in the study's file before anyone is informed, so that the trainee resumes
     there when it is opened again. The simulator is sent the next step of each trainee, chosen
@@ -366,7 +366,7 @@ class StudyLogic(Listening):
         self.changed.emit()
 
     def _sendAll(self) -> None:
-        """Send the simulator, which may know nothing yet, what comes next for everybody."""
+        """Send everybody's next step to the simulator, which may know nothing yet."""
         self._sentSteps.clear()
         self._followTrainees()
 

@@ -27,7 +27,7 @@ SAME_PLACE_MM = 0.01
 
 @dataclass(frozen=True, eq=False)
 class PlanOnImages:
-    """What is planned: a target, or the entry and the target of a trajectory.
+    """The plan: a target, or the entry and the target of a trajectory.
 
     Attributes:
         ends: (1, 3) or (2, 3) float, RAS mm; the target is the last.
@@ -47,12 +47,12 @@ class PlanOnImages:
 
 
 class PlanLogic:
-    """What the Plan panel does.
+    """Reads the plan, sends it to the simulator, and reports errors at the target.
 
     Attributes:
         changed: emits nothing, whenever the answers below have changed.
         isReachable: whether the robot can carry the plan out; None before it is answered.
-        sentence: what was last said about the plan.
+        sentence: the last sentence about the plan.
         trueErrorMm: how far the registration puts the target from where it is; None until
             the simulator has revealed it.
     """
@@ -127,7 +127,7 @@ class PlanLogic:
         self._updateTrueError()
 
     def forgetTruth(self) -> None:
-        """Forget the head and the plan of the trial before the one that has just started."""
+        """Forget the head and the plan of the former trial: another has just started."""
         self._headToWorld = self._sent = self.isReachable = self.trueErrorMm = None
         self.sentence = ""
         self.changed.emit()

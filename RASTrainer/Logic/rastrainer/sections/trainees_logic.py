@@ -1,4 +1,4 @@
-"""The trainees of a study: who they are, what they have done, their curricula, their deletion."""
+"""The trainees of a study: their data, trials and curricula, and their deletion."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class TraineeLogic:
 
     Attributes:
         changed: emits nothing, whenever trainees or their trials may have changed.
-        chosen: pseudonym of the chosen trainee, empty where none is.
+        chosen: pseudonym of the chosen trainee; empty if none is.
     """
 
     def __init__(

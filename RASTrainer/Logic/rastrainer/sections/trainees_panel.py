@@ -156,7 +156,7 @@ class TraineesPanel(Panel):
             self._showWritten(export_trainee(self._logic.study, chosen, path), path)
 
     def exportHistory(self) -> None:
-        """Write the trials of the chosen trainee as a table, the aborted ones beside it."""
+        """Write the trials of the chosen trainee as a table, and aborted trials as another."""
         from rastrainer.study.tidy_csv import write_history
 
         chosen = self._logic.chosen

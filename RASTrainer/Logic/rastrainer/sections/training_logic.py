@@ -33,7 +33,7 @@ LOADING_S = 30.0
 
 
 class TrainingLogic(Listening):
-    """What the Training panel does; answers come by a later `process` of the link.
+    """Work of the section Training; answers come by a later `process` of the link.
 
     Attributes:
         changed: emits nothing, whenever `status` has changed in more than its time.

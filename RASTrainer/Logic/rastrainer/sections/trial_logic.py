@@ -3,9 +3,10 @@
 Checking, registering, scoring and storing is done in the background; the scene and the link are the
 main thread's.
 
-Nothing is lost and nothing counts twice, whatever is cut on the way. The simulator offers a trial
-until it is acknowledged, and it is acknowledged only when it is in the study; what is in the study
-without its truth is scored again over the next connection, and after the study was away.
+Nothing is lost and nothing counts twice, wherever a connection or program is cut. The simulator
+offers a trial until it is acknowledged, and it is acknowledged only when it is in the study; a
+trial in the study without its truth is scored again over the next connection, and after the study
+was away.
 
 A trial is scored in an order that rules out cheating: the registration is submitted, which makes it
 final; the simulator reveals the truth; the score is computed, sent and stored. Where the study
@@ -88,7 +89,7 @@ class DeliveryQueue(Listening):
         self.forgetWaiting()
 
     def forgetWaiting(self) -> None:
-        """Drop what has not started: the simulator offers it again, for another study."""
+        """Drop the waiting trials: the simulator offers them again, for another study."""
         self._waiting.clear()
         self._lastProblem = ""
 
@@ -171,7 +172,7 @@ class AbortedTrialLogic(DeliveryQueue):
 
 
 RETRY_S = 5.0
-"""After a study was locked or unreachable, until its trials are looked for again."""
+"""Pause before the next attempt after a study was locked or unreachable."""
 ANSWER_TIMEOUT_S = 60.0
 """No user waits for these answers, and what times out is requested again only over the next
 connection: a busy simulator gets the time it needs."""
@@ -207,7 +208,7 @@ class TrialLogic(DeliveryQueue):
         self._unscored: deque[TrialRecord] = deque()
         self._state: Mapping[str, Any] = {}
         self._retryAt: float | None = None
-        # What this simulator has refused, such as trials of another one.
+        # Trials that this simulator has refused, such as trials of another simulator.
         self._refused: set[str] = set()
 
     def forgetWaiting(self) -> None:

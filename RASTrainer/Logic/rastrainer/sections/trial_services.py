@@ -1,4 +1,4 @@
-"""What the logic of trials works with, and its conversations with the simulator."""
+"""Services for the logic of trials, and its conversations with the simulator."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ class Question(NamedTuple):
 
 Steps = Generator["Question | Callable[[], Any]", Any, Any]
 """Yields questions and functions; a function runs in the background, and `yield` returns its
-result, or raises its error. Between them it runs on the main thread."""
+result, or raises its error. All else runs on the main thread."""
 
 
 @dataclass(frozen=True)
 class TrialServices:
-    """What the logic of trials works with.
+    """Services for the logic of trials.
 
     Attributes:
         findScenario: gives the scenario of a name, in any thread.
@@ -59,7 +59,7 @@ class TrialServices:
             return do(study)
 
     def converse(self, steps: Steps) -> None:
-        """Go through steps; what they raise is raised by `process` of the link or the work."""
+        """Go through steps; `process` of the link or the work raises their errors."""
 
         def proceed(resume: Callable[[Any], Any], value: Any) -> None:
             try:

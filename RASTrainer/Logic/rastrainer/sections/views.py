@@ -69,8 +69,8 @@ class AlongInstrument:
             across = front - (front @ outward) * outward
         across /= np.linalg.norm(across)
         upward = np.cross(across, outward)
-        # To the right of the view, up in it, and its normal: they go round as in Slicer's axial,
-        # coronal and sagittal views.
+        # Right, up and normal of the view, with the handedness of Slicer's axial, coronal and
+        # sagittal views.
         axes = {
             PROBES_EYE: (across, upward, outward),
             IN_LINE: (across, outward, upward),
@@ -103,7 +103,7 @@ class BorrowedLayout:
 
     @property
     def purpose(self) -> str:
-        """What the layout is shown for; empty if the user's own layout is shown."""
+        """Purpose of the shown layout; empty if the user's own layout is shown."""
         node = self._node()
         isShown = node is not None and node.GetViewArrangement() == self._shown
         return self._purpose if isShown else ""
@@ -135,9 +135,9 @@ class BorrowedLayout:
 TRANSFORM, FIDUCIALS = "vtkMRMLLinearTransformNode", "vtkMRMLMarkupsFiducialNode"
 LEAST_MOVE_MM = 0.5
 PERIOD_S = 0.09
-"""Between two jumps after the tool: each renders all slice views."""
+"""Shortest time between two jumps after the tool: each renders all slice views."""
 LEAST_TURN = 0.01
-"""Of the tool, in rad, before the views along it follow."""
+"""Smallest turn of the tool, in rad, that the views along it follow."""
 DEVICES = {
     Phase.ALIGNING.value: DeviceName.TOOL_TIP_TO_WORLD,
     Phase.DRILLING.value: DeviceName.INSTRUMENT_TIP_TO_WORLD,
@@ -202,7 +202,7 @@ class SliceFollower:
 
     @property
     def _device(self) -> str | None:
-        """Whose pose the views along the instrument follow; None where they do not."""
+        """Device whose pose the views along the instrument follow; None if they do not."""
         return DEVICES.get(self._training.status.phase) if self.liesAlong else None
 
     def process(self) -> None:
@@ -255,7 +255,7 @@ class SliceFollower:
 def poseOnHead(scene: Any, device: str) -> np.ndarray | None:
     """Return the pose of a device on the head, (4, 4) float, RAS mm; z is the tool's axis.
 
-    None where nothing is known of it, or of where the head is.
+    None if its pose, or the pose of the head, is not known.
     """
     pose = findNode(scene, TRANSFORM, device)
     toHead = findNode(scene, TRANSFORM, Role.WORLD_TO_HEAD)

@@ -1,7 +1,4 @@
-"""What the panels do with their widgets, and long-running work.
-
-During such work the window stays responsive, and its user may cancel it.
-"""
+"""Texts, tables, choices and buttons of the panels, and long work that its button cancels."""
 
 from __future__ import annotations
 
@@ -36,13 +33,13 @@ LINK_COLORS = {
 
 
 def setProperty(widget: Any, name: str, value: Any) -> None:
-    """Set a property if it has another value: Qt may lay out and paint the whole window again."""
+    """Set a property only to another value: Qt may paint the whole window again."""
     if getattr(widget, name) != value:
         setattr(widget, name, value)
 
 
 def setLight(label: Any, color: str) -> None:
-    """Show a colored dot in a label; words beside it say the same."""
+    """Show a colored dot in a label; words next to it say the same."""
     setProperty(label, "text", f'<span style="color:{color}">●</span>')
 
 
@@ -54,7 +51,7 @@ def setText(label: Any, text: str, tip: str = "") -> None:
     shown, wasEmpty = wrappable(shortened(text, LONGEST_TEXT)), not label.text
     setProperty(label, "text", shown)
     setProperty(label, "toolTip", toolTip(text if len(text) > LONGEST_TEXT else tip))
-    # In a closed section, CTK hides again what is shown, which lays out the whole window.
+    # In a closed section, CTK hides a widget again, and the whole window gets a new layout.
     if wasEmpty == bool(shown):
         label.visible = bool(shown)
 
@@ -65,7 +62,7 @@ def showPercent(label: Any, step: str, share: float) -> None:
 
 
 def textLabel(text: str) -> Any:
-    """Return a label for what anyone may have written, as those of the `.ui` files are."""
+    """Return a label for text by anyone, configured like the labels of the `.ui` files."""
     label = qt.QLabel(wrappable(shortened(text, LONGEST_TEXT)))
     configureLabel(label, isWrapped=True)
     return label
@@ -75,7 +72,7 @@ def connectAsPressed(button: Any, action: Callable[[], Callable[[], None]]) -> N
     """Have a click do what the button meant when it was pressed.
 
     A button may get another meaning while the mouse is down, such as Resume for Pause: `action`
-    returns what it does as it is labeled now.
+    returns the function of its present label.
     """
     pressed: list[Callable[[], None]] = []
 
@@ -87,7 +84,7 @@ def connectAsPressed(button: Any, action: Callable[[], Callable[[], None]]) -> N
 
 
 def setEnabled(button: Any, isEnabled: bool, reason: str, tip: str = "") -> None:
-    """Enable a button with a tool tip, by default that of its `.ui` file, or say why it is not."""
+    """Enable a button with a tip, or its tool tip in the `.ui` file, or give the reason why not."""
     # In a closed group, each button says that it is disabled.
     button.enabled = isEnabled
     shown = reason if reason and not isEnabled else tip or button.whatsThis
@@ -173,7 +170,7 @@ _CHANGES = {
 
 
 def bind(widget: Any, name: str, settings: Settings, setting: Setting[Any]) -> None:
-    """Give a property of a widget the value of a setting, which then follows what is chosen."""
+    """Give a property of a widget the value of a setting, which then follows the user's choice."""
     setattr(widget, name, settings.get(setting))
     widget.connect(_CHANGES[name], lambda value: settings.set(setting, value))
 
@@ -211,7 +208,7 @@ class CancelableWork:
         """Have a click start or cancel the work.
 
         Args:
-            start: calls `run`; where that fails, `failure` says what was not done.
+            start: calls `run`; `failure` is shown if that fails.
             showSentence: shows a sentence, an empty one where the work has failed.
             showUsable: called when work begins and ends.
             show: shows a step and the share of the work done; None shows the step as a sentence.

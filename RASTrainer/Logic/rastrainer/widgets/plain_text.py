@@ -1,4 +1,4 @@
-"""What others wrote, made fit to be shown: never HTML, never wider or longer than a panel.
+"""Text by others, made fit to be shown: never HTML, never wider or longer than a panel.
 
 A peer, a file or a user may send thousands of characters without a space, or tags: a label shows
 them as they are, wrapped, and the first few hundred of them.
@@ -42,8 +42,8 @@ def buttonTitle(text: str) -> str:
 def toolTip(text: str) -> str:
     """Return a tool tip, or a question, that Qt shows as it is, wrapped.
 
-    Qt takes what looks like HTML for HTML, and wraps nothing else: what may be taken for it, or is
-    long, is given as HTML of which nothing is a tag.
+    Qt takes text that looks like HTML for HTML, and wraps nothing else. So such text, and long
+    text, is given as HTML without tags.
     """
     text = wrappable(shortened(text, LONGEST_TIP))
     if len(text) <= LONGEST_TEXT and not {"<", "&"} & set(text):

@@ -18,7 +18,7 @@ def showErrors(message: str, waitCursor: bool = False) -> Iterator[None]:
     """Show what goes wrong in a message box.
 
     An error of input is one line in Slicer's log. Anything else is a mistake of ours: it is raised
-    further, and Slicer logs its traceback. `message` says what was not done.
+    further, and Slicer logs its traceback. `message` names the failed action.
     """
     problem = ""
     with slicer.util.tryWithErrorDisplay(message, waitCursor=waitCursor):
