@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import slicer
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
@@ -14,7 +15,14 @@ from rastrainer.sections.registration_logic import RegistrationLogic
 from rastrainer.sections.target_plan_logic import PlanLogic, targetsOf
 from rastrainer.sections.views import jumpTo
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints, worldPoints
+from rastrainer.slicer.scene.nodes import (
+    Role,
+    capturedPointsNode,
+    findNode,
+    removeNode,
+    setPoints,
+    worldPoints,
+)
 from rastrainer.slicer.scene.plan_points import startPlacing, stopPlacing
 from rastrainer.slicer.scene.scenario_nodes import showTask
 from rastrainer.trial.analysis import RevealedTruth
@@ -267,6 +275,17 @@ def test_clicks_place_the_plan(room):
     assert interaction.GetCurrentInteractionMode() == interaction.Place
     stopPlacing(room.scene)
     assert interaction.GetCurrentInteractionMode() == interaction.ViewTransform
+
+
+def test_a_click_while_a_scenario_is_shown_still_places_the_plan(room, scenario):
+    markups = slicer.vtkSlicerMarkupsLogic()
+    markups.SetMRMLScene(room.scene)
+    removeNode(room.scene, "vtkMRMLMarkupsFiducialNode", Role.FIXED_FIDUCIALS)
+    node = room.logic.points.newTarget()
+    startPlacing(room.scene, node)
+    showTask(room.scene, scenario, "task-1")
+    selection = room.scene.GetNodeByID("vtkMRMLSelectionNodeSingleton")
+    assert selection.GetActivePlaceNodeID() == node.GetID()
 
 
 def test_slices_jump_to_a_place_without_moving_in_their_plane(room):
