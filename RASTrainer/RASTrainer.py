@@ -82,7 +82,7 @@ def registerSampleData():
 
 @parameterNodeWrapper
 class RASTrainerParameterNode:
-    """What the user has chosen of the scene, as it is saved with it.
+    """Nodes that the user has chosen, saved with the scene.
 
     What else is chosen stays with the user: see `rastrainer.slicer.settings`.
 
@@ -124,7 +124,7 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
 
     @property
     def logic(self) -> Optional["RASTrainerLogic"]:
-        """The logic; whoever asks for it has the panel built at once, if it is not yet."""
+        """The logic; asking for it has the panel built at once, if it is not yet."""
         if self._building is not None:
             self._building.finish()
         return self._logic
@@ -249,7 +249,7 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
 
 
 class RASTrainerLogic(ScriptedLoadableModuleLogic):
-    """What the module can do without its widgets; the parts are in `rastrainer.sections`."""
+    """All work of the module without its widgets; the parts are in `rastrainer.sections`."""
 
     def __init__(self) -> None:
         from rastrainer.sections.application import callSoon, findPlaces

@@ -192,7 +192,7 @@ def run_link_until(link: Link, condition: Callable[[], Any], timeout: float = 12
 def run_until_received(link: Link) -> None:
     """Let the link work until the simulator has received all commands that were sent before.
 
-    They arrive in their order: once one that is sent now is answered, none is on its way.
+    They arrive in their order: once a later command is answered, all have arrived.
     """
     replies: list[Reply] = []
     link.send(CommandName.LIST_TASKS, onReply=replies.append)
@@ -202,7 +202,7 @@ def run_until_received(link: Link) -> None:
 def run_logic_until(
     link: Link, work: BackgroundWork, condition: Callable[[], Any], timeout: float = 180.0
 ) -> None:
-    """Let the link and what is done in the background work until `condition()`."""
+    """Let the link and the background work proceed until `condition()`."""
 
     def process() -> None:
         process_link(link)

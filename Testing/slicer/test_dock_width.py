@@ -9,7 +9,7 @@ DOCK_WIDTH, WIDEST = 472, 480
 """Pixels; a module that asks for more widens the dock and takes the room of the views."""
 
 LIMIT = 0.9 * DOCK_WIDTH
-"""Fonts and styles of other systems are wider than those of the host."""
+"""Fonts and styles of other systems are wider than the host's."""
 
 
 def named(class_name):
@@ -29,7 +29,7 @@ LOOK = ["sizePolicy", "sizeAdjustPolicy", "maximumSize", "wordWrap", "textFormat
 
 
 def open_only(host, opened):
-    """Open a section, within the one around it, and close the others."""
+    """Open a section and the section around it, and close the others."""
     around = {"curriculumCollapsibleButton": "studyCollapsibleButton"}.get(opened)
     for section in SECTIONS:
         host.find(section).collapsed = section not in (opened, around)

@@ -17,7 +17,7 @@ RESOURCES = sorted(
 )
 """Without the simulator's wheel, which a release builds."""
 
-# Importable in Slicer: its own modules and what comes with its Python.
+# Importable in Slicer: its modules, and packages of its Python.
 BUNDLED = {"slicer", "vtk", "qt", "ctk", "numpy", "scipy", "requests", "PIL", "SampleData"}
 
 
@@ -92,7 +92,7 @@ def test_the_extension_names_category_and_dependency():
 
 
 def test_the_catalog_entry_follows_the_rules_of_slicers_extensions_index():
-    """The rules are those of Slicer's schema of a catalog entry, version 1.0.1, and its template.
+    """The rules come from Slicer's schema of a catalog entry, version 1.0.1, and its template.
 
     The extension's name is the file's; the repository's begins with "Slicer".
     """

@@ -25,7 +25,7 @@ from Testing.slicer.host.cancels import cancels
 pytestmark = pytest.mark.usefixtures("module_widget")
 
 SIZE = 0.75
-"""Size of the heads: small ones are found faster."""
+"""Size of the heads: small heads are found faster."""
 
 EMPTY = Volume(np.zeros((16, 16, 16), np.float32), np.eye(4))
 

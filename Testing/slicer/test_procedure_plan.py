@@ -1,4 +1,4 @@
-"""The plan of a procedure in the scene: read, with one message for what is missing, and stored."""
+"""The plan of a procedure in the scene: read, with one message for a missing part, and stored."""
 
 from dataclasses import replace
 

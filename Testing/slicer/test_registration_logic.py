@@ -327,7 +327,7 @@ def test_without_a_registration_no_arrows_of_an_old_one_are_shown(table):
 
 @pytest.fixture
 def threads(monkeypatch):
-    """Returns the threads in which fits and normals are computed, by what is computed."""
+    """Returns the threads in which fits and normals are computed, by function."""
     found = {}
 
     def watch(place, function):

@@ -41,10 +41,9 @@ def living(host):
 
 
 def settled(host, before, threads):
-    """Return what lives once what was under way in the background has ended, with its threads.
+    """Return the objects that live once all background work and its threads have ended.
 
-    `before` is what lived before the module was opened, and `threads` how many: tests of before may
-    have left theirs.
+    `before` lived before the module was opened, and so did `threads` threads of earlier tests.
     """
 
     def is_one():

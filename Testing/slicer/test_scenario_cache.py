@@ -14,7 +14,7 @@ from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
 
 
 def build(folder, title):
-    """Replace what is there by the ball, a second later by the file's time."""
+    """Put the ball into the folder; its file is a second newer."""
     later = (folder / "scenario.json").stat().st_mtime + 1.0 if folder.exists() else 1.0
     shutil.rmtree(folder, ignore_errors=True)
     with new_folder(folder) as made:

@@ -108,7 +108,7 @@ def test_the_study_starts_only_what_comes_next(enrolled):
     room.needsTutorial = True
     logic.startStep()
     logic.startTrial("trial-run", "hmd", isTutorialFirst=False)
-    # What is received has not been answered yet: the answer is set below.
+    # A received command is not answered yet: the answer is set below.
     room.run_until(lambda: len(room.answers) == 2)
     assert room.logic.learner == "T001"
     assert len(room.sent("StartTutorial")) == 2

@@ -1,4 +1,4 @@
-"""The trace of the trial in Slicer's scene: what is shown, how often, and when it goes."""
+"""The trace of the trial in Slicer's scene: its parts, its updates, and its end."""
 
 from __future__ import annotations
 
@@ -177,7 +177,7 @@ def test_invalid_data_from_the_simulator_shows_nothing_and_breaks_nothing(tracin
     tracing.places = np.full((600, 3), np.nan)
     tracing.run_until(lambda: tracing.sent("GetTrial"))
     run_until_received(tracing.link)
-    # What was sent before its answer has arrived, too.
+    # The answer to an earlier command has arrived, too.
     tracing.run_until(lambda: not tracing.work.isBusy)
     assert tracing.shown is None
     tracing.draw(12)

@@ -1,4 +1,4 @@
-"""Poses are worth rendering only where someone may see them."""
+"""Poses are rendered only if someone may see them."""
 
 import pytest
 import slicer

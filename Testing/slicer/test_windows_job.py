@@ -60,7 +60,7 @@ class Windows:
     Attributes:
         running: numbers of the processes that have been started and not ended.
         refused: names of calls that fail.
-        misused: what was wrong with how a call was used.
+        misused: faults in the use of calls.
     """
 
     def __init__(self):
@@ -99,7 +99,7 @@ class Windows:
         return pid
 
     def _begin(self, pid):
-        # What is started is in the job of what starts it.
+        # A started process is in the job of its parent.
         child, thread = self._number(), self._number()
         self.running.add(child)
         self._job_of[child] = self._job_of[pid]

@@ -113,6 +113,7 @@ def compareFits(
     return Comparison(pairs, shown, fits, localizations, errors, leaveOneOut, found, headErrors)
 
 
+MODEL = "vtkMRMLModelNode"
 Request = Callable[[], Comparison]
 ROLES = (Role.CAPTURED_POINTS, Role.FIXED_FIDUCIALS, Role.TARGET)
 
@@ -224,7 +225,7 @@ class RegistrationLogic:
         tasks = [node and node.GetAttribute(TASK_ATTRIBUTE) for node in (moving, fixed)]
         movingList = snapshot(moving, slicer.util.arrayFromMarkupsControlPoints)
         lists = movingList, snapshot(fixed), snapshot(target)
-        return *lists, *tasks, surfaceOf(self._head())
+        return *lists, *tasks, surfaceOf(findNode(self._scene, MODEL, Role.HEAD_MODEL))
 
     def _compute(self) -> None:
         """Register the lists as they are now; a running computation is outdated."""
@@ -234,7 +235,7 @@ class RegistrationLogic:
         # The key of the present registration, so that lists that change back count as changed.
         self._seen = self._snapshot()
         self._request = None
-        head = self._head()
+        head = findNode(self._scene, MODEL, Role.HEAD_MODEL)
         if surfaceOf(head) != self._surface:
             self._surface, self._skin = surfaceOf(head), readSkin(head)
         skin = self._skin
@@ -271,37 +272,32 @@ class RegistrationLogic:
         if comparison is None:
             return
         scene, shown, fits = self._scene, comparison.shown, comparison.fits
+        errors = [comparison.errors.get(kind) for kind in fits]
 
-        def showTables() -> None:
-            showResiduals(scene, shown, comparison.leaveOneOut.get(shown.kind))
-            showFits(scene, list(fits.values()), [comparison.errors.get(kind) for kind in fits])
+        def inTurn(show: Callable[[], object]) -> None:
+            def showIfWanted() -> None:
+                if request is self._request and None not in self.lists()[:2]:
+                    show()
 
-        def showOnHead() -> None:
-            showResidualArrows(scene, shown)
-            self._colorHead(comparison.headErrors if self.isHeadColored else None)
+            self._work.later(showIfWanted)
 
         def finish() -> None:
             self.comparison, self.problem = comparison, ""
             self.changed.emit()
 
-        def showIfPresent(show: Callable[[], None]) -> None:
-            if request is self._request and None not in self.lists()[:2]:
-                show()
-
-        self._work.later(
-            lambda: showIfPresent(lambda: showRegistration(scene, shown, *self.lists()[:2]))
-        )
-        for show in (showTables, showOnHead, finish):
-            self._work.later(partial(showIfPresent, show))
+        inTurn(lambda: showRegistration(scene, shown, *self.lists()[:2]))
+        inTurn(lambda: showResiduals(scene, shown, comparison.leaveOneOut.get(shown.kind)))
+        inTurn(lambda: showFits(scene, list(fits.values()), errors))
+        inTurn(lambda: showResidualArrows(scene, shown))
+        inTurn(lambda: self._colorHead(comparison.headErrors))
+        inTurn(finish)
 
     def _colorHead(self, errors: np.ndarray | None) -> None:
         """Color the head by errors at its points, or show its own color where there are none."""
-        head = self._head()
-        if head is not None:
-            if errors is None:
-                removeHeadColors(head)
-            else:
-                colorHead(head, errors)
-
-    def _head(self) -> Any | None:
-        return findNode(self._scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
+        head = findNode(self._scene, MODEL, Role.HEAD_MODEL)
+        if head is None:
+            return
+        if errors is None or not self.isHeadColored:
+            removeHeadColors(head)
+        else:
+            colorHead(head, errors)
