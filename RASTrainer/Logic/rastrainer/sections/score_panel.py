@@ -61,7 +61,8 @@ class ScorePanel(Panel):
         connectClick(ui.exportScoresButton, self.exportScores, _("The trials were not exported."))
         ui.reportButton.connect("clicked()", self.writeReport)
         ui.scoreCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
-        connectClick(ui.worstTouchButton, self.replayWorstTouch, _("The touch is not shown."))
+        replayTouch = partial(self.replay, isWorstTouch=True)
+        connectClick(ui.worstTouchButton, replayTouch, _("The touch is not shown."))
         self.listen(
             (self._trainees.changed, self._show),
             (session.trials.trialScored, self._noteNewTrial),
@@ -121,16 +122,13 @@ class ScorePanel(Panel):
                 self._showMessage(_("The report is {path}.").format(path=page))
                 qt.QDesktopServices.openUrl(qt.QUrl.fromLocalFile(page))
 
-    def replay(self) -> None:
-        trial = self._trial
+    def replay(self, isWorstTouch: bool = False) -> None:
+        trial, replay = self._trial, self._session.replay
         if trial is not None:
-            self._work.run(lambda report: self._session.replay.show(trial, report))
-            fitThreeDViews()
-
-    def replayWorstTouch(self) -> None:
-        trial = self._trial
-        if trial is not None:
-            self._work.run(lambda report: self._session.replay.showWorstTouch(trial, report))
+            show = replay.showWorstTouch if isWorstTouch else replay.show
+            self._work.run(lambda report: show(trial, report))
+            if not isWorstTouch:
+                fitThreeDViews()
 
     def _showReplay(self) -> None:
         setSilently(self._ui.showTablesButton, "checked", self._session.layout.purpose == TABLES)

@@ -146,7 +146,7 @@ class SimulatorLogic:
         self.running = RunningSimulator(records, link)
         self._records = records
         self.program.ready.connect(lambda: link.connectTo(DEFAULT_HOST, self.program.port))
-        self.program.changed.connect(self._followProgram)
+        self.program.changed.connect(self._lookAfterFailure)
 
     @property
     def needsSetup(self) -> bool:
@@ -225,9 +225,9 @@ class SimulatorLogic:
         self.setup.close()
         self.program.close()
 
-    def _followProgram(self) -> None:
+    def _lookAfterFailure(self) -> None:
+        """Look for a simulator started in the meantime, which may be the reason."""
         if self.program.state is ProgramState.FAILED:
-            # A simulator started in the meantime may be the reason.
             self.running.look()
 
 

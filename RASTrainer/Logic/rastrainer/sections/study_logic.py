@@ -16,6 +16,7 @@ from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.protocol import FREE, TRIAL_RUN, StepKind
 from rastrainer.sections.trainees_logic import TraineeLogic
 from rastrainer.sections.training_logic import TrainingLogic
+from rastrainer.sections.trial_status import TrialStatus
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
@@ -52,9 +53,8 @@ class PracticeMonitor:
         self._training = training
         self._link = link
         self._changed = changed
-        self._practicing: tuple[str, str] | None = None
-        self._trialId = ""
-        self._seen = self._kept = self._left = 0.0
+        self._run: TrialStatus | None = None
+        self._kept, self._left = 0.0, KEPT_EVERY_S
         self._isFirstSight = True
         link.stateChanged.connect(self._follow)
 
@@ -65,67 +65,67 @@ class PracticeMonitor:
     def leaveStudy(self) -> None:
         """Store the practice time in the study being left; only later practice is for the next."""
         self.keep()
-        self._practicing, self._isFirstSight = None, True
+        self._run, self._isFirstSight = None, True
 
     def unsavedS(self, trainee: str, mode: str) -> float:
         """Return how long the trial run was practiced in a mode since it was last stored, s."""
-        return self._seen - self._kept if self._practicing == (trainee, mode) else 0.0
+        run = self._run
+        isTheirs = run is not None and (run.trainee, run.mode) == (trainee, mode)
+        return run.elapsedS - self._kept if run is not None and isTheirs else 0.0
 
     def keep(self) -> None:
         """Store the practice time in the study's file; the step is done when its time is over."""
-        if self._practicing is None:
+        run = self._run
+        if run is None:
             return
-        (name, _mode), seconds = self._practicing, self._seen - self._kept
-        self._kept = self._seen
-        requested = self._requestedStep()
+        seconds, self._kept = run.elapsedS - self._kept, run.elapsedS
+        requested = self._requestedStep(run)
         if requested is None:
             self._left = KEPT_EVERY_S
             return
         progress, step = requested
         try:
             study = StudyProgress(self._trainees.study)
-            study.practice(name, step.name, seconds)
+            study.practice(run.trainee, step.name, seconds)
             progress = replace(progress, practiced_s=progress.practiced_s + seconds)
             self._left = progress.practice_left_s
             if self._left < CLOCK_STEP_S:
                 minutes = max(progress.practiced_s / 60.0, step.minutes)
-                study.finish(name, step.name, {"minutes": minutes})
-                self._changed(name)
+                study.finish(run.trainee, step.name, {"minutes": minutes})
+                self._changed(run.trainee)
         except InputError:
-            self._practicing = None
+            self._run = None
 
     def _follow(self, _state: Mapping[str, Any]) -> None:
-        trial = self._training.status
+        trial, run = self._training.status, self._run
         isPracticed = trial.isOpen and trial.task == TRIAL_RUN
-        practicing = (trial.trainee, trial.mode) if isPracticed else None
-        isOther = practicing != self._practicing or trial.trialId != self._trialId
-        if isOther or (practicing and trial.elapsedS < self._seen):
-            self.keep()
-            ended, self._practicing = self._practicing, None
-            if ended is not None:
-                self._changed(ended[0])
-            self._trialId = trial.trialId
-            self._practicing, self._seen = practicing, trial.elapsedS
-            # A previous Slicer may have counted the practice before this one started.
-            self._kept = trial.elapsedS if self._isFirstSight else 0.0
-            requested = self._requestedStep()
-            self._left = KEPT_EVERY_S if requested is None else requested[0].practice_left_s
-        elif practicing is not None:
-            self._seen = trial.elapsedS
-            if self._seen - self._kept >= min(KEPT_EVERY_S, self._left):
+        whose = trial.trialId, trial.trainee, trial.mode
+        isSame = run is not None and (run.trialId, run.trainee, run.mode) == whose
+        if run is not None and isPracticed and isSame and trial.elapsedS >= run.elapsedS:
+            self._run = trial
+            if trial.elapsedS - self._kept >= min(KEPT_EVERY_S, self._left):
                 self.keep()
+        elif run is not None or isPracticed:
+            self.keep()
+            ended, self._run = self._run, None
+            if ended is not None:
+                self._changed(ended.trainee)
+            if isPracticed:
+                # A previous Slicer may have counted the practice before this one started.
+                self._run, self._kept = trial, trial.elapsedS if self._isFirstSight else 0.0
+                requested = self._requestedStep(trial)
+                self._left = KEPT_EVERY_S if requested is None else requested[0].practice_left_s
         self._isFirstSight = False
 
-    def _requestedStep(self) -> tuple[StepProgress, StudyStep] | None:
+    def _requestedStep(self, run: TrialStatus) -> tuple[StepProgress, StudyStep] | None:
         """Return the progress of the practicing trainee, and the trial run that the study requests.
 
         None if it requests no such run.
         """
-        name, mode = self._practicing or ("", "")
         with contextlib.suppress(InputError):
-            progress = StudyProgress(self._trainees.study).progress(name)
+            progress = StudyProgress(self._trainees.study).progress(run.trainee)
             step = progress.next_step
-            if step is not None and (step.kind, step.mode) == (StepKind.TRIAL_RUN, mode):
+            if step is not None and (step.kind, step.mode) == (StepKind.TRIAL_RUN, run.mode):
                 return progress, step
         return None
 
