@@ -201,6 +201,7 @@ def _fitRows(comparison: Comparison) -> list[tuple[str, ...]]:
             rows.append((title, "–", "–", "–", "–"))
             continue
         interval = "–" if error is None else "{:.2f}–{:.2f}".format(*error.interval_mm)
-        lengths = (fit.fre_mm, fit.residuals_mm.max(), error and error.expected_mm)
+        expected = None if error is None else error.expected_mm
+        lengths = (fit.fre_mm, fit.residuals_mm.max(), expected)
         rows.append((title, *(numberOrDash(each, 2) for each in lengths), interval))
     return rows

@@ -309,5 +309,5 @@ def _historyRow(number: int, trial: StoredTrial) -> tuple[str, ...]:
         task if record.mode == Mode.DESKTOP.value else f"{task}, {short_mode_title(record.mode)}",
         f"{record.completion_time_s:.1f}",
         numberOrDash(trial.true_tre_mm, 2),
-        numberOrDash(trial.score and trial.score.score, 1),
+        numberOrDash(None if trial.score is None else trial.score.score, 1),
     )

@@ -78,8 +78,7 @@ class TrainingLogic(Listening):
         if said.phase == Phase.RUNNING.value:
             elapsed += self._clock() - self._saidAt
         touches = findNode(self._scene, "vtkMRMLMarkupsFiducialNode", Role.CAPTURED_POINTS)
-        isKnown = said.trialId and touches is not None
-        touched = touches.GetNumberOfControlPoints() if isKnown else 0
+        touched = touches.GetNumberOfControlPoints() if said.trialId and touches else 0
         return replace(said, touched=touched, total=self._total, elapsedS=elapsed)
 
     def start(

@@ -109,9 +109,8 @@ def _knownValues(kind: type[Any], given: Any) -> dict[str, Any]:
     """Return the texts, truth values and numbers of a peer that have their field's kind."""
     values: dict[str, Any] = {}
     for each in fields(kind):
-        value = given.get(each.name) if isinstance(given, Mapping) else None
-        isNumber = str(each.type).startswith(("int", "float")) and is_number(value)
-        if isNumber:
+        value: Any = given.get(each.name) if isinstance(given, Mapping) else None
+        if str(each.type).startswith(("int", "float")) and is_number(value):
             values[each.name] = int(value) if each.type == "int" else float(value)
         elif each.type in ("str", "bool") and type(value).__name__ == each.type:
             values[each.name] = value
