@@ -364,6 +364,7 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
             ui.showScenarioButton.click()
             fixture.process()
             fixture.touch(fixture.touches())
+            ui.planCollapsibleButton.collapsed = False
             ui.placeTargetButton.click()
             ui.planComboBox.currentNode().AddControlPoint(10.0, 20.0, 30.0)
             fixture.process()

@@ -227,8 +227,9 @@ class LandmarksPanel(Panel):
         check = partial(self._run, self._logic.check)
         connectClick(ui.checkLandmarksButton, check, _("The landmarks were not checked."))
         connectClick(ui.saveLandmarksButton, self.save, _("The landmarks were not saved."))
-        self.listen((session.sceneChanged, self.showState))
         self._message = ""
+        section = ui.newScenarioCollapsibleButton
+        self.showWhileOpen(section, self.showState, session.sceneChanged)
         self.showState()
 
     def show(self) -> None:

@@ -20,17 +20,28 @@ class Panel:
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         self._ui = ui
         self._session = session
-        self._listening = Listening()
+        self._listening: list[Listening] = []
 
     def close(self) -> None:
         """Cancel running work, and stop listening to the session."""
         for work in vars(self).values():
             if isinstance(work, CancelableWork):
                 work.cancel()
-        self._listening.close()
+        for listening in self._listening:
+            listening.close()
 
     def listen(self, *pairs: tuple[Signal, Callable[..., Any]]) -> None:
-        self._listening = Listening(*pairs)
+        self._listening.append(Listening(*pairs))
+
+    def showWhileOpen(self, section: Any, show: Callable[[], None], *signals: Signal) -> None:
+        """Call `show` when a section is opened, and at signals while it is open."""
+
+        def showIfOpen(*_values: Any) -> None:
+            if not section.collapsed:
+                show()
+
+        section.connect("contentsCollapsed(bool)", showIfOpen)
+        self.listen(*((signal, showIfOpen) for signal in signals))
 
 
 def connectClick(button: Any, action: Callable[[], object], failure: str) -> Callable[[], None]:

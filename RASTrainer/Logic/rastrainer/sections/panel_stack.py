@@ -17,11 +17,7 @@ from rastrainer.sections.procedure_plan_panel import ProcedurePlanPanel
 from rastrainer.sections.registration_panel import RegistrationPanel
 from rastrainer.sections.scenario_panel import MethodsPanel, ScenarioPanel
 from rastrainer.sections.score_panel import ScorePanel
-from rastrainer.sections.simulator_panel import (
-    RunningSimulatorPanel,
-    SetupPanel,
-    SimulatorPanel,
-)
+from rastrainer.sections.simulator_panel import RunningSimulatorPanel, SetupPanel, SimulatorPanel
 from rastrainer.sections.study_panel import CurriculumPanel, StudyPanel
 from rastrainer.sections.target_plan_panel import PlanPanel
 from rastrainer.sections.trainees_panel import TraineesPanel

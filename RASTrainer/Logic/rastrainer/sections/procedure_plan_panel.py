@@ -82,9 +82,9 @@ class ProcedurePlanPanel(Panel):
         ui.noGoButton.connect("clicked()", self.toggleNoGo)
         ui.noGoComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self.showState)
         connectClick(ui.saveProcedureButton, self.save, _("The procedure was not saved."))
-        self.listen(
-            (session.taskChosen, self._showProcedures), (session.sceneChanged, self.showState)
-        )
+        self.listen((session.taskChosen, self._showProcedures))
+        section = ui.procedurePlanCollapsibleButton
+        self.showWhileOpen(section, self.showState, session.sceneChanged)
         self._showProcedures()
 
     def edit(self) -> None:

@@ -61,12 +61,9 @@ class PlanPanel(Panel):
         )
         ui.planComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._chooseNode)
         ui.planTargetComboBox.connect("activated(int)", self._chooseTarget)
-        self.listen(
-            (self._logic.changed, self.showState),
-            (session.registration.changed, self.showState),
-            (session.link.statusChanged, self.showState),
-            (session.sceneChanged, self.showState),
-        )
+        changes = self._logic.changed, session.registration.changed
+        changes += session.link.statusChanged, session.sceneChanged
+        self.showWhileOpen(ui.planCollapsibleButton, self.showState, *changes)
         self.showState()
 
     def removePoint(self) -> None:
