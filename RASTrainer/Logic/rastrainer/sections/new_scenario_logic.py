@@ -23,6 +23,7 @@ from rastrainer.scenario.setup import SetUp
 from rastrainer.scenario.writer import HeadDraft, write_draft
 from rastrainer.sections.scenario_logic import ScenarioFiles, findSkin, planArguments
 from rastrainer.slicer.background_work import inBackground
+from rastrainer.slicer.polydata import meshPolyData
 from rastrainer.slicer.program.child_process import Run, runChild
 from rastrainer.slicer.scene.nodes import (
     ROLE_ATTRIBUTE,
@@ -36,7 +37,7 @@ from rastrainer.slicer.scene.nodes import (
     usedPoints,
     worldPoints,
 )
-from rastrainer.slicer.scene.scenario_nodes import SKIN_COLOR, meshPolyData
+from rastrainer.slicer.scene.scenario_nodes import SKIN_COLOR
 from rastrainer.slicer.translation import _
 from rastrainer.work_progress import Progress, no_progress
 

@@ -17,6 +17,7 @@ from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.sections.scenario_cache import ScenarioCache
 from rastrainer.sections.simulator_logic import SimulatorLogic
 from rastrainer.slicer.background_work import BackgroundWork, inBackground
+from rastrainer.slicer.polydata import meshPolyData
 from rastrainer.slicer.program.child_process import Run
 from rastrainer.slicer.scene.nodes import (
     ROLE_ATTRIBUTE,
@@ -30,7 +31,6 @@ from rastrainer.slicer.scene.robot import addLink, missingLinks, robotNode, setR
 from rastrainer.slicer.scene.robot_description import READ_LINKS, LinkMesh
 from rastrainer.slicer.scene.scenario_nodes import (
     SKIN_COLOR,
-    meshPolyData,
     showImages,
     showScenario,
     showTask,

@@ -61,9 +61,14 @@ class PlanPanel(Panel):
         )
         ui.planComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._chooseNode)
         ui.planTargetComboBox.connect("activated(int)", self._chooseTarget)
-        changes = self._logic.changed, session.registration.changed
-        changes += session.link.statusChanged, session.sceneChanged
-        self.showWhileOpen(ui.planCollapsibleButton, self.showState, *changes)
+        self.showWhileOpen(
+            ui.planCollapsibleButton,
+            self.showState,
+            self._logic.changed,
+            session.registration.changed,
+            session.link.statusChanged,
+            session.sceneChanged,
+        )
         self.showState()
 
     def removePoint(self) -> None:
