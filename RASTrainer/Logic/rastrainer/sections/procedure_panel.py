@@ -69,11 +69,11 @@ class ProcedurePanel(Panel):
             send = partial(self._logic.command, step.command, step.arguments)
             connectClick(getattr(ui, step.button), send, _("The command was not sent."))
         ui.procedureErrorsTable.connect("itemSelectionChanged()", self._jumpToTarget)
+        section, connection = ui.procedureCollapsibleButton, session.link.statusChanged
+        self.showWhileOpen(section, self.showState, self._logic.changed, connection)
         self.listen(
-            (self._logic.changed, self.showState),
             (self._logic.answered, partial(setText, ui.procedureMessageText)),
             (self._logic.outcomeChanged, self._showOutcome),
-            (session.link.statusChanged, self.showState),
         )
         self._laySlices()
         self._showOutcome()

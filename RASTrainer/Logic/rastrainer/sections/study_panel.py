@@ -254,7 +254,7 @@ class CurriculumPanel(Panel):
         connectClick(ui.endCurriculumButton, self.endCurriculum, _("The curriculum was not ended."))
         ui.curriculumPathLineEdit.connect("currentPathChanged(QString)", self._showButtons)
         ui.everybodyCheckBox.connect("toggled(bool)", self._showButtons)
-        self.listen((self._logic.changed, self._show))
+        self.showWhileOpen(ui.curriculumCollapsibleButton, self._show, self._logic.changed)
         self._show()
 
     def setCurriculum(self) -> None:
