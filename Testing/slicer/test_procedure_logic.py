@@ -13,8 +13,7 @@ from rastrainer.scenario.points import LABELS
 from rastrainer.sections.procedure_logic import ProcedureLogic
 from rastrainer.sections.trial_services import TrialServices
 from rastrainer.sections.trial_status import readStatus
-from rastrainer.slicer.background_work import BackgroundWork
-from Testing.slicer.simulator_double import run_logic_until, run_until_received
+from Testing.slicer.simulator_double import run_until_received
 from Testing.slicer.training_room import TRIAL, Room
 
 VERIFYING = {"name": "dbs", "trajectory": 0, "trajectories": 2, "registrationInUse": False}
@@ -26,7 +25,6 @@ class Theater(Room):
     def __init__(self, scene, scenario):
         self.touches, self.refused = [], ""
         super().__init__(scene, scenario)
-        self.work = BackgroundWork()
         services = TrialServices(scene, self.link, lambda _name: scenario, None, self.work)
         self.procedure = ProcedureLogic(services)
         self.said = []
@@ -48,15 +46,8 @@ class Theater(Room):
         self.tell(phase=phase, procedure={**VERIFYING, **procedure})
         self.run_until(lambda: self.procedure.status.phase == phase)
 
-    def run_until(self, condition):
-        if hasattr(self, "work"):
-            run_logic_until(self.link, self.work, condition)
-        else:
-            super().run_until(condition)
-
     def close(self):
         self.procedure.close()
-        self.work.close()
         super().close()
 
 
