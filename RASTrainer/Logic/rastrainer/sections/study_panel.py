@@ -65,13 +65,11 @@ class StudyPanel(Panel):
             _("The answers were not saved."),
         )
         ui.protocolPathLineEdit.connect("currentPathChanged(QString)", self._showButtons)
-        self.listen(
-            (self._logic.changed, self._show),
-            (session.training.changed, self._followTrial),
-            (session.link.statusChanged, self._showButtons),
-            (session.trainees.changed, self._showButtons),
-            (session.secondPassed, self._showTime),
-        )
+        section, trainees = ui.studyCollapsibleButton, session.trainees
+        self.showWhileOpen(section, self._show, self._logic.changed)
+        changes = session.training.changed, session.link.statusChanged, trainees.changed
+        self.showWhileOpen(section, self._followTrial, *changes)
+        self.showWhileOpen(section, self._showTime, session.secondPassed)
         self._show()
 
     def begin(self) -> None:
