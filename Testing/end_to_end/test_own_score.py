@@ -15,7 +15,7 @@ from rastrainer.journal.folder import journals_of
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.json_records import record_from_json, record_to_json
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.logic.trial_logic import TrialLogic
+from rastrainer.sections.trial_logic import TrialLogic
 from rastrainer.study.database.study import Study
 from rastrainer.study.delivered_trial import (
     score_references,
