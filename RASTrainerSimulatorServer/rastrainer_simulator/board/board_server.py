@@ -118,7 +118,6 @@ class BoardServer:
         return await self._http.listen(host, port)
 
     async def close(self) -> None:
-        """Stop watching, and close the connections of all pages."""
         self._http.stop_listening()
         await asyncio.gather(*(seat.close() for seat in self._seats.values()))
         await self._http.close()

@@ -76,7 +76,6 @@ class RatingPresenter(ReplayPresenter):
         self._refresh()
 
     def load(self, go: Callable[[], object]) -> None:
-        """Go to another replay and load it."""
         go()
         self._loading = self._load(self.work.trial_id)
         self.pages.show(LoadingPage(self, self._loading))
@@ -254,7 +253,6 @@ class DomainPage(RatingPage):
         return PageContent(title, said, rows=(*marks, *others), first="watch")
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """Store a typed mark."""
         if device is not InputDevice.KEYBOARD or name not in _KEYS:
             return False
         self._give(_KEYS[name])

@@ -49,12 +49,10 @@ class RatingForm:
 
     @property
     def lowest_total(self) -> int:
-        """The total of the worst marks."""
         return LOWEST * len(self.domains)
 
     @property
     def highest_total(self) -> int:
-        """The total of the best marks."""
         return HIGHEST * len(self.domains)
 
 
@@ -64,7 +62,6 @@ FORMS = {form.name: form for form in (GEARS, OSATS)}
 
 
 def find_form(name: str) -> RatingForm:
-    """Return a form; raise `InputError` if unknown."""
     if name not in FORMS:
         raise InputError(f"There is no form {name[:40]!r}; there are {', '.join(FORMS)}.")
     return FORMS[name]

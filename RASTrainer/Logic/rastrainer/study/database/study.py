@@ -164,7 +164,6 @@ class Study:
             return trainee
 
     def next_pseudonym(self) -> str:
-        """Return the next free pseudonym, such as `T001`."""
         with self.database.reading():
             # Numbers of deleted trainees are not reused, to avoid confusion.
             number = self.database.row("SELECT latest FROM trainee_numbers")[0] + 1
@@ -180,7 +179,6 @@ class Study:
         return tuple(_trainee(*row) for row in self.database.rows(query, int(archived)))
 
     def trainee(self, pseudonym: str) -> Trainee:
-        """Return a trainee; raise `InputError` if unknown."""
         row = self.database.row(f"{_TRAINEES} WHERE pseudonym = ?", pseudonym)
         if row is None:
             raise InputError(f"The study has no trainee {json.dumps(str(pseudonym)[:64])}.")
@@ -287,7 +285,6 @@ class Study:
         return self.database.row(query, trial_id) is not None
 
     def is_revealed(self, trial_id: str) -> bool:
-        """Return whether the truth of a trial is known."""
         query = "SELECT 1 FROM results WHERE trial_id = ? AND kind = ?"
         return self.database.row(query, trial_id, TRUTH) is not None
 
@@ -372,7 +369,6 @@ class Study:
                 )
 
     def record(self, trial_id: str) -> TrialRecord:
-        """Return the record of a trial; raise `InputError` if unknown."""
         row = self.database.row("SELECT record_json FROM trials WHERE trial_id = ?", trial_id)
         if row is None:
             raise _no_trial(trial_id)
