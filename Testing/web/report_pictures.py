@@ -36,11 +36,11 @@ PICTURE = ROOT / "Screenshots" / "report-target-errors.png"
 COHORT_PICTURE = ROOT / "docs" / "pictures" / "report-of-a-cohort.png"
 COHORT_SECTIONS = ("What completion time and error vary with", "Expected and true target error")
 COLORS = 128
-"""Of the picture of the cohort, so that its file is small."""
+"""Size of the cohort's picture, for a small file."""
 MARGIN = 24
 TRAINEES, MODES = 8, ("desktop", "hmd")
 SCATTER_MM = (0.4, 1.1)
-"""Of touches on each axis: of the best trainee and of the worst."""
+"""Standard deviation of touches on each axis: the best trainee's and the worst's."""
 VIEW_BIAS_MM = {"desktop": np.zeros(3), "hmd": np.array([0.9, 0.3, -0.4])}
 SIZE = {"width": 900, "height": 800}
 

@@ -250,7 +250,7 @@ class DomainPage(RatingPage):
         title = self.say("rating.title", form=self._form.title, domain=domain)
         # The focus is not on a mark, which would then be given more often than others.
         said = (self.say("rating.text"),)
-        return PageContent(title, said, rows=(*marks, *others), first="watch")
+        return PageContent(said, rows=(*marks, *others), title=title, first="watch")
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
         if device is not InputDevice.KEYBOARD or name not in _KEYS:
@@ -288,7 +288,7 @@ class RatedPage(RatingPage):
         following = [] if is_last else ["next"]
         previous = ["previous"] if work.place else []
         rows = self.rows(*following, "undo", "watch", *previous, "leave")
-        return PageContent(title, (text,), facts, rows, first="next")
+        return PageContent((text,), facts, rows, title=title, first="next")
 
 
 class LoadingPage(RatingPage):
@@ -307,7 +307,7 @@ class LoadingPage(RatingPage):
             problem = str(error) if isinstance(error, InputError) else ""
         text = problem or self.say("rating-loading.text")
         rows = self.rows(*(["previous"] if self.actions.work.place else []), "leave")
-        return PageContent(self.say("rating-loading.title"), (text,), rows=rows)
+        return PageContent((text,), rows=rows)
 
     def back(self) -> None:
         """There is nothing to go back to yet."""

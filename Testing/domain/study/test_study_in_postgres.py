@@ -28,7 +28,7 @@ from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.ratings import FORMS, RatingStore
 from rastrainer.trial.analysis import RevealedTruth
 from rastrainer_simulator.cli.main import main
-from rastrainer_simulator.cli.study_management import copy_study
+from rastrainer_simulator.cli.study_management import copy_rows
 from Testing.domain.study.played_study import STUDIES, study_with_trials
 from Testing.domain.study.study_content import rows_of, written_files
 from Testing.domain.study.writers import stored_numbers, writer
@@ -412,7 +412,7 @@ def test_a_copy_that_is_interrupted_leaves_nothing(place, tmp_path, monkeypatch)
     with Study.open_for_reading(file) as source, Study.open(place) as target:
         monkeypatch.setattr(type(target.database), "continue_numbers", lambda _self: 1 / 0)
         with pytest.raises(ZeroDivisionError):
-            copy_study(source, target)
+            copy_rows(source, target)
         assert target.trainees() == ()
 
 

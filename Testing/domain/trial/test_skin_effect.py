@@ -18,7 +18,7 @@ from rastrainer.trial.analysis import RevealedTruth, analyze_trial, score_argume
 from rastrainer.trial.record import TouchedPoint, TrialRecord
 from rastrainer.trial.touch_registration import unshifted_tre_mm
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.report.method_comparison import shifted_skin
+from rastrainer_simulator.report.target_errors import shifted_skin
 from Testing.simulator.report.test_report import words_of
 
 SKIN = SkinShift(4.0, 7, 0.5)

@@ -61,12 +61,6 @@ GEARS, OSATS = (record_from_json(RatingForm, each) for each in json.loads(_FILE)
 FORMS = {form.name: form for form in (GEARS, OSATS)}
 
 
-def find_form(name: str) -> RatingForm:
-    if name not in FORMS:
-        raise InputError(f"There is no form {name[:40]!r}; there are {', '.join(FORMS)}.")
-    return FORMS[name]
-
-
 @dataclass(frozen=True)
 class Rating:
     """All marks that a rater gave a trial on one form, by domain."""
