@@ -31,12 +31,12 @@ from rastrainer_simulator.board.seats import (
     RefusedError,
     SeatClient,
     SeatEntry,
+    WatchedSeat,
     checked_address,
     checked_fingerprint,
     read_seats,
     write_seats,
 )
-from rastrainer_simulator.board.watched_seat import WatchedSeat
 from rastrainer_simulator.net.views.access_control import (
     ROLE,
     PairingCode,
