@@ -238,11 +238,7 @@ class Study:
             delivered = record
             record = record_from_json(TrialRecord, delivered)
         with self.database.writing():
-            self._check_not_deleted(record.trial_id)
-            if self.has("trials", record.trial_id):
-                # The seed is the simulator's secret at first and may be revealed later.
-                if replace(self.record(record.trial_id), seed=None) != replace(record, seed=None):
-                    raise _other_trial(record.trial_id)
+            if not self.check_trial(record):
                 return False
             self._store(
                 "trials",
@@ -257,6 +253,18 @@ class Study:
             )
             self.add_results(record.trial_id, registrations, target_errors, score)
         return True
+
+    def check_trial(self, record: TrialRecord) -> bool:
+        """Return whether a trial would be new, before anything is computed from it."""
+        with self.database.reading():
+            self._check_not_deleted(record.trial_id)
+            if self.has("trials", record.trial_id):
+                # The seed is the simulator's secret at first and may be revealed later.
+                if replace(self.record(record.trial_id), seed=None) != replace(record, seed=None):
+                    raise _other_trial(record.trial_id)
+                return False
+            json_checks.accepted(json_checks.pseudonym, record.trainee, "A pseudonym")
+            return True
 
     def add_aborted(
         self, record: AbortedTrial | Mapping[str, Any], delivered: Mapping[str, Any] | None = None
