@@ -3,6 +3,7 @@
 import csv
 import json
 import uuid
+from dataclasses import replace
 
 import numpy as np
 import pytest
