@@ -161,7 +161,7 @@ def _from_database(place: StudyPlace) -> StudyData:
     with Study.open_for_reading(place) as study:
         progress = StudyProgress(study)
         protocol = progress.protocol()
-        everyone = (*study.trainees(), *study.trainees(archived=True))
+        everyone = study.trainees(archived=None)
         consenting = {trainee.pseudonym for trainee in everyone if trainee.consent}
         played = {name: progress.played(name) for name in progress.enrolled() if name in consenting}
         trials, versions, beside, objections = [], defaultdict(set), 0, []

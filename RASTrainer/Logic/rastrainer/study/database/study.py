@@ -174,9 +174,11 @@ class Study:
     def has_trainee(self, pseudonym: str) -> bool:
         return self.database.row(TRAINEE_ID, pseudonym) is not None
 
-    def trainees(self, archived: bool = False) -> tuple[Trainee, ...]:
-        query = f"{_TRAINEES} WHERE archived = ? ORDER BY pseudonym"
-        return tuple(_trainee(*row) for row in self.database.rows(query, int(archived)))
+    def trainees(self, archived: bool | None = False) -> tuple[Trainee, ...]:
+        """Return the active or the archived trainees, by pseudonym; with None, all of them."""
+        query = f"{_TRAINEES} WHERE archived = coalesce(?, archived) ORDER BY pseudonym"
+        wanted = None if archived is None else int(archived)
+        return tuple(_trainee(*row) for row in self.database.rows(query, wanted))
 
     def trainee(self, pseudonym: str) -> Trainee:
         row = self.database.row(f"{_TRAINEES} WHERE pseudonym = ?", pseudonym)
