@@ -158,7 +158,7 @@ def calibration(study: Study) -> TreCalibration:
     from rastrainer.study.study_data import trial_rows
     from rastrainer.study.tre_calibration import calibration_of
 
-    everyone = (*study.trainees(), *study.trainees(archived=True))
+    everyone = study.trainees(archived=None)
     histories = (study.history(trainee.pseudonym) for trainee in everyone)
     return calibration_of(row for history in histories for row in trial_rows(history))
 
