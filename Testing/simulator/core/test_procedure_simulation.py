@@ -19,7 +19,7 @@ from Testing.simulator.planned_procedures import INNER_MM, OUTER_MM
 
 SEED = 4
 IDENTITY = Rotation.identity()
-MANY_LINES = 20
+MANY_LINES = 6
 RIGHT = OperatorInput(translation=(1.0, 0.0, 0.0), operator="gamepad")
 TURN = OperatorInput(rotation=(1.0, 0.0), operator="gamepad")
 IN = OperatorInput(translation=(0.0, 0.0, -1.0), operator="gamepad")

@@ -104,15 +104,6 @@ def test_trials_that_nobody_acknowledges_do_not_hold_up_the_others(collector, li
     assert max(map(len, offered)) == OFFERS_AT_ONCE
 
 
-def test_offers_are_numbered_so_that_each_can_be_answered(link_server):
-    link_server.simulated.unacknowledged = (record("a"), record("b"))
-    with Collector(link_server) as collector:
-        collector.server.thread.call(link_server.link.offers.repeat)
-        collector.send_command("ListTasks")
-        first, second = collector.offers
-        assert first.command_id != second.command_id
-
-
 def test_an_aborted_trial_is_offered_as_such(link_server):
     aborted = record_from_json(AbortedTrial, make_aborted())
     link_server.simulated.unacknowledged = (aborted,)
