@@ -253,7 +253,7 @@ class TouchViews:
         pose = np.array(head_to_world, dtype=float)
         pose[:3, 3] /= MM_PER_M
         self._collision.set_head_pose(pose)
-        in_head, placement = self._on_skin(task)
+        in_head, placement = self.on_skin(task)
         normals = in_head @ pose[:3, :3].T
         places, numbers = (
             transforms.apply(pose, points / MM_PER_M)
@@ -303,16 +303,13 @@ class TouchViews:
             view = None if views.planned is None else best_view(views, (views.planned,))
             yield label, view if view is not None and view.is_whole else None
 
-    def placement(self, task: Task) -> Placement:
-        return self._on_skin(task)[1]
-
     def _held(self, q: Sequence[float]) -> HeldTool:
         links = self._kinematics.links(q)
         tip = links[self._robot.tip.name]
         sight = self._collision.line_of_sight(links)
         return HeldTool(vector(tip[:3, 3]), vector(tip[:3, 2]), sight)
 
-    def _on_skin(self, task: Task) -> tuple[np.ndarray, Placement]:
+    def on_skin(self, task: Task) -> tuple[np.ndarray, Placement]:
         """Return the skin's normals at a task's fiducials, (n, 3), and where its marks are."""
         key = task.fiducials.tobytes()
         if key not in self._known:
