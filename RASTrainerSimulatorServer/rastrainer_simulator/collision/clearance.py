@@ -89,7 +89,7 @@ class DistanceBounds:
         while due and due[0][0] <= traveled:
             rows.append(heappop(due)[1])
             if rough is not None and len(rows) > _FEW:
-                # Put off the far ones among all due rows.
+                # Put off all due rows that are far.
                 rows += [row for moment, row in due if moment <= traveled]
                 bounds = rough()
                 until = (traveled + (bounds - FAR - _ROUNDING) / self._closing).tolist()

@@ -98,8 +98,8 @@ class ViewedPoint:
 class PointViews:
     """The views of a fiducial in any posture of the arm.
 
-    From the `eyes` (k, 3), World, m, the best first, head and table leave fiducial and number
-    visible. `planned` is the posture in which it is to be touched, None if the robot cannot.
+    Head and table leave fiducial and number visible from the `eyes` (k, 3), World, m, the best
+    first. `planned` is the posture in which it is to be touched, None if the robot cannot.
     """
 
     point: ViewedPoint

@@ -131,7 +131,7 @@ def test_a_browsers_gamepad_has_the_same_inputs_as_sdls():
 BEST_OFF = OF_VIEW - {ControlName.BEST_VIEW}
 TURNS = {name for pair in ROTATION for name in pair}
 NEEDED = set(ControlName) - BEST_OFF - TURNS - {ControlName.CAMERA}
-"""What a trial by touches cannot do without: from the start menu to the result."""
+"""The controls that a trial by touches needs, from the start menu to the result."""
 RIGHT_PAD = {"a", "b", "x", "y", "start", "rightstick", "rightshoulder", "+righttrigger"}
 RIGHT_PAD |= {f"{sign}right{axis}" for sign in "-+" for axis in "xy"}
 LEFT_PAD = {"dpup", "dpdown", "dpleft", "dpright", "back", "leftstick", "leftshoulder"}

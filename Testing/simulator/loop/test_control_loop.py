@@ -378,7 +378,7 @@ def test_a_start_refused_while_the_simulation_is_being_replaced_leaves_no_trace(
     running, anywhere, successor, tmp_path
 ):
     assert running.loop.begin_replacement().result(TIMEOUT_S).ok
-    for _ in range(10):  # More than may be started at once: refused ones do not count.
+    for _ in range(10):  # More than may be started at once: refused starts do not count.
         refused = running.do(CommandName.START_TASK, task="task-1", trainee="P01")
         assert (refused.ok, refused.message) == (False, control_loop.BEING_SET_UP)
     assert running.loop.latest.training.phase is Phase.IDLE

@@ -109,7 +109,7 @@ def test_the_branch_closest_to_the_previous_posture_is_chosen(fabrik, truth):
         ([1.5, 0, 0.34], [REACH, 0, 0.34]),
         ([0, 0, 3.34], [0, 0, 0.34 + REACH]),
         ([-2.0, 2.0, 0.84], SHOULDER + REACH * np.array([-2, 2, 0.5]) / 8.25**0.5),
-        # Below the shoulder's cone: the upper arm at 120° and the rest straight to the target.
+        # The upper arm is at the edge of its cone, and the rest points straight to the target.
         ([0.0, 1.0, -1.5], None),
     ],
 )

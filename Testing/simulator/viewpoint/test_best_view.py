@@ -21,7 +21,7 @@ from rastrainer_simulator.viewpoint.best_view import (
 from Testing.simulator.authoring.planned_heads import setup_of
 
 SEEDS = (None, *(pytest.param(seed, marks=pytest.mark.soak) for seed in (11, 12)))
-"""Of the poses of the head: the nominal one, and two of trials."""
+"""Seeds of the head's poses: the nominal pose, and two of trials."""
 TASKS = ("trial-run", *(f"task-{number}" for number in range(1, 6)))
 
 
@@ -68,7 +68,7 @@ def test_every_touch_is_visible_within_60_degrees_of_the_normal(made, mesh, view
     assert [label for label, view in found.items() if view is None] == []
     for label, point, normal in zip(chosen.labels, chosen.fiducials, normals, strict=True):
         view = found[label]
-        # In the head's own frame, and by another computation than the one that has found it.
+        # Computed in the head's own frame, in another way than the search.
         eye = seen_in_ras(head_to_world, view.eye)
         assert not hides(mesh, eye, point + 2.0 * normal, slack_mm=0.0), label
         assert degrees(eye - point, normal) <= 60.0 + 1e-6, label

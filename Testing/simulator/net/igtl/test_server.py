@@ -1,4 +1,4 @@
-"""The server on real sockets: good clients are served whatever bad ones do."""
+"""The server on real sockets: bad clients do not disturb good clients."""
 
 import asyncio
 import contextlib

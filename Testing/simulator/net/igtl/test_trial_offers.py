@@ -42,7 +42,7 @@ class Collector(Client):
             self.offers.append(message.content)
 
     def _send_hello(self):
-        """What was sent before the answer has then arrived."""
+        """Wait for an answer: all earlier messages have then arrived."""
         self.send_command("Hello", {"protocolVersion": PROTOCOL_VERSION, "client": "collector"})
 
     def after(self, action) -> list[str]:
