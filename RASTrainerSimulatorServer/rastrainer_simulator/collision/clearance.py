@@ -26,12 +26,15 @@ class Clearance(NamedTuple):
     """Signed clearances of one posture, in m (below zero: overlap); points and normals in World.
 
     `tip` is the very tip of the tool against the head, `shaft` the rest of the tool from 3 mm
-    behind the tip, None unless it is near (`SHAFT_NEAR`). The others are at most FAR: the links
-    against the head, the arm against itself, and arm and tool against table and stand.
+    behind the tip, None unless it is near (`SHAFT_NEAR`); `shaft_m` is then a lower bound, and
+    `tool_m` the clearance of the whole tool. The others are at most FAR: the links against the
+    head, the arm against itself, and arm and tool against table and stand.
     """
 
     tip: Nearest
     shaft: Nearest | None
+    shaft_m: float
+    tool_m: float
     links_m: float
     self_m: float
     table_m: float
@@ -39,18 +42,6 @@ class Clearance(NamedTuple):
     @property
     def tip_m(self) -> float:
         return self.tip.distance_m
-
-    @property
-    def tool_m(self) -> float:
-        """Signed clearance of the whole tool to the head, m: the clearance that is shown."""
-        return min(self.tip.distance_m, self.shaft_m)
-
-    @property
-    def shaft_m(self) -> float:
-        """Signed clearance of the tool without its tip, m; a lower bound if far."""
-        if self.shaft is not None:
-            return self.shaft.distance_m
-        return max(self.tip.distance_m, SHAFT_NEAR)
 
 
 _ROUGHLY_FAR = 0.2
@@ -101,17 +92,6 @@ class DistanceBounds:
                 break
         rows.sort()
         return rows
-
-    def nearest(
-        self, traveled: float, distance: Callable[[int], float], rough: Callable[[], np.ndarray]
-    ) -> float:
-        """Return the least distance, m, at most FAR; `distance` measures a row."""
-        best = FAR
-        for row in self.due(traveled, rough):
-            found = distance(row)
-            self.put_off(row, found, traveled)
-            best = min(best, found)
-        return best
 
     def put_off(self, row: int, distance: float, traveled: float) -> None:
         """Make a row due again when it may be below FAR; it is now at least `distance`, m."""
