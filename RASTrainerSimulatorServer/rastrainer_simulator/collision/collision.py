@@ -17,9 +17,9 @@ from rastrainer_simulator.collision.clearance import (
     Clearance,
     DistanceBounds,
     HeadClearance,
+    LineOfSight,
 )
 from rastrainer_simulator.collision.head_surface import HeadSurface, Nearest
-from rastrainer_simulator.collision.line_of_sight import LineOfSight
 from rastrainer_simulator.collision.robot_shape import ArmCapsules, PosedArm, RobotShape
 from rastrainer_simulator.vectors import segment_distance
 
