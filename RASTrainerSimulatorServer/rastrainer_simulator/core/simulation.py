@@ -65,8 +65,8 @@ class Simulation:
     """The robot, the head and the trial.
 
     `step` is deterministic: the same setup, seed and inputs give the same states to the last bit.
-    A trial always starts with the arm above the head, whatever came before: a replay needs only
-    the trial's own inputs.
+    A trial always starts with the arm above the head and keeps nothing from before: a replay needs
+    only the trial's own inputs.
     """
 
     def __init__(self, setup: SimulationSetup, seed: int) -> None:

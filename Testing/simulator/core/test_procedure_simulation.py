@@ -20,7 +20,7 @@ from Testing.simulator.planned_procedures import INNER_MM, OUTER_MM
 
 SEED = 4
 IDENTITY = Rotation.identity()
-MANY_LINES = 20
+MANY_LINES = 6
 RIGHT = OperatorInput(translation=(1.0, 0.0, 0.0), operator="gamepad")
 TURN = OperatorInput(rotation=(1.0, 0.0), operator="gamepad")
 IN = OperatorInput(translation=(0.0, 0.0, -1.0), operator="gamepad")
@@ -201,7 +201,7 @@ def test_the_robot_does_not_align_the_guide_where_the_setting_forbids_it(planned
 
 
 def test_a_line_on_which_the_robot_cannot_hold_the_guide_is_refused_at_once(surgeon):
-    # By this registration the head is half a meter farther away.
+    # This registration puts the head half a meter farther away.
     surgeon.to(Phase.ALIGNING, shift_mm=(500.0, 0.0, 0.0))
     answer = surgeon.do(CommandName.ALIGN_GUIDE, standOffMm=30.0)
     assert "with a stand-off of 30 mm" in answer.message

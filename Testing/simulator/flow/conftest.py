@@ -28,7 +28,7 @@ from Testing.without_tutorial import WITHOUT_TUTORIAL, skip_tutorial
 @pytest.fixture(scope="session", autouse=True)
 def _known_marks():
     """Compute once where the numbers of a task are on the skin, not again for each presenter."""
-    known, on_skin = {}, TouchViews._on_skin
+    known, on_skin = {}, TouchViews.on_skin
 
     def kept(views, task):
         key = views._scenario.head_mesh, task.fiducials.tobytes()
@@ -36,7 +36,7 @@ def _known_marks():
             known[key] = on_skin(views, task)
         return known[key]
 
-    with mock.patch.object(TouchViews, "_on_skin", kept):
+    with mock.patch.object(TouchViews, "on_skin", kept):
         yield
 
 
