@@ -44,6 +44,7 @@ class TrialStep:
         answered: goes into the answer alone.
         kind: of the event; an event of the phase follows any other if the phase changes.
         feed: the new feed in the guide; None if it stays.
+        has_summary: whether the answer to a change of the phase also has the trial's summary.
     """
 
     state: TrainingState
@@ -54,6 +55,7 @@ class TrialStep:
     answered: Mapping[str, Any] = field(default_factory=dict)
     kind: EventKind = EventKind.PHASE
     feed: Feed | None = None
+    has_summary: bool = True
 
 
 def summary(state: TrainingState) -> dict[str, Any]:
@@ -143,4 +145,4 @@ def take_score(
         return TrainingReply(True, data=answered)
     values = {"score": result.score, "fre": registration.fre_mm, "tre": result.true_tre_mm}
     scored = replace(state, phase=Phase.SCORED, result=result)
-    return TrialStep(scored, "scored", values, answered=answered)
+    return TrialStep(scored, "scored", values, answered=answered, has_summary=False)

@@ -246,7 +246,7 @@ class Training:
             data = {**summary(self.state), "instruction": instruction, **recorded_feed(now.feed)}
             if is_phase:
                 data.update({**step.data, **step.recorded})
-                answer = {**summary(self.state), **answer}
+                answer = {**summary(self.state), **answer} if step.has_summary else answer
             events.append(Event(EventKind.PHASE, now.sim_time, data))
         return TrainingReply(True, data=answer, events=tuple(events), feed=step.feed)
 
@@ -341,11 +341,12 @@ class Training:
         self._kept = {}
         idle = TrainingState(revision=aborted.revision)
         values = {"trainee": aborted.trainee}
-        return TrialStep(idle, "aborted", values, answered={"trialId": aborted.trial_id})
+        answered = {"trialId": aborted.trial_id}
+        return TrialStep(idle, "aborted", values, answered=answered, has_summary=False)
 
     def _pause(self, _command: OperatorCommand, now: TouchMoment) -> Outcome:
         self._clock.pause(now.sim_time)
-        return TrialStep(paused(self.state), "paused")
+        return TrialStep(paused(self.state), "paused", has_summary=False)
 
     def _resume(self, _command: OperatorCommand, now: TouchMoment) -> Outcome:
         self._clock.resume(now.sim_time)
