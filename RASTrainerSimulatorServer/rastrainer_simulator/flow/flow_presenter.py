@@ -43,7 +43,7 @@ from rastrainer_simulator.state import (
     SimulationState,
     StepResult,
 )
-from rastrainer_simulator.viewpoint.view_control import Pictures, ViewMotion
+from rastrainer_simulator.viewpoint.view_control import Pictures
 
 PICTURE_GRACE_S = 0.5
 """A picture that is there so soon is no reason to pause a trial."""
@@ -388,7 +388,7 @@ class FlowPresenter(Presenter):
             dt,
             self.shown.latest,
             self.shown.setup.scenario,
-            ViewMotion(*self.controls.view),
+            self.controls.view,
             self.controls.sticks,
             follows and self.controls.situation is ControlContext.WORK,
         )

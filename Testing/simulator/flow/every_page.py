@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from concurrent.futures import Future
 from dataclasses import replace
+from functools import partial
 from importlib import import_module
 from pkgutil import iter_modules
 from types import MappingProxyType, SimpleNamespace
@@ -205,7 +206,7 @@ class _Desk:
     undo = load = leave = None
 
     def __init__(self, texts):
-        self.texts = texts
+        self.say = partial(texts.say, number=5, count=20)
 
 
 def _screens_of_raters(texts, language: str) -> dict[str, Screen]:

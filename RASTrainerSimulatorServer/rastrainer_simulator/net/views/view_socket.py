@@ -165,10 +165,10 @@ class HeldInput:
         self._has_sticks = False
 
     def key(self, code: str, is_down: bool, text: str) -> None:
-        """Process a key; no hand holds more than a few, so further ones are ignored.
+        """Process a key; no hand holds more than a few, so further keys are ignored.
 
-        A Shift key that was down when the view fell silent, and has not come up since, is held
-        still: what is pressed next must not move fast because a computer draws slowly.
+        A Shift key that was down when the view fell silent, and has not come up since, stays held:
+        the next key must not move the arm fast because a computer draws slowly.
         """
         self._held_in_silence.discard(code)
         if is_down and self._held_in_silence:
@@ -227,7 +227,7 @@ class Outbox:
         self._is_filled.set()
 
     def put_event(self, text: str) -> None:
-        """Have a text sent after the previous ones, none of them left out."""
+        """Send a text after all previous texts."""
         if len(self._events) >= MAX_WAITING_EVENTS:
             self.is_overfull = True
         else:

@@ -5,12 +5,12 @@ const NO_BREAK_SPACE = "\u00a0";
 
 type Texts = Readonly<Record<string, string>>;
 
-/** Return French texts with narrow no-break spaces next to signs of two parts. */
+/** Return French texts with narrow no-break spaces before and after signs of two parts. */
 export function french<Table extends Texts>(texts: Table): Table {
   return eachSet(texts, (text) => text.replace(/ ([:;!?%»])/g, `${NARROW_SPACE}$1`).replace(/« /g, `«${NARROW_SPACE}`));
 }
 
-/** Return Chinese texts with no-break spaces next to numbers and filled-in values. */
+/** Return Chinese texts with no-break spaces around numbers and inserted values. */
 export function chinese<Table extends Texts>(texts: Table): Table {
   return eachSet(texts, (text) => text.replace(/ (?=[\d{/])|(?<=[\d}/]) /g, NO_BREAK_SPACE));
 }
