@@ -49,7 +49,9 @@ class ClickingTrainee(Trainee):
 
     hands: Mouse
 
-    def choose(self, item: str) -> None:
+    def choose(self, item: str, *menu: str | None) -> None:
         """Click on an item, once its menu takes clicks."""
         self.until(lambda: self.menu.focus, "a focus")
         self.hands.click(item)
+        for name in menu:
+            self.until_menu(name)

@@ -68,10 +68,8 @@ def test_touch_undo_proximity_contact_and_finish_give_sound_and_vibration_exactl
     pilot.tap("touch")
     pilot.until(lambda: pilot.state.training.phase == "complete")
     pilot.step(2)
-    pilot.tap("touch")
-    pilot.until_menu("complete")
-    pilot.tap("accept")
-    pilot.until_menu("waiting")
+    pilot.tap_until("touch", "complete")
+    pilot.tap_until("accept", "waiting")
     trial_id = pilot.state.training.trial_id
     assert pilot.submit("SubmitRegistration", trialId=trial_id, **REGISTRATION).ok
     assert pilot.submit("TrialScored", trialId=trial_id, **SCORE).ok
@@ -96,8 +94,7 @@ def test_every_named_sound_ships_with_rastrainer():
 
 
 def test_muted_sounds_have_zero_volume(trainee):
-    trainee.choose("settings")
-    trainee.until_menu("settings")
+    trainee.choose("settings", "settings")
     trainee.focus("volume")
     trainee.tap("right")
     trainee.step()

@@ -189,5 +189,4 @@ def test_no_ghost_is_shown_during_a_replay(place):
     place.step(20)
     assert place.replay.training.phase == "running"
     assert place.ghost is None
-    place.tap("back")
-    place.until_menu("result")
+    place.tap_until("back", "result")

@@ -61,8 +61,7 @@ def journal(records):
 def test_the_menu_says_what_was_kept_and_resuming_leads_to_the_next_point(back, records, language):
     back.until_menu("trial")
     assert SENTENCES[language] in [warning.text for warning in back.presenter.screen.warnings]
-    back.choose("resume")
-    back.until_menu(None)
+    back.choose("resume", None)
     assert back.state.training.phase is Phase.RUNNING
     assert "1" in back.presenter.screen.instruction.text
     assert journal(records).of_kind("continued")
@@ -70,9 +69,7 @@ def test_the_menu_says_what_was_kept_and_resuming_leads_to_the_next_point(back, 
 
 def test_the_interrupted_trial_can_be_aborted_from_the_menu(back, records):
     back.until_menu("trial")
-    back.choose("abort")
-    back.until_menu("abort")
-    back.choose("abort")
-    back.until_menu("experiment")
+    back.choose("abort", "abort")
+    back.choose("abort", "experiment")
     # The menu is there before the journal's last line is whole on the disk.
     back.until(lambda: journal(records).integrity is Integrity.INTACT, "the journal's end")

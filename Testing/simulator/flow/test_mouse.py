@@ -76,8 +76,7 @@ def test_the_arm_is_driven_and_touches_are_made_and_undone_by_clicks_and_dragged
     assert {"Left stick", "Right stick up / down", "Touch", "Undo", "Slow", "Menu"} <= controls
     clicking.tap("undo")
     clicking.until(lambda: clicking.touched == 0, "the undo")
-    clicking.tap("menu")
-    clicking.until_menu("trial")
+    clicking.tap_until("menu", "trial")
     clicking.hands.click("resume")
     clicking.until_menu(None)
     clicking.hands.click("press sticks")
@@ -164,8 +163,7 @@ def train_and_view_the_result(newcomer, outside, task):
 def test_the_tutorial_and_a_scored_trial_are_done_with_the_mouse_alone(newcomer, outside):
     enter_id(newcomer)
     assert not newcomer.item("trial-run").is_enabled
-    newcomer.choose("tutorial")
-    newcomer.until_menu(None)
+    newcomer.choose("tutorial", None)
     newcomer.hands.click("press sticks")
     player = TutorialPlayer(MouseLearner(newcomer), SourceKind.MOUSE)
     player.play()
@@ -174,8 +172,7 @@ def test_the_tutorial_and_a_scored_trial_are_done_with_the_mouse_alone(newcomer,
     finished = TraineeHistory(outside.services.records).learned.get("P7")
     assert (finished.device, finished.mode) == ("mouse", "desktop")
     assert max(finished.errors_mm) < 3.0
-    newcomer.choose("trial-run")
-    newcomer.until_menu(None)
+    newcomer.choose("trial-run", None)
     train_and_view_the_result(newcomer, outside, "trial-run")
 
 
@@ -183,13 +180,9 @@ def test_the_tutorial_and_a_scored_trial_are_done_with_the_mouse_alone(newcomer,
 def test_an_optional_tutorial_is_skipped_and_a_trial_scored_with_the_mouse_alone(newcomer, outside):
     newcomer.presenter._session.prefer(tutorial="optional")
     enter_id(newcomer)
-    newcomer.choose("tutorial")
-    newcomer.until_menu(None)
-    newcomer.tap("menu")
-    newcomer.until_menu("tutorial")
-    newcomer.choose("leave")
-    newcomer.until_menu("experiment")
-    newcomer.choose("trial-run")
-    newcomer.until_menu(None)
+    newcomer.choose("tutorial", None)
+    newcomer.tap_until("menu", "tutorial")
+    newcomer.choose("leave", "experiment")
+    newcomer.choose("trial-run", None)
     newcomer.hands.click("press sticks")
     train_and_view_the_result(newcomer, outside, "trial-run")

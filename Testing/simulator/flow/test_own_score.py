@@ -46,8 +46,7 @@ def entries_of(outside, trial_id, kind):
 def errors_are_drawn_as_revealed(trainee, registration):
     """Check the arrows on the head: the revealed errors of the touches, 5 times as long."""
     revealed = trainee.submit("SubmitRegistration", **registration).data["touchErrorsMm"]
-    trainee.choose("errors")
-    trainee.until_menu(None)
+    trainee.choose("errors", None)
     arrows = trainee.presenter.screen.errors
     lengths_mm = [1000 * math.dist(arrow.begin, arrow.end) for arrow in arrows]
     assert lengths_mm == pytest.approx([5 * error for error in revealed.values()])
@@ -56,8 +55,7 @@ def errors_are_drawn_as_revealed(trainee, registration):
         Tone.GOOD if error <= 2 else Tone.ERROR if error >= 4 else Tone.WARNING
         for error in revealed.values()
     ]
-    trainee.tap("back")
-    trainee.until_menu("result")
+    trainee.tap_until("back", "result")
     assert trainee.presenter.screen.errors == ()
 
 
@@ -114,8 +112,7 @@ def test_the_simulator_scores_nothing_with_slicer_connected_or_a_study_running(t
     trainee.step(150)
     assert trainee.menu.name == "waiting"
     assert "3D Slicer is scoring" in trainee.menu.paragraphs[0]
-    trainee.choose("menu")
-    trainee.until_menu("experiment")
+    trainee.choose("menu", "experiment")
     outside.services.assigned.take_step(StudyStep("P07", "trial", 1, 9, "task-1", "desktop"))
     outside.has_slicer = False
     trial_of_study = register(trainee)

@@ -66,8 +66,7 @@ class Operation:
     def next_step(self, item: str, tool: Tool) -> None:
         """Choose what leads to the next phase, which brings another tool."""
         trainee = self.trainee
-        trainee.tap("touch")
-        trainee.until_menu("procedure")
+        trainee.tap_until("touch", "procedure")
         self.seen[f"menu {item}"] = trainee.menu
         trainee.choose(item)
         self.until_tool(tool)
@@ -120,8 +119,7 @@ def perform(operation: Operation) -> None:
     operation.until_tool(Tool.GUIDE)
     operation.keep("aligning")
     for number in range(2):
-        trainee.tap("undo")
-        trainee.until_menu("procedure")
+        trainee.tap_until("undo", "procedure")
         trainee.choose("align")
         trainee.until(is_aligned(trainee), "the guide on the line")
         operation.keep(f"aligned {number}")
@@ -151,8 +149,7 @@ def begin(operation: Operation) -> None:
         trainee.tap("right")
         operation.seen["procedures"].append(trainee.item("procedure").value)
     trainee.tap("left", "left")
-    trainee.choose("task-1")
-    trainee.until_menu(None)
+    trainee.choose("task-1", None)
     for kept in range(1, 16):
         # Touches at one point could not be registered again by a replay.
         trainee.hands.push(*np.roll((1.0, 0.0, 0.0), kept).tolist(), False)
@@ -162,13 +159,11 @@ def begin(operation: Operation) -> None:
         trainee.until(lambda k=kept: trainee.touched == k, f"touch {kept}")
     trainee.until(lambda: trainee.state.training.phase is Phase.COMPLETE, "the last touch")
     trainee.step(2)
-    trainee.tap("touch")
-    trainee.until_menu("complete")
+    trainee.tap_until("touch", "complete")
     trainee.choose("register")
     trainee.until(lambda: trainee.state.training.phase is Phase.VERIFYING, "the verification")
     operation.keep("waiting for a registration")
-    trainee.tap("undo")
-    trainee.until_menu("procedure")
+    trainee.tap_until("undo", "procedure")
     operation.seen["menu without a registration"] = trainee.menu
     trainee.choose("work")
     off = np.eye(4)
@@ -194,8 +189,7 @@ def is_aligned(trainee: Trainee):
 def retract(operation: Operation) -> None:
     """Remove the drill before it has cut anything, and lock the guide again."""
     trainee = operation.trainee
-    trainee.tap("undo")
-    trainee.until_menu("procedure")
+    trainee.tap_until("undo", "procedure")
     trainee.choose("retract")
     operation.until_tool(Tool.GUIDE)
     operation.next_step("lock", Tool.DRILL)
@@ -217,27 +211,22 @@ def score(operation: Operation) -> None:
     assert scored.ok, scored.message
     trainee.until_menu("result")
     operation.seen["result"] = trainee.menu
-    trainee.choose("procedure")
-    trainee.until_menu("procedure-errors")
+    trainee.choose("procedure", "procedure-errors")
     operation.seen["errors"] = [trainee.menu]
     trainee.focus("trajectory")
     trainee.tap("right")
     operation.seen["errors"].append(trainee.menu)
-    trainee.choose("lines")
-    trainee.until_menu(None)
+    trainee.choose("lines", None)
     operation.keep("lines")
-    trainee.tap("back")
-    trainee.until_menu("procedure-errors")
-    trainee.choose("back")
-    trainee.until_menu("result")
+    trainee.tap_until("back", "procedure-errors")
+    trainee.choose("back", "result")
     replay(operation)
 
 
 def replay(operation: Operation) -> None:
     """Have the trial shown again, up to where the second guide is aligned."""
     trainee = operation.trainee
-    trainee.choose("replay")
-    trainee.until_menu(None)
+    trainee.choose("replay", None)
     playback = trainee.presenter._session.pages.top.playback
 
     def is_there() -> bool:

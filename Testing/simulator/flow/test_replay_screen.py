@@ -79,8 +79,7 @@ class Place(Trainee):
         self.until_menu("result")
 
     def show_again(self, item="replay"):
-        self.choose(item)
-        self.until_menu(None)
+        self.choose(item, None)
 
     def pad(self, *buttons):
         """Press buttons of a gamepad that the page's browser reads."""
@@ -110,8 +109,7 @@ def result(place):
     assert place.menu.name == "result"
     yield place
     if place.menu is None:
-        place.tap("back")
-        place.until_menu("result")
+        place.tap_until("back", "result")
 
 
 def test_the_trial_is_replayed_in_the_views_while_the_arm_stands_still(result):
@@ -124,8 +122,7 @@ def test_the_trial_is_replayed_in_the_views_while_the_arm_stands_still(result):
     assert len(tips) > 50
     assert {state.training.phase for state in result.shown} == {"running"}
     assert (result.state.q, result.state.training.phase) == (arm, "scored")
-    result.tap("back")
-    result.until_menu("result")
+    result.tap_until("back", "result")
     assert result.replay is result.loop.latest
     assert result.journal.read_bytes() == before
 
@@ -330,11 +327,9 @@ def test_until_the_trial_is_loaded_the_views_say_so_and_the_trainee_can_go_back(
 
     monkeypatch.setattr(recorded_trial, "read_track", read)
     place.play_and_be_scored()
-    place.choose("replay")
-    place.until_menu("replay")
+    place.choose("replay", "replay")
     assert place.menu.title == "Your trial is being loaded"
-    place.tap("accept")
-    place.until_menu("result")
+    place.tap_until("accept", "result")
     may_load.set()
     place.submit("StartTask", task="task-1", trainee="P07")
     place.submit("Abort")

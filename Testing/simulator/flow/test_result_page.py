@@ -160,8 +160,7 @@ def test_the_worst_point_is_practiced_again_and_nothing_is_recorded(registered, 
     result_of(**{**WITHIN, "isAccurate": False}, residualsMm=residuals)
     trial, records = registered.state.training.trial_id, registered.records
     before = sorted(path.name for path in records.iterdir())
-    registered.choose("practice")
-    registered.until_menu(None)
+    registered.choose("practice", None)
     shown = lambda: registered.presenter.shown.latest.training  # noqa: E731
     assert shown().next_point == "7"
     screen = registered.presenter.screen
@@ -177,10 +176,7 @@ def test_the_worst_point_is_practiced_again_and_nothing_is_recorded(registered, 
     assert registered.state.training.trial_id == trial
     assert sorted(path.name for path in records.iterdir()) == before
     registered.step(50)
-    registered.choose("again")
-    registered.until_menu(None)
+    registered.choose("again", None)
     assert shown().touches == ()
-    registered.tap("menu")
-    registered.until_menu("tutorial")
-    registered.choose("leave")
-    registered.until_menu("experiment")
+    registered.tap_until("menu", "tutorial")
+    registered.choose("leave", "experiment")

@@ -51,8 +51,7 @@ def test_a_teacher_pauses_a_trial_and_the_trainee_sees_who_did(trainee, presente
     trainee.until_menu("trial")
     assert "Paused by your instructor." in said(trainee)
     assert presenter.instruct(InstructorOrder.PAUSE, "") == nothing
-    trainee.choose("resume")
-    trainee.until_menu(None)
+    trainee.choose("resume", None)
     assert "Paused by your instructor." not in said(trainee)
 
 

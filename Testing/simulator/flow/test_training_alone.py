@@ -87,10 +87,8 @@ def test_a_study_that_requires_them_offers_no_way_around(alone, outside):
     )
     trainee = alone()
     assert "skip" not in [item.name for item in trainee.menu.items]
-    trainee.choose("tutorial")
-    trainee.until_menu(None)
-    trainee.tap("menu")
-    trainee.until_menu("tutorial")
+    trainee.choose("tutorial", None)
+    trainee.tap_until("menu", "tutorial")
     assert trainee.item("leave").label == "Leave"
 
 
@@ -100,8 +98,7 @@ def test_the_introduction_promises_slicer_only_where_it_is_connected(trainee, ou
         trainee.step(15)
         return "3D Slicer" in trainee.menu.paragraphs[0]
 
-    trainee.choose("train")
-    trainee.until_menu("introduction")
+    trainee.choose("train", "introduction")
     trainee.choose("next")
     trainee.choose("next")
     assert [said(False), said(True)] == [False, True]
@@ -121,8 +118,7 @@ def test_own_trials_are_listed_and_a_failed_task_is_not_done(alone, outside):
         "task-4": "",
     }
     assert trainee.item("trials").value == "3"
-    trainee.choose("trials")
-    trainee.until_menu("own-trials")
+    trainee.choose("trials", "own-trials")
     listed = [item.value for item in trainee.menu.items[:3]]
     assert listed == ["90 / 100, not passed", "90 / 100, passed", "40 / 100, not passed"]
     trainee.tap("accept")

@@ -45,18 +45,13 @@ def test_the_same_control_pauses_and_resumes_a_trial(trainee):
 
 def test_a_trial_is_aborted_only_after_the_trainee_confirms(trainee):
     trainee.start("task-1")
-    trainee.tap("menu")
-    trainee.until_menu("trial")
-    trainee.choose("abort")
-    trainee.until_menu("abort")
+    trainee.tap_until("menu", "trial")
+    trainee.choose("abort", "abort")
     assert trainee.menu.focus == "keep"
-    trainee.tap("accept")
-    trainee.until_menu("trial")
+    trainee.tap_until("accept", "trial")
     assert trainee.state.training.phase == "paused"
-    trainee.choose("abort")
-    trainee.until_menu("abort")
-    trainee.choose("abort")
-    trainee.until_menu("experiment")
+    trainee.choose("abort", "abort")
+    trainee.choose("abort", "experiment")
     assert trainee.state.training.phase == "idle"
 
 
@@ -76,18 +71,14 @@ def test_tasks_wait_for_the_previous_one_unless_the_instructor_disables_that(tra
     trainee.step()
     assert trainee.watcher.kinds[-1] == "error"
     assert trainee.state.training.phase == "idle"
-    trainee.tap("back")
-    trainee.until_menu("start")
-    trainee.choose("settings")
-    trainee.until_menu("settings")
+    trainee.tap_until("back", "start")
+    trainee.choose("settings", "settings")
     assert not trainee.item("order").is_enabled
     assert "preferences.json" in trainee.item("order").help
     session = trainee.presenter._session
     session.prefer(order="any")
-    trainee.tap("back")
-    trainee.until_menu("start")
-    trainee.choose("train")
-    trainee.until_menu("experiment")
+    trainee.tap_until("back", "start")
+    trainee.choose("train", "experiment")
     assert trainee.item("task-5").is_enabled
 
 
@@ -118,14 +109,11 @@ def test_after_five_minutes_of_practice_the_trainee_is_asked_once(trainee, monke
     trainee.until(lambda: trainee.menu.focus)
     assert trainee.state.training.phase == "paused"
     assert trainee.menu.focus == "resume"
-    trainee.choose("resume")
-    trainee.until_menu(None)
+    trainee.choose("resume", None)
     trainee.step(25)
     assert trainee.menu is None
-    trainee.tap("menu")
-    trainee.until_menu("practice")
-    trainee.choose("finish")
-    trainee.until_menu("experiment")
+    trainee.tap_until("menu", "practice")
+    trainee.choose("finish", "experiment")
     assert trainee.item("task-1").is_enabled
 
 
@@ -146,19 +134,15 @@ def test_a_menu_that_opens_by_itself_accepts_no_input_for_seven_tenths_of_a_seco
 
 def test_a_menu_opened_by_the_trainee_accepts_the_next_press(trainee):
     trainee.start("task-1")
-    trainee.tap("menu")
-    trainee.until_menu("trial")
+    trainee.tap_until("menu", "trial")
     assert trainee.menu.focus == "resume"
 
 
 def test_a_stray_key_after_a_trial_does_not_create_another_trainee(trainee):
     trainee.start("task-1", "P07")
-    trainee.tap("menu")
-    trainee.until_menu("trial")
-    trainee.choose("abort")
-    trainee.until_menu("abort")
-    trainee.choose("abort")
-    trainee.until_menu("experiment")
+    trainee.tap_until("menu", "trial")
+    trainee.choose("abort", "abort")
+    trainee.choose("abort", "experiment")
     trainee.hands.type("d")
     assert trainee.item("trainee").value == "P07"
     assert trainee.menu.focus == "trial-run"
@@ -171,10 +155,8 @@ def test_a_trial_run_with_one_point_does_not_count_as_done(trainee):
         truth.in_world(p) / MM_PER_M for p in (truth.fiducials_ras["1"], truth.target_ras)
     )
     trainee.touch(point, center)
-    trainee.tap("menu")
-    trainee.until_menu("trial")
-    trainee.choose("finish")
-    trainee.until_menu("experiment")
+    trainee.tap_until("menu", "trial")
+    trainee.choose("finish", "experiment")
     assert trainee.item("trial-run").value == ""
     assert trainee.item("task-1").help == (
         "Trial run comes first: touch all its points, or practice until its time is over."
@@ -182,8 +164,7 @@ def test_a_trial_run_with_one_point_does_not_count_as_done(trainee):
 
 
 def test_a_touch_too_far_away_is_refused_in_the_chosen_language_with_one_tone(trainee):
-    trainee.choose("settings")
-    trainee.until_menu("settings")
+    trainee.choose("settings", "settings")
     trainee.focus("language")
     trainee.tap("right")
     trainee.step()
@@ -248,10 +229,8 @@ def test_a_study_sets_its_own_guidance(trainee, outside):
 
 def test_guidance_cannot_change_during_a_trial(trainee):
     trainee.start("task-1")
-    trainee.tap("menu")
-    trainee.until_menu("trial")
-    trainee.choose("settings")
-    trainee.until_menu("settings")
+    trainee.tap_until("menu", "trial")
+    trainee.choose("settings", "settings")
     assert not trainee.item("guidance").is_enabled
 
 
@@ -290,10 +269,8 @@ def abort_and_open_settings(trainee):
     trainee.submit("Abort")
     trainee.until_menu("experiment")
     trainee.until(lambda: trainee.menu.focus)
-    trainee.tap("back")
-    trainee.until_menu("start")
-    trainee.choose("settings")
-    trainee.until_menu("settings")
+    trainee.tap_until("back", "start")
+    trainee.choose("settings", "settings")
 
 
 def change_the_camera(trainee):
@@ -308,10 +285,8 @@ def change_the_camera(trainee):
 
 def test_settings_that_would_affect_the_arm_wait_for_the_end_of_a_trial(trainee, outside):
     trainee.start("task-1")
-    trainee.tap("menu")
-    trainee.until_menu("trial")
-    trainee.choose("settings")
-    trainee.until_menu("settings")
+    trainee.tap_until("menu", "trial")
+    trainee.choose("settings", "settings")
     assert not trainee.item("direction").is_enabled
     assert trainee.item("volume").is_enabled
     abort_and_open_settings(trainee)
@@ -323,13 +298,10 @@ def test_settings_that_would_affect_the_arm_wait_for_the_end_of_a_trial(trainee,
 
 
 def test_quitting_asks_for_confirmation(trainee, outside):
-    trainee.choose("quit")
-    trainee.until_menu("quit")
-    trainee.tap("accept")
-    trainee.until_menu("start")
+    trainee.choose("quit", "quit")
+    trainee.tap_until("accept", "start")
     assert not outside.has_quit
-    trainee.choose("quit")
-    trainee.until_menu("quit")
+    trainee.choose("quit", "quit")
     trainee.choose("leave")
     trainee.step()
     assert outside.has_quit

@@ -166,20 +166,25 @@ class Trainee:
         for control in controls:
             self.hands.tap(control)
 
-    def choose(self, item: str) -> None:
-        """Move the focus to an item and accept it."""
+    def tap_until(self, control: str, menu: str | None) -> None:
+        """Press a control, and wait for a menu, or for none."""
+        self.tap(control)
+        self.until_menu(menu)
+
+    def choose(self, item: str, *menu: str | None) -> None:
+        """Move the focus to an item and accept it; wait for the menu that follows, if named."""
         self.focus(item)
         self.tap("accept")
+        for name in menu:
+            self.until_menu(name)
 
     def go_to_experiment(self, trainee: str) -> None:
         """Read through to the experiment menu, and type an ID there."""
         self.until_menu("start")
-        self.choose("train")
-        self.until_menu("introduction")
+        self.choose("train", "introduction")
         while self.menu.name != "controls":
             self.tap("accept")
-        self.choose("next")
-        self.until_menu("experiment")
+        self.choose("next", "experiment")
         self.focus("trainee")
         self.hands.type(trainee)
 
@@ -210,8 +215,7 @@ class Trainee:
             ("skip", "controls"),
             ("next", "experiment"),
         ):
-            self.choose(choice)
-            self.until_menu(menu)
+            self.choose(choice, menu)
 
     def start(self, task: str, trainee: str = "P07", procedure: str = "") -> None:
         """Begin a task as Slicer would, and wait for its screen."""
@@ -221,10 +225,8 @@ class Trainee:
 
     def register(self) -> str:
         """Register the touches, which are complete; return the trial's UUID."""
-        self.tap("touch")
-        self.until_menu("complete")
-        self.choose("register")
-        self.until_menu("waiting")
+        self.tap_until("touch", "complete")
+        self.choose("register", "waiting")
         return self.state.training.trial_id
 
     def touch(self, point: np.ndarray, center: np.ndarray) -> None:
