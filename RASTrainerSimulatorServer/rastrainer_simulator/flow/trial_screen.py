@@ -134,7 +134,7 @@ class TrialScreen(ArmScreen):
             if orbit is not None:
                 session.view.control.go(orbit)
         elif control is ControlName.BEST_VIEW:
-            session.view.want_best()
+            session.view.is_best_wanted = True
         elif control is ControlName.UNDO:
             session.do(CommandName.UNDO)
         elif control is ControlName.TOUCH and session.training.is_tracing:

@@ -80,15 +80,7 @@ def summary(state: TrainingState) -> dict[str, Any]:
 
 def given(state: TrainingState) -> dict[str, Any]:
     """Return the points that register a trial: its touches and its trace, in double precision."""
-    trace = state.trace
-    if trace is None:
-        return {"touches": _touched(state)}
-    traced = [[*(MM_PER_M * x for x in p.position), p.sim_time] for p in trace.points]
-    return {"touches": _touched(state), "trace": traced}
-
-
-def _touched(state: TrainingState) -> list[dict[str, Any]]:
-    return [
+    touches = [
         {
             "label": touch.label,
             "positionMm": [MM_PER_M * value for value in touch.position],
@@ -96,6 +88,11 @@ def _touched(state: TrainingState) -> list[dict[str, Any]]:
         }
         for touch in state.touches
     ]
+    if state.trace is None:
+        return {"touches": touches}
+    points = state.trace.points
+    traced = [[*(MM_PER_M * x for x in point.position), point.sim_time] for point in points]
+    return {"touches": touches, "trace": traced}
 
 
 def revealed(truth: Truth, state: TrainingState, matrix: tuple[float, ...]) -> dict[str, Any]:

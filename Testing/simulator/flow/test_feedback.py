@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from rastrainer.protocol import TouchRule
-from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.presentation.feedback_event import (
@@ -51,9 +50,7 @@ def test_touch_undo_proximity_contact_and_finish_give_sound_and_vibration_exactl
     # SDL only prolongs what vibrates already: here simulated time is faster than the motors.
     pilot.presenter.updates.add(lambda _news: pilot.presenter.rumble(0.0, 0.0))
     pilot.start("task-1")
-    truth = pilot.loop.simulation.truth
-    center = truth.in_world(truth.target_ras) / MM_PER_M
-    top = truth.in_world(truth.fiducials_ras["1"]) / MM_PER_M
+    center, top = pilot.place(), pilot.place("1")
     outward = (top - center) / np.linalg.norm(top - center)
     pilot.steer_to(top + 0.06 * outward, 0.02)
     pilot.steer_to(top - 0.02 * outward, 0.001, fine=True)

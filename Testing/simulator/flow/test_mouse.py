@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from rastrainer.journal.journal_file import read_journal
-from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
@@ -67,9 +66,7 @@ def test_the_arm_is_driven_and_touches_are_made_and_undone_by_clicks_and_dragged
     clicking.until_menu(None)
     assert not clicking.presenter.screen.has_sticks
     clicking.hands.click("press sticks")
-    truth = clicking.loop.simulation.truth
-    center = truth.in_world(truth.target_ras) / MM_PER_M
-    clicking.touch(truth.in_world(truth.fiducials_ras["1"]) / MM_PER_M, center)
+    clicking.touch_point("1")
     assert clicking.touched == 1
     assert clicking.presenter.control.holder == "mouse"
     controls = {hint.control for hint in clicking.presenter.screen.hints}

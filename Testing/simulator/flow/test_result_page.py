@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
@@ -166,11 +165,7 @@ def test_the_worst_point_is_practiced_again_and_nothing_is_recorded(registered, 
     screen = registered.presenter.screen
     assert screen.status[0] == "Task 1: practice of point 7"
     registered.until(lambda: registered.presenter._flow._tutorial_screen._homing is None, "the arm")
-    truth = registered.loop.simulation.truth
-    place, center = (
-        truth.in_world(p) / MM_PER_M for p in (truth.fiducials_ras["7"], truth.target_ras)
-    )
-    registered.touch(place, center)
+    registered.touch_point("7")
     registered.until_menu("practiced")
     assert registered.menu.facts[0].label == "Error of your touch"
     assert registered.state.training.trial_id == trial

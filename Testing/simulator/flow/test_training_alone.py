@@ -9,7 +9,6 @@ import pytest
 
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.study_messages import StudyStep
-from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.chosen_trial import FIRST_ID
 from rastrainer_simulator.flow.session.preferences import Preferences
@@ -129,14 +128,12 @@ def test_own_trials_are_listed_and_a_failed_task_is_not_done(alone, outside):
     assert trainee.presenter.screen.warnings
 
 
-def test_a_poor_touch_of_the_trial_run_is_named_with_the_key_that_takes_it_back(trainee, loop):
+def test_a_poor_touch_of_the_trial_run_is_named_with_the_key_that_takes_it_back(trainee):
     trainee.start(TRIAL_RUN)
     session = trainee.presenter._session
-    truth = loop.simulation.truth
-    place = truth.in_world(truth.fiducials_ras["1"]) / MM_PER_M
+    place, center = trainee.place("1"), trainee.place()
     screen = trainee.presenter._flow._trial_screen
     screen._points = {**screen._points, "1": tuple(np.add(place, (0.0, 0.005, 0.0)).tolist())}
-    center = truth.in_world(truth.target_ras) / MM_PER_M
     trainee.touch(place, center)
     trainee.steer_to(place + 0.2 * (place - center), 0.005)
     trainee.step(15)

@@ -229,6 +229,15 @@ class Trainee:
         self.choose("register", "waiting")
         return self.state.training.trial_id
 
+    def place(self, label: str = "") -> np.ndarray:
+        """Return where a point of the trial is, (3,) World, m; the head's center without one."""
+        truth = self.loop.simulation.truth
+        place = truth.fiducials_ras[label] if label else truth.target_ras
+        return truth.in_world(place) / MM_PER_M
+
+    def touch_point(self, label: str) -> None:
+        self.touch(self.place(label), self.place())
+
     def touch(self, point: np.ndarray, center: np.ndarray) -> None:
         """Carry the tip over the head to a point of the skin (3,) m, and record a touch there."""
         self.lower_onto(point, center)
@@ -310,10 +319,8 @@ class Trainee:
 
     def play(self, task: str) -> None:
         """Touch all points of the running trial, as the head stands in it."""
-        truth = self.loop.simulation.truth
-        center = truth.in_world(truth.target_ras) / MM_PER_M
-        for label in [str(number) for number in range(1, 16)]:
-            self.touch(truth.in_world(truth.fiducials_ras[label]) / MM_PER_M, center)
+        for number in range(1, 16):
+            self.touch_point(str(number))
         assert self.state.training.phase is Phase.COMPLETE, task
         self.step(2)
 

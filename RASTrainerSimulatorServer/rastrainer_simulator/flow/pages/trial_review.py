@@ -182,7 +182,7 @@ class ReplayPage(SessionPage):
     def _do(self, player: Player, action: PlayerAction) -> None:
         player.do(action)
         if action is PlayerAction.WORST and player.playback.trial.worst is not None:
-            self.session.view.want_best()
+            self.session.view.is_best_wanted = True
 
 
 MOST_TRIALS = 12
