@@ -53,7 +53,7 @@ def _at_once():
 
 
 class Outside:
-    """What the presenter knows of the process around it."""
+    """The process around the presenter, as the presenter knows it."""
 
     def __init__(self, folder):
         self.has_slicer = False

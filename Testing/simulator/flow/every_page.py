@@ -162,7 +162,7 @@ def known_match(share: float, expected_mm: float, interval_mm: tuple, *wrong: st
 
 
 def _matched() -> Future:
-    """Return a match about which most is said: most of what may look wrong with one does."""
+    """Return a match with most of the possible warnings: the page with the longest text."""
     return known_match(0.71, 2.31, (1.12, 5.55), "slides", "several-minima", "few-inliers")
 
 
@@ -173,7 +173,7 @@ class _Loading:
 
 
 def every_screen(presenter: FlowPresenter) -> dict[str, Screen]:
-    """Return a screen of each page, by the name of its menu, and that of a running trial."""
+    """Return a screen of each page, by the name of its menu, and the screen of a running trial."""
     session, flow = presenter._session, presenter._flow
     session.trainee = "P07"
     session.state = replace(session.state, training=SCORED)

@@ -9,7 +9,7 @@ VIEW = 1
 
 
 class Mouse:
-    """What a view sends for a mouse: clicks on what can be clicked, and dragged sticks."""
+    """The input of a mouse as a view sends it: clicks on items and hints, and dragged sticks."""
 
     def __init__(self, trainee: Trainee, kind: str):
         self._trainee = trainee

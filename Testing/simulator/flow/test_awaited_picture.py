@@ -9,7 +9,7 @@ from rastrainer_simulator.flow import operated_views
 from Testing.simulator.flow.trainee import Keys
 
 VIEW = 1
-"""Of the trainee's keyboard."""
+"""The view of the trainee's keyboard."""
 
 
 @pytest.fixture

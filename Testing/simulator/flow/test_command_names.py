@@ -16,7 +16,7 @@ OF_SEVERAL_WORDS = re.compile("|".join(each for each in COMMANDS if not each[1:]
 
 
 def texts_of(value) -> list[str]:
-    """Return every text in a record and in what it holds, except the names of its items."""
+    """Return every text in a record and in its members."""
     if isinstance(value, str):
         return [str(value)]
     if isinstance(value, tuple):

@@ -254,7 +254,7 @@ def test_keys_are_named_as_on_the_operators_keyboard(trainee):
 
     trainee.presenter.on_layout(1, AZERTY)
     assert first_hints(trainee)[0] == ("Z Q S D", "Move")
-    # Another page's keyboard is not theirs, and one that has left is forgotten.
+    # Another page's keyboard is not theirs, and a page that has left is forgotten.
     trainee.presenter.view_joined(2, Hello("page"))
     trainee.presenter.on_layout(2, {"KeyW": "ц"})
     trainee.hands.key("KeyE")

@@ -1,4 +1,4 @@
-"""The ghost: an earlier trial of the same task moves beside the arm, and nothing else changes."""
+"""The ghost: an earlier trial of the same task moves next to the arm, and nothing else changes."""
 
 from __future__ import annotations
 

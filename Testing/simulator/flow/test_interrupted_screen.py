@@ -1,4 +1,4 @@
-"""After a crash the trainee learns what was saved, and decides how to go on."""
+"""After a crash the trainee learns how much was saved, and decides how to go on."""
 
 from __future__ import annotations
 

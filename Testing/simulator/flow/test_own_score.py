@@ -165,7 +165,7 @@ def is_in_use(trainee):
 
 
 def feed(trainee, to_mm):
-    """Feed what is in the guide until the state shows this depth."""
+    """Feed drill or instrument until the state shows this depth."""
     tool = trainee.state.tool
     for _ in range(50):
         if trainee.state.tool is not tool or 1000 * trainee.state.feed >= to_mm:
@@ -178,7 +178,7 @@ def feed(trainee, to_mm):
 def test_without_slicer_the_simulator_registers_and_scores_a_procedure(trainee, outside):
     # A running study keeps it from scoring alone; registering reveals nothing.
     outside.services.assigned.take_step(StudyStep("P07", "trial", 1, 9, "task-1", "desktop"))
-    # While a Slicer is connected, it is the one that registers.
+    # While a Slicer is connected, it registers the trial.
     outside.has_slicer = True
     trial = to_verifying(trainee)
     trainee.step(150)

@@ -1,4 +1,4 @@
-"""A procedure by the keyboard alone: what is read, drawn, heard and chosen in its phases."""
+"""A procedure by the keyboard alone: its texts, pictures, sounds and menus, phase by phase."""
 
 from __future__ import annotations
 
@@ -42,19 +42,19 @@ from Testing.simulator.planned_procedures import ENTRIES, TARGETS, procedure_set
 from Testing.without_tutorial import WITHOUT_TUTORIAL
 
 OFF_MM = (2.0, -1.0, 1.5)
-"""Offset of the registration, like that of one by biased touches."""
+"""Offset of the registration, as biased touches cause it."""
 DRILLED_M, MICROMETER = 0.052, 1e-6
 
 
 class Operation:
-    """The keyboard's trainee, and what was seen after each step."""
+    """The keyboard's trainee, and the screen after each step."""
 
     def __init__(self, trainee: Trainee, outside: Outside):
         self.trainee, self.outside = trainee, outside
         self.seen: dict = {}
 
     def keep(self, name: str) -> None:
-        """Record the screen, and what views receive beside it."""
+        """Record the screen, and the other messages to views."""
         trainee = self.trainee
         trainee.step(15)
         shown = trainee.presenter.shown.latest

@@ -38,7 +38,7 @@ class Place(Trainee):
         shown: the states that the views received.
     """
 
-    # At the loop's usual rate: what is shown again has enough samples.
+    # The loop's usual rate gives a replay enough samples.
     step_s, ticks_a_step = 0.008, 2
 
     def __init__(self, loop, presenter, outside):

@@ -1,4 +1,4 @@
-"""The page of the result: what it says of a score, and how a trial beyond a limit looks."""
+"""The page of the result: its sentences about a score, and about a trial beyond a limit."""
 
 from __future__ import annotations
 

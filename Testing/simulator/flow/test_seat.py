@@ -1,4 +1,4 @@
-"""What a teacher's board reads of a seat, and the orders that a teacher can give there."""
+"""A seat as a teacher's board reads it, and the orders that a teacher can give there."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A study that Slicer leads: the trainee's own menu begins what comes next, and nothing else."""
+"""A study that Slicer leads: the trainee's own menu begins the next step, and nothing else."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a trainee finds who has no instructor: an ID, what may be skipped, the own trials."""
+"""Training without an instructor: an ID, skipped steps, and the own trials."""
 
 from __future__ import annotations
 

@@ -265,7 +265,7 @@ def abort_and_open_settings(trainee):
 def change_the_camera(trainee):
     before = trainee.state.camera
     for _ in range(2):
-        # From a view that was turned the first press leads to the front.
+        # The first press leads to the front if the view was turned.
         if trainee.state.camera == before:
             trainee.tap("camera")
             trainee.step(50)

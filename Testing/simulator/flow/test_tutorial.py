@@ -1,4 +1,4 @@
-"""The tutorial in the flow: by keyboard and gamepad; what it gates, stores, and what ends it."""
+"""The tutorial in the flow: by keyboard and gamepad; its gates, its file and its end."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def session_of(trainee):
 
 
 def go_to_experiment(trainee, rule="required"):
-    """Go from the start menu to that of the tasks, as P07."""
+    """Go from the start menu to the experiment menu, as P07."""
     session = session_of(trainee)
     session.prefer(tutorial=rule)
     session.trainee = "P07"
@@ -162,12 +162,12 @@ def test_a_touch_that_does_not_count_says_why(learner):
 
 
 def move_over_skin(learner, aside_m, lift_m=0.0):
-    """Bring the tip onto the skin so far beside the next point, or so far above it."""
+    """Bring the tip onto the skin so far from the next point, or so far above it."""
     point, center = FlowLearner(learner)._next()
     outward = (point - center) / np.linalg.norm(point - center)
     aside = np.cross(outward, (1.0, 0.0, 0.0))
     place = point + aside_m * aside / np.linalg.norm(aside)
-    # The head is not a ball: beside the point, the skin is a little lower or higher.
+    # The head is not a ball: next to the point, the skin is a little lower or higher.
     low = lift_m or -0.0005 - 0.2 * aside_m
     for height, speed in ((0.03, 200), (low, 40)):
         goal_mm = (MM_PER_M * (place + height * outward)).tolist()

@@ -21,7 +21,7 @@ from rastrainer_simulator.vectors import dot, subtract
 
 PATIENCE_S = 120.0
 RATE_HZ = 62.5
-"""Of a trainee's control loop: it ticks as often as a view is drawn, and costs a quarter."""
+"""Rate of a trainee's control loop, which ticks as often as a view is drawn and costs a quarter."""
 STEP_S = 1.0 / RATE_HZ
 MAX_STEPS = 5_000
 SINK_M = 0.003
@@ -59,8 +59,8 @@ class Watcher:
 class LockStep:
     """Lets a control loop tick only when a test wants it: nothing depends on how fast it is.
 
-    Between two ticks the loop waits where all its subscribers have been called: what the test sees
-    of the loop is what they have seen.
+    The loop waits between two ticks, after all its subscribers have been called: the test sees the
+    same states as they do.
     """
 
     def __init__(self, loop):
@@ -128,7 +128,7 @@ class Trainee:
 
     @property
     def touched(self) -> int:
-        """How many touches the views show: those of the trial, or of the tutorial."""
+        """The number of touches that the views show, in the trial or in the tutorial."""
         return len(self.presenter.shown.latest.training.touches)
 
     def step(self, count: int = 1) -> None:
@@ -271,7 +271,7 @@ class Trainee:
         self._let_go()
 
     def _press_until_green(self, outward: np.ndarray) -> None:
-        """Press less or more, by short pushes, as long as the ring is that of the next point."""
+        """Press less or more, by short pushes, as long as the ring belongs to the next point."""
         pushes = {TouchStage.TOO_DEEP: outward, TouchStage.NEAR: -outward}
         for _ in range(SHORT_PUSHES):
             if self._stage not in pushes:
