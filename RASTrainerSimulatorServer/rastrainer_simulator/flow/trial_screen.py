@@ -77,14 +77,30 @@ class TrialScreen(ArmScreen):
 
     def screen(self) -> Screen:
         session = self._session
+        training = session.training
+        is_complete = training.phase is Phase.COMPLETE and not training.is_tracing
+        touch = "hint.register" if is_complete else "hint.touch"
+        names = {
+            ControlName.TOUCH: "hint.trace" if training.is_tracing else touch,
+            ControlName.UNDO: "hint.undo",
+            ControlName.FINE: "hint.fine",
+            ControlName.BEST_VIEW: "hint.best_view",
+            ControlName.CAMERA: "hint.front",
+            ControlName.MENU: "hint.menu",
+        }
+        movement: tuple[Hint, ...] = ()
+        if session.operator.is_one_of(SourceKind.XR):
+            # In a headset the head turns the view, and the sticks are drawn in the hands.
+            del names[ControlName.BEST_VIEW]
+        elif not is_complete:
+            movement = self._movement_hints()
         covered = session.places.guidance(session.state).covered_mm
         legend = session.texts.say("coverage", distance=f"{covered:.0f}") if covered else ""
-        has_arrow = self.guidance is not Guidance.NONE
         return self._shown(
             self._instruction(),
             self._status(),
-            self._all_hints(),
-            has_arrow=has_arrow,
+            self._hints(movement, names),
+            has_arrow=self.guidance is not Guidance.NONE,
             coverage=legend,
         )
 
@@ -99,10 +115,9 @@ class TrialScreen(ArmScreen):
 
         It stays when Slicer continues the study, a moment before or after it.
         """
-        state = self._session.state
-        step = self._session.trial_step
-        is_new = step is not self._practice_step
-        if step is not None and step.kind == StepKind.TRIAL_RUN and is_new:
+        state, step = self._session.state, self._session.trial_step
+        is_run = step is not None and step.kind == StepKind.TRIAL_RUN
+        if step is not None and is_run and step is not self._practice_step:
             self._practice_step = step
             self._practice_end_s = state.elapsed + step.left_s()
         return TRIAL_RUN_S if self._practice_end_s is None else self._practice_end_s
@@ -214,27 +229,6 @@ class TrialScreen(ArmScreen):
             nearest_mm = PRACTICED_MM if is_practice else LOOKED_AT_MM
             facts.append(self._toward(name, target, nearest_mm))
         return facts
-
-    def _all_hints(self) -> tuple[Hint, ...]:
-        session = self._session
-        training = session.training
-        is_complete = training.phase is Phase.COMPLETE and not training.is_tracing
-        touch = "hint.register" if is_complete else "hint.touch"
-        names = {
-            ControlName.TOUCH: "hint.trace" if training.is_tracing else touch,
-            ControlName.UNDO: "hint.undo",
-            ControlName.FINE: "hint.fine",
-            ControlName.BEST_VIEW: "hint.best_view",
-            ControlName.CAMERA: "hint.front",
-            ControlName.MENU: "hint.menu",
-        }
-        movement: tuple[Hint, ...] = ()
-        if session.operator.is_one_of(SourceKind.XR):
-            # In a headset the head turns the view, and the sticks are drawn in the hands.
-            del names[ControlName.BEST_VIEW]
-        elif not is_complete:
-            movement = self._movement_hints()
-        return self._hints(movement, names)
 
     def _is_off_the_path(self) -> bool:
         training = self._session.training

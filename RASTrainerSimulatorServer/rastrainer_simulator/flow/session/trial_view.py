@@ -43,8 +43,8 @@ class TrialView:
     """The viewpoint of the pictures of the present trial, and what the sticks mean from there.
 
     Attributes:
-        stick_turn_deg: by how much right and forward of the sticks are turned against the axes of the
-            scenario's camera, counterclockwise from above.
+        stick_turn_deg: turn of the sticks' right and forward against the scenario's camera,
+            counterclockwise from above.
         is_best_wanted: whether to go to the best view of the next point for the arm as it stands
             now, once it is found.
         yaw_deg: where the eyes look, degrees from World's x; None without a headset's controllers.
