@@ -39,7 +39,7 @@ from rastrainer_simulator.flow.arm_screen import (
     off_path,
 )
 from rastrainer_simulator.flow.pages.controls import controls_page
-from rastrainer_simulator.flow.pages.session_page import SessionPage, page_kind
+from rastrainer_simulator.flow.pages.session_page import SessionPage, ShownPage, page_kind
 from rastrainer_simulator.flow.pages.start import settings_page, start_page
 from rastrainer_simulator.flow.pages.trial_review import POOR_MM
 from rastrainer_simulator.flow.session.chosen_trial import guidance_of
@@ -326,34 +326,32 @@ def _abort(session: TrainingSession, reason: AbortReason) -> partial[None]:
     return partial(session.do, CommandName.ABORT, {"reason": reason.value})
 
 
-class PreparingPage(SessionPage):
-    """A trial is paused until the trainee's view has drawn its picture; then it goes on."""
+def _resume_with_picture(page: ShownPage, _dt: float, is_resumed: bool = False) -> None:
+    if page.session.picture_share is None and not is_resumed:
+        page.set_value("is_resumed", True)
+        page.session.do(CommandName.RESUME)
 
-    name = "preparing"
-    _is_resumed = False
 
-    def content(self) -> PageContent:
-        session = self.session
+@page_kind(
+    "preparing",
+    leave=lambda page, **_values: page.session.pages.replace(trial_page(page.session)),
+    advance=_resume_with_picture,
+)
+def preparing_page(page: SessionPage, **_values: bool) -> PageContent:
+    """Have a trial wait until the trainee's view has drawn its picture."""
+    session = page.session
 
-        def begin_without_picture() -> None:
-            session.goes_on_blind = session.training.trial_id
-            session.do(CommandName.RESUME)
+    def begin_without_picture() -> None:
+        session.goes_on_blind = session.training.trial_id
+        session.do(CommandName.RESUME)
 
-        task = session.task_title(session.training.task)
-        said = (self.say("preparing.text", task=task), session.preparing())
-        rows = (
-            self.button("menu", label=self.say("hint.menu")),
-            self.button("begin", begin_without_picture),
-        )
-        return PageContent(said, rows=rows, first="menu")
-
-    def back(self) -> None:
-        self.session.pages.replace(trial_page(self.session))
-
-    def advance(self, dt: float) -> None:  # noqa: ARG002
-        if self.session.picture_share is None and not self._is_resumed:
-            self._is_resumed = True
-            self.session.do(CommandName.RESUME)
+    task = session.task_title(session.training.task)
+    said = (page.say("preparing.text", task=task), session.preparing())
+    rows = (
+        page.button("menu", label=page.say("hint.menu")),
+        page.button("begin", begin_without_picture),
+    )
+    return PageContent(said, rows=rows, first="menu")
 
 
 @page_kind("abort")

@@ -262,9 +262,9 @@ def _pages(session) -> Iterator[SessionPage]:
     yield start.PinPage(session)
     yield introduction.introduction_page(session)
     yield controls.controls_page(session)
-    yield controls.PadTestPage(session)
+    yield controls.pad_test_page(session)
     yield controls.bindings_page(session, device=keys)
-    yield controls.ListenPage(session, keys, touch)
+    yield controls.listen_page(session, keys, touch)
     yield controls.conflict_page(session, keys, touch, "KeyC")
     with_curriculum(session)
     yield experiment.ExperimentPage(session)
@@ -276,7 +276,7 @@ def _pages(session) -> Iterator[SessionPage]:
     yield trainee_id.questionnaire_page(session, QUESTIONNAIRE)
     for over_a_trial in (
         trial_screen.trial_page,
-        trial_screen.PreparingPage,
+        trial_screen.preparing_page,
         trial_screen.abort_page,
         trial_screen.practice_page,
         trial_screen.complete_page,
