@@ -85,7 +85,7 @@ class TutorialScreen(ArmScreen):
                 self._homing = None
             return
         tutorial.use(session.operator.learned(session.mode))
-        tutorial.practice.end_refusal(session.state.sim_time)
+        tutorial.practice.training.end_refusal(session.state.sim_time)
         practice = tutorial.practice.training.state
         seen = TutorialObservation(
             tip=session.tip,

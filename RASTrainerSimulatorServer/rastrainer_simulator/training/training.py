@@ -133,10 +133,9 @@ class Training:
     def truth(self) -> Truth:
         return self._head.truth
 
-    @property
-    def goal(self) -> Vector | None:
-        """Where the next fiducial is, World, m; None without one."""
-        return self._head.fiducials.get(self.state.next_point or "")
+    def goal_of(self, state: TrainingState) -> Vector | None:
+        """Return where the next fiducial is in a state of the trial, World, m; None without one."""
+        return self._head.fiducials.get(state.next_point or "")
 
     def handles(self, command: str) -> bool:
         return command in self._handlers
