@@ -74,6 +74,9 @@ class Outside:
             pin=self.pin,
         )
 
+    def presenter(self, loop, **preferences):
+        return FlowPresenter(loop, self.services, DEFAULT_BINDINGS, Preferences(**preferences))
+
     def _list(self):
         done = Future()
         done.set_result(self.scenarios)
@@ -118,8 +121,7 @@ def loop(shared, tmp_path):
 
 @pytest.fixture
 def presenter(loop, outside):
-    preferences = Preferences(**WITHOUT_TUTORIAL)
-    presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, preferences)
+    presenter = outside.presenter(loop, **WITHOUT_TUTORIAL)
     yield presenter
     presenter.close()
 

@@ -8,9 +8,6 @@ from rastrainer.commands import CommandName, check_arguments
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.protocol import Phase
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
-from rastrainer_simulator.flow.flow_presenter import FlowPresenter
-from rastrainer_simulator.flow.session.preferences import Preferences
-from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from Testing.simulator.flow.conftest import put_back
 from Testing.simulator.flow.trainee import RATE_HZ, Keys, Trainee
@@ -45,8 +42,7 @@ def back(shared, records, outside, language):
     reading, interrupted = find_interrupted(records)
     shared.resume_trial(interrupted)
     with ControlLoop(shared, records, rate_hz=RATE_HZ, speed=None, interrupted=reading) as loop:
-        preferences = Preferences(language=language)
-        presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, preferences)
+        presenter = outside.presenter(loop, language=language)
         trainee = Trainee(loop, presenter, Keys)
         yield trainee
         trainee.close()

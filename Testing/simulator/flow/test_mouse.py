@@ -6,11 +6,8 @@ import numpy as np
 import pytest
 
 from rastrainer.journal.journal_file import read_journal
-from rastrainer_simulator.flow.flow_presenter import FlowPresenter
-from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.flow.session.trainee_history import TraineeHistory
 from rastrainer_simulator.flow.tutorial.steps import TutorialStep
-from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
 from Testing.simulator.flow.learner import FlowLearner
 from Testing.simulator.flow.mouse import VIEW, ClickingTrainee, Mouse
@@ -121,7 +118,7 @@ class MouseLearner(FlowLearner):
 @pytest.fixture(params=["desktop", "page"])
 def newcomer(loop, outside, request):
     """A trainee with a mouse who has to do the tutorial, as at the first start."""
-    presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, Preferences())
+    presenter = outside.presenter(loop)
     trainee = ClickingTrainee(loop, presenter, lambda it: Mouse(it, request.param))
     trainee.until_menu("start")
     yield trainee

@@ -12,9 +12,6 @@ from rastrainer.journal.journal_file import read_journal
 from rastrainer.protocol import FREE, Phase
 from rastrainer.study_messages import StudyStep
 from rastrainer.trial.scoring import SCORE_VERSION
-from rastrainer_simulator.flow.flow_presenter import FlowPresenter
-from rastrainer_simulator.flow.session.preferences import Preferences
-from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.presentation.screen import Tone
 from rastrainer_simulator.texts.texts import LANGUAGES
 from rastrainer_simulator.trial_state import Tool
@@ -25,8 +22,8 @@ A_MICROMETER = 1e-3
 
 @pytest.fixture
 def presenter(loop, outside):
-    services = replace(outside.services, scores_alone=True)
-    presenter = FlowPresenter(loop, services, DEFAULT_BINDINGS, Preferences())
+    outside.services = replace(outside.services, scores_alone=True)
+    presenter = outside.presenter(loop)
     yield presenter
     presenter.close()
 

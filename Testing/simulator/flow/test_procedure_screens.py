@@ -18,9 +18,6 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.procedure_outcome import procedure_outcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.flow.flow_presenter import FlowPresenter
-from rastrainer_simulator.flow.session.preferences import Preferences
-from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.igtl.publisher import sim_state
 from rastrainer_simulator.net.views.boards import seat_text
@@ -93,8 +90,7 @@ def operation(tmp_path_factory):
     outside.has_slicer = True
     simulation = Simulation(procedure_setup(folder / "scenario"), 3)
     with ControlLoop(simulation, folder / "records", rate_hz=RATE_HZ, speed=None) as loop:
-        preferences = Preferences(**{**WITHOUT_TUTORIAL, "order": "any"})
-        presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, preferences)
+        presenter = outside.presenter(loop, **{**WITHOUT_TUTORIAL, "order": "any"})
         trainee = Trainee(loop, presenter, Keys)
         try:
             operation = Operation(trainee, outside)

@@ -12,10 +12,7 @@ from rastrainer.protocol import FREE
 from rastrainer.study_messages import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.flow.flow_presenter import FlowPresenter
-from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input import controls
-from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.presentation.messages import Hello, InstructorOrder
 from rastrainer_simulator.replay import recorded_trial
@@ -94,7 +91,7 @@ def place(anywhere, tmp_path_factory):
     outside = Outside(tmp_path_factory.mktemp("replay"))
     records = outside.services.records
     with ControlLoop(Simulation(anywhere, 3), records, speed=None) as loop:
-        presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, Preferences())
+        presenter = outside.presenter(loop)
         place = Place(loop, presenter, outside)
         place.until_menu("start")
         place.play_and_be_scored()

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from rastrainer_simulator.flow.flow_presenter import FlowPresenter
-from rastrainer_simulator.flow.session.preferences import Preferences
-from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.presentation.screen import Tone
 from Testing.simulator.flow.conftest import Outside, put_back
@@ -25,7 +22,7 @@ def registered(shared, tmp_path_factory):
     folder = tmp_path_factory.mktemp("played")
     put_back(shared)
     with ControlLoop(shared, folder / "records", rate_hz=RATE_HZ, speed=None) as loop:
-        presenter = FlowPresenter(loop, Outside(folder).services, DEFAULT_BINDINGS, Preferences())
+        presenter = Outside(folder).presenter(loop)
         trainee = Trainee(loop, presenter, Keys)
         trainee.records = folder / "records"
         trainee.until_menu("start")

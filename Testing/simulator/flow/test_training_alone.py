@@ -9,10 +9,7 @@ import pytest
 
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.study_messages import StudyStep
-from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.chosen_trial import FIRST_ID
-from rastrainer_simulator.flow.session.preferences import Preferences
-from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.inputs import ControlName
 from Testing.simulator.flow.scored_journals import TRAINEE, write_scored
 from Testing.simulator.flow.trainee import Keys, Trainee
@@ -24,8 +21,7 @@ def alone(loop, outside):
     open_ = []
 
     def begin(**preferences) -> Trainee:
-        chosen = Preferences(**preferences)
-        presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, chosen)
+        presenter = outside.presenter(loop, **preferences)
         trainee = Trainee(loop, presenter, Keys)
         open_.append((trainee, presenter))
         trainee.until_menu("start")
