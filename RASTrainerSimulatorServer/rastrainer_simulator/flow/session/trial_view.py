@@ -90,8 +90,15 @@ class TrialView:
     ) -> None:
         camera = scenario.cameras[state.camera]
         self.control.use(state.camera)
-        label = state.training.next_point
-        has_searched = self._look_for(state)
+        label, has_searched = state.training.next_point, False
+        # The view of a point is looked for once it is next, and whenever it is wanted.
+        if label is not None and self._is_open(state):
+            is_new = self._found is None or self._found[0] != label
+            if self._search is None and (self.is_best_wanted or is_new):
+                self._search = label, self._best.search(label, state.q)
+            elif self._search is not None and self._search[1].done():
+                has_searched = self._search[0] == label
+                self._found, self._search = (self._search[0], self._search[1].result()), None
         view = self._view_of(state)
         is_wanted = self.is_best_wanted and has_searched
         if view is not None and (is_wanted or (follows and label != self._went_for)):
@@ -129,24 +136,6 @@ class TrialView:
         else:
             self.stick_turn_deg = yaw_deg - heading_deg(camera)
         return turned(sticks, self.stick_turn_deg) if axes is AxesChoice.CAMERA else sticks
-
-    def _look_for(self, state: SimulationState) -> bool:
-        """Look for the view of a point once it is next, and whenever it is wanted.
-
-        Returns whether a search has just ended.
-        """
-        label = state.training.next_point
-        if label is None or not self._is_open(state):
-            return False
-        if self._search is None:
-            if self.is_best_wanted or self._found is None or self._found[0] != label:
-                self._search = label, self._best.search(label, state.q)
-            return False
-        searched, search = self._search
-        if not search.done():
-            return False
-        self._search, self._found = None, (searched, search.result())
-        return searched == label
 
     def _is_open(self, state: SimulationState) -> bool:
         training = state.training
