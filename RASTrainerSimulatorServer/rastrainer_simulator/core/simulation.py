@@ -295,7 +295,7 @@ class Simulation:
 
     def _state(self, tick: int, sim_time: float, motion: Motion) -> SimulationState:
         clearance, training = self._moved.clearance, self._training.state
-        moment, goal = self._touch_moment(sim_time), self._training.goal
+        moment, goal = self._touch_moment(sim_time), self._training.goal_of(self._training.state)
         settings = self.setup.settings.training
         return SimulationState(
             tick=tick,
