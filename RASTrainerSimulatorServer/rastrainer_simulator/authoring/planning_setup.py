@@ -48,9 +48,9 @@ def touchable(
         for place in np.flatnonzero(can_be):
             position = transforms.apply(pose, positions[place] / MM_PER_M)
             normal = pose[:3, :3] @ normals[place]
-            found = planner.working_direction(position, normal, int(likely[place]))
+            found = planner.touch(position, normal, int(likely[place]))
             can_be[place] = found is not None
-            likely[place] = found or 0
+            likely[place] = 0 if found is None else found.number
     return can_be
 
 

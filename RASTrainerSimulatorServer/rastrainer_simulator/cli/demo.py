@@ -119,8 +119,7 @@ def _simulator(output: Path, seed: int, speed: float) -> Iterator[int]:
 def _slicer(output: Path, port: int) -> Iterator[subprocess.Popen]:
     """Run Slicer's side without Slicer, which ends when it has stored all trials."""
     words = ["rastrainer_headless.main", "--port", str(port), "--output", str(output)]
-    words += ["--scenario", str(asset_path(*DEFAULT_SCENARIO)), "--trials", str(len(TASKS))]
-    words += ["--cohort", str(asset_path("studies", "published.csv"))]
+    words += ["--assets", str(asset_path()), "--trials", str(len(TASKS))]
     with (output / "slicer.log").open("w") as log, _process(words, log, stdout=log) as process:
         yield process
 

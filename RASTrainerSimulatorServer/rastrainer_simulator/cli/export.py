@@ -45,7 +45,7 @@ def _export_grades(arguments: argparse.Namespace) -> int:
     with Study.open_for_reading(arguments.study) as opened:
         found = {
             trainee.pseudonym: grade(
-                opened.past_trials(trainee.pseudonym),
+                opened.attempts(trainee.pseudonym),
                 arguments.task,
                 arguments.mode,
                 RegistrationMethod(arguments.method),

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
-from itertools import zip_longest
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import counted
-from rastrainer.study.database.database import Connection
+from rastrainer.study.database.database import StudyDatabase
 from rastrainer.study.database.schema import TABLES, Table
 from rastrainer.study.database.study import Study
 from rastrainer.study.trainee_data import erase_trainee
@@ -37,36 +35,29 @@ def copy_rows(source: Study, target: Study) -> dict[str, int]:
     The numbers of rows stay, and with them the order of storing; every float keeps each bit.
     """
     counts = {}
-    with source.database.reading() as given, target.database.writing() as taken:
+    given, taken = source.database, target.database
+    with given.reading(), taken.writing():
         for table in TABLES.values():
-            if table.name != COUNTER and _count(taken, table):
+            if table.name != COUNTER and taken.row(f"SELECT 1 FROM {table.name}") is not None:
                 raise InputError("The study to copy to holds something; choose an empty one.")
-        taken.execute(f"DELETE FROM {COUNTER}")
+        taken.change(f"DELETE FROM {COUNTER}")
         for table in TABLES.values():
             marks = ", ".join("?" * len(table.columns))
-            taken.executemany(
-                f"INSERT INTO {table.name} ({', '.join(table.columns)}) VALUES ({marks})",
-                _rows(given, table),
-            )
-        target.database.continue_numbers()
-        for table in TABLES.values():
-            pairs = zip_longest(_rows(given, table), _rows(taken, table))
-            if any(tuple(before or ()) != tuple(after or ()) for before, after in pairs):
+            rows = _rows(given, table)
+            for row in rows:
+                taken.change(
+                    f"INSERT INTO {table.name} ({', '.join(table.columns)}) VALUES ({marks})", *row
+                )
+            if _rows(taken, table) != rows:
                 raise InputError(f"The table {table.name} was not copied as it is; nothing is.")
-            counts[table.name] = _count(taken, table)
+            counts[table.name] = len(rows)
+        taken.continue_numbers()
     return counts
 
 
-def _rows(connection: Connection, table: Table) -> Iterator[tuple]:
-    return iter(
-        connection.execute(
-            f"SELECT {', '.join(table.columns)} FROM {table.name} ORDER BY {table.order}"
-        )
-    )
-
-
-def _count(connection: Connection, table: Table) -> int:
-    return connection.execute(f"SELECT count(*) FROM {table.name}").fetchone()[0]
+def _rows(database: StudyDatabase, table: Table) -> list[tuple]:
+    columns = ", ".join(table.columns)
+    return database.rows(f"SELECT {columns} FROM {table.name} ORDER BY {table.order}")
 
 
 def delete_trainee(arguments: argparse.Namespace) -> int:

@@ -118,7 +118,8 @@ def _mean_scores(
     for group in (novices, experts):
         means.append([])
         for pseudonym in dict.fromkeys(group):
-            trials = opened.past_trials(pseudonym)[-LAST_TRIALS:]
+            attempts = opened.attempts(pseudonym)
+            trials = [each for each in attempts if not each.is_aborted][-LAST_TRIALS:]
             if len(trials) < LAST_TRIALS:
                 raise InputError(
                     f"{pseudonym} has {len(trials)} scored trials, and {LAST_TRIALS} are needed of "

@@ -15,7 +15,7 @@ from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.study.outcomes import Outcome, mode_title, short_mode_title
 from rastrainer.study.study_data import StudyData, TrialRow, values_of
-from rastrainer.study.tre_calibration import CalibrationPoint, TreCalibration
+from rastrainer.study.tre_calibration import calibration_of
 from rastrainer_simulator.report import charts
 from rastrainer_simulator.report.comparisons import (
     ModeComparison,
@@ -39,15 +39,7 @@ COLORS = {RESIDUAL: "#6b7785", EXPECTED: "#0b6fa4", TRUE: "#d1661b"}
 
 def calibration(data: StudyData) -> Markup:
     """Return how well errors were expected; "" if no target errors are known."""
-    points = []
-    for trial in data.trials:
-        values = trial.values
-        if {"expected_tre_mm", "tre_low_mm", "tre_high_mm", "true_tre_mm"} <= set(values):
-            interval = values["tre_low_mm"], values["tre_high_mm"]
-            errors = values["expected_tre_mm"], interval, values["true_tre_mm"]
-            points.append(CalibrationPoint(trial.trainee, trial.mode, trial.task, *errors))
-    known = sum({"expected_tre_mm", "tre_low_mm"} <= set(trial.values) for trial in data.trials)
-    found = TreCalibration.of(points, known - len(points), len(data.trials) - known)
+    found = calibration_of(data.trials)
     if not found.points and not found.without_truth:
         return Markup()
     colors = {

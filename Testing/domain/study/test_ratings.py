@@ -29,8 +29,7 @@ def store(study):
 
 
 def rows(study, table="rating_marks"):
-    with study.database.reading() as connection:
-        return connection.execute(f"SELECT count(*) FROM {table}").fetchone()[0]
+    return study.database.row(f"SELECT count(*) FROM {table}")[0]
 
 
 def test_all_raters_get_the_same_trials_each_in_their_own_order(store):

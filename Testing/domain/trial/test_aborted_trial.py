@@ -100,7 +100,7 @@ def test_finished_and_aborted_trials_have_different_uuids(study):
 
 def test_an_aborted_trial_is_not_listed_as_finished(study):
     study.add_aborted(make_aborted())
-    assert study.history("T-001") == study.past_trials("T-001") == ()
+    assert study.history("T-001") == ()
 
 
 def test_deleting_a_trainee_deletes_aborted_trials_for_good(study, tmp_path):
@@ -112,17 +112,16 @@ def test_deleting_a_trainee_deletes_aborted_trials_for_good(study, tmp_path):
     assert erased.missing == (make_aborted()["trialId"],)
     with pytest.raises(DeletedTrialError):
         study.add_aborted(make_aborted())
-    with study.database.reading() as connection:
-        for table in TABLES.values():
-            rows = str(connection.execute(f"SELECT * FROM {table.name}").fetchall())
-            assert "T-001" not in rows
-            assert make_aborted()["trialId"] not in rows
+    for table in TABLES.values():
+        rows = str(study.database.rows(f"SELECT * FROM {table.name}"))
+        assert "T-001" not in rows
+        assert make_aborted()["trialId"] not in rows
 
 
 def test_the_export_of_a_trainee_has_the_aborted_trials(study, tmp_path):
     study.add_aborted(make_aborted())
     assert export_trainee(study, "T-001", tmp_path / "all.json") == 0
-    exported = json.loads((tmp_path / "all.json").read_text())["aborted_trials"]
+    exported = json.loads((tmp_path / "all.json").read_text())["abortedTrials"]
     assert [(each["record"]["reason"], len(each["record"]["points"])) for each in exported] == [
         ("trainee", 3)
     ]

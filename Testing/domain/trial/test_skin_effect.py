@@ -109,7 +109,9 @@ def test_a_study_stores_the_skin_shift_and_shows_it_in_tables_and_report(scenari
             record, analysis.fits.values(), analysis.target_errors, delivered=record_to_json(record)
         )
         study.add_results(record.trial_id, score=analysis.score)
-        study.set_truth(record.trial_id, truth.true_tre_mm, truth.head_to_world)
+        study.add_results(
+            record.trial_id, truth=RevealedTruth(tuple(truth.head_to_world), truth.true_tre_mm)
+        )
         (stored,) = study.history("P01")
     again = analyze_trial(stored.record, scenario).scored_as(stored.score, scenario, stored.truth)
     assert again.feedback.skin == analysis.feedback.skin

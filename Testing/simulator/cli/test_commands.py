@@ -344,7 +344,7 @@ def words(study, *more, novices=NOVICES, experts=EXPERTS):
 
 def means(path, names):
     with Study.open(path) as study:
-        return [sum(t.score for t in study.past_trials(name)[-3:]) / 3 for name in names]
+        return [sum(t.score for t in study.attempts(name)[-3:]) / 3 for name in names]
 
 
 def test_the_pass_mark_lies_between_the_groups_last_trials_without_trial_runs(study, capsys):
@@ -354,7 +354,7 @@ def test_the_pass_mark_lies_between_the_groups_last_trials_without_trial_runs(st
     assert max(means(study, NOVICES)) < mark < min(means(study, EXPERTS))
     assert "here it is 0 % and 0 %" in output
     with Study.open(study) as opened:
-        assert [trial.task for trial in opened.past_trials("N0")] == ["task-1"] * 4
+        assert [trial.task for trial in opened.attempts("N0")] == ["task-1"] * 4
 
 
 def test_trials_by_two_methods_give_no_pass_mark(study, capsys):

@@ -82,9 +82,7 @@ class GivenPoints:
         least = FIDUCIAL_COUNT if is_by_fiducials else COARSE_LANDMARKS
         if not isinstance(given, list) or not least <= len(given) <= FIDUCIAL_COUNT:
             wanted = FIDUCIAL_COUNT if is_by_fiducials else "landmarks"
-            raise InputError(
-                f"The simulator's answer to GetTrial must hold touches, a list of {wanted}."
-            )
+            raise InputError(f"The trial must hold touches, a list of {wanted}.")
         points = [
             record_from_json(RegisteredTouch, touch, "Each touch of the trial") for touch in given
         ]
@@ -92,12 +90,12 @@ class GivenPoints:
         touches = PointList(tuple(point.label for point in points), places)
         trace: tuple[TracePoint, ...] = ()
         if method in TRACED_METHODS:
-            what = "The trace in the answer to GetTrial"
+            what = "The trace of the trial"
             trace = accepted(trace_points, answer.get("trace"), what)
             if len(trace) < least_traced:
                 raise InputError(
-                    f"The simulator's answer to GetTrial must hold a trace of {least_traced} "
-                    f"points or more, not {len(trace)}."
+                    f"The trial must hold a trace of {least_traced} points or more, not "
+                    f"{len(trace)}."
                 )
         traced = np.array(trace, dtype=float).reshape(-1, 4)[:, :3]
         return cls(str(answer.get("task", "")), touches, method, traced)
