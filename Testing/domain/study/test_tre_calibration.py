@@ -6,7 +6,10 @@ from scipy import stats
 
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.study.study_data import StudyData, TrialRow
-from rastrainer.study.tre_calibration import CalibrationPoint, TreCalibration, calibration_of, proportion
+from rastrainer.study.tre_calibration import (
+    calibration_of,
+    proportion,
+)
 from rastrainer_simulator.report.target_errors import calibration
 
 KNOWN = {"expected_tre_mm": 0.5, "tre_low_mm": 0.1, "tre_high_mm": 1.0}
