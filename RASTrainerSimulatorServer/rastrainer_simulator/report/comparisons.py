@@ -106,10 +106,6 @@ def with_adjusted_p(
     return tuple(replace(one, adjusted_p=adjusted.get(at)) for at, one in enumerate(found))
 
 
-def tested(comparisons: Sequence[ModeComparison]) -> list[tuple[ModeComparison, PairedComparison]]:
-    return [(one, one.result) for one in comparisons if one.result is not None]
-
-
 def paired_means(
     data: StudyData, name: str, first: str, second: str
 ) -> dict[str, tuple[float, float]]:
