@@ -215,9 +215,7 @@ def live(board, seat, first):
     return board.thread.run(read())
 
 
-def test_a_seat_is_seen_and_heard_live_and_no_input_of_its_page_reaches_it(
-    board, simulator
-):
+def test_a_seat_is_seen_and_heard_live_and_no_input_of_its_page_reaches_it(board, simulator):
     seat = board.add(simulator)
     kinds = live(board, seat, SPECTATOR)
     assert {"welcome", "screen", "state"} <= set(kinds)

@@ -23,7 +23,7 @@ from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.report.comparisons import compare_modes, mode_delays, paired_means
 from rastrainer_simulator.report.published_tables import (
     cohort_scores,
-    complexity_correlation,
+    complexity,
     performance_color,
     with_ctps,
 )
@@ -195,7 +195,7 @@ def test_the_claim_that_ctps_falls_with_complexity_is_checked(published, page):
     found = []
     for mode in ("hmd", "desktop"):
         scores = cohort_scores(published, mode)
-        one = complexity_correlation(scores.tasks.items())
+        one = complexity(published, mode, scores)["task_scores"]
         expected = pearsonr(range(1, 6), mean_ctps_of_tasks(mode))
         assert (one.r, one.p) == pytest.approx((expected.statistic, expected.pvalue), abs=1e-9)
         limits = expected.confidence_interval(0.95)
