@@ -212,7 +212,10 @@ class RatingPage(Page):
     """A page that a rater reads."""
 
     def __init__(self, actions: RatingPresenter) -> None:
-        self.actions, self.say = actions, actions.say
+        self.actions = actions
+
+    def say(self, key: str, **values: object) -> str:
+        return self.actions.say(key, **values)
 
     def rows(self, *names: str) -> tuple[PageRow, ...]:
         """Return buttons that several pages have; "watch" goes back."""

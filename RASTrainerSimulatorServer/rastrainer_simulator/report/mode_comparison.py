@@ -43,8 +43,8 @@ def mode_comparison(data: StudyData) -> Markup:
         series = []
         for mode, color in modes:
             trials = [[t for t in data.of_mode(mode) if t.task == task] for task in data.tasks]
-            values = [values_of(own, outcome.name) for own in trials]
-            series.append((mode_title(mode), color, values))
+            by_trial = [values_of(own, outcome.name) for own in trials]
+            series.append((mode_title(mode), color, by_trial))
         titles = [task_title(task) for task in data.tasks]
         by_task.append(charts.grouped_bars(outcome.heading, titles, series))
     return render("mode_comparison", by_task=by_task, distributions=distributions)

@@ -184,13 +184,9 @@ class SimulatorLink:
         self.offers = TrialOffers(unacknowledged, lambda: self.server.clients)
         self._arrivals = arrivals
         self._offered_arrivals = arrivals()
-        self._submit_checked = partial(
-            ThreadPoolExecutor(max_workers=1, thread_name_prefix="registration").submit,
-            submit_checked,
-            submit,
-            lambda: latest().training,
-            find_scenario,
-        )
+        registering = ThreadPoolExecutor(max_workers=1, thread_name_prefix="registration")
+        check = partial(submit_checked, submit, lambda: latest().training, find_scenario)
+        self._submit_checked: SubmitCommand = partial(registering.submit, check)
         self._submit_command = submit
         self._health = health
         self._answers = answers

@@ -82,9 +82,9 @@ def beginOf(path: Path) -> bytes:
 
 def niftiHeader(begin: bytes) -> Any | None:
     """Return a record of `_NIFTI`, of either order of bytes; None for other files."""
-    for order in "<>":
+    for layout in (_NIFTI.newbyteorder("<"), _NIFTI.newbyteorder(">")):
         if len(begin) >= _HEADER_SIZE:
-            header = np.frombuffer(begin, _NIFTI.newbyteorder(order), 1)[0]
+            header = np.frombuffer(begin, layout, 1)[0]
             if header["size"] == _HEADER_SIZE:
                 return header
     return None
