@@ -36,7 +36,7 @@ from rastrainer.json_records import record_to_json
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
 from rastrainer.registration.fits import RIGID
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.sections.module_session import ModuleSession
 from rastrainer.slicer.scene.error_colors import magnification
 from rastrainer.slicer.scene.nodes import labelsOf
 from rastrainer.slicer.scene.scenario_nodes import showScenario

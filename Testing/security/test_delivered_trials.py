@@ -9,8 +9,7 @@ from rastrainer import transforms
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.logic.delivery_queue import AbortedTrialLogic
-from rastrainer.slicer.logic.trial_logic import TrialLogic
+from rastrainer.sections.trial_logic import AbortedTrialLogic, TrialLogic
 from rastrainer.study.database.study import Study
 from Testing.end_to_end.faulty_proxy import SlicerSide
 from Testing.end_to_end.finished_trials import COLIN, write_finished_trials

@@ -1,4 +1,4 @@
-"""What the status line says about the link, and what to do about it."""
+"""The status line about the link, with its advice."""
 
 from dataclasses import replace
 

@@ -29,7 +29,7 @@ def _verify(path: Path, study: Study | None) -> int:
         if study is not None:
             sealed = [entry["sha256"] for entry in reading.of_kind("registered")]
             try:
-                record = study.trial(str(reading.header.get("trialId"))).record
+                record = study.trial(reading.header.trial_id).record
                 if record.journal_sha256 not in sealed:
                     problem = "; the trial in the study is not from this journal"
             except InputError:
@@ -43,7 +43,7 @@ def _verify(path: Path, study: Study | None) -> int:
 
 def measure(arguments: argparse.Namespace) -> int:
     reading = read_journal(arguments.journal)
-    motion = trial_motion(Recording.of(reading.entries).trajectory())
+    motion = trial_motion(Recording.of(reading.lines()).trajectory())
     if arguments.json:
         print(json_text(motion))
         return 0

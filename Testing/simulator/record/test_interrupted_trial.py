@@ -11,6 +11,7 @@ import pytest
 
 from rastrainer.commands import CommandName, check_arguments
 from rastrainer.errors import InputError
+from rastrainer.journal.entries import PhaseChange
 from rastrainer.journal.journal_file import SEED_SUFFIX, Integrity, read_journal
 from rastrainer.journal.recording import Recording
 from rastrainer.json_records import record_from_json
@@ -162,11 +163,11 @@ def test_a_journal_cut_at_any_byte_is_resumed_with_every_complete_touch(simulati
         shutil.copy(server.path.with_suffix(SEED_SUFFIX), folder)
         path.write_bytes(data[: rng.randrange(len(data))])
         found = find_interrupted(folder)
-        entries = read_journal(path).entries if path.stat().st_size else ()
-        if not any(entry["kind"] == "phase" for entry in entries):
+        lines = tuple(read_journal(path).lines()) if path.stat().st_size else ()
+        if not any(isinstance(line.entry, PhaseChange) for line in lines):
             assert found is None
             continue
-        kept = [touch.label for touch in Recording.of(entries).trajectory().touches]
+        kept = [touch.label for touch in Recording.of(lines).trajectory().touches]
         simulation.resume_trial(found[1])
         training = simulation.state.training
         assert training.phase is Phase.PAUSED
@@ -221,10 +222,10 @@ def test_the_trials_clock_is_stopped_until_it_is_resumed(simulation, tmp_path):
         server.finish()
         (record,) = server.loop.archive.unacknowledged()
         at_end = server.loop.latest.sim_time
-    started = read_journal(server.path).header["before"]["simTimeS"]
+    started = read_journal(server.path).header.before.sim_time_s
     assert elapsed == pytest.approx(last - started, abs=1e-6)
     assert elapsed <= record.completion_time_s < at_end - started - 500 * 0.004
-    times = Recording.of(read_journal(server.path).entries).trajectory().times_s
+    times = Recording.of(read_journal(server.path).lines()).trajectory().times_s
     assert np.all(np.diff(times) > 0.0)
 
 
@@ -247,7 +248,7 @@ def test_a_trial_interrupted_while_pressing_continues_unpressed_and_replays(
         (record,) = server.loop.archive.unacknowledged()
     reading = read_journal(server.path)
     assert replay(reading, anywhere).difference is None
-    contacts = Recording.of(reading.entries).trajectory().contacts
+    contacts = Recording.of(reading.lines()).trajectory().contacts
     assert max(contact.greatest_depth_mm for contact in contacts) >= pressed_mm
     assert record.motion["pressing_depth_mm"] >= (1 - 1e-9) * pressed_mm / np.sqrt(15)
 

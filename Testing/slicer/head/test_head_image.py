@@ -12,7 +12,7 @@ from rastrainer_headless.volume_files import readVolume
 from Testing.slicer.head.phantoms import CT, DOUBLE_OBLIQUE, MRI, depth_mm, phantom
 
 SIZE = 0.5
-"""Of the phantom's head: a small one tests the same, and faster."""
+"""Size of the phantom's head: a small head tests the same, and faster."""
 
 
 def images(scan):
