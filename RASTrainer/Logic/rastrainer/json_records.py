@@ -30,6 +30,8 @@ from rastrainer import json_checks
 from rastrainer.errors import InputError
 
 T = TypeVar("T")
+NOT_IN_JSON = {"json": False}
+"""Metadata of a field that the program fills in; it needs a default."""
 Reader = Callable[[Any, str, bool], Any]
 """Makes a field's value of decoded JSON, its place for errors, and `only_known`."""
 
@@ -100,7 +102,11 @@ def record_fields(kind: Any) -> tuple[RecordField, ...]:
 
 @cache
 def _keys(kind: Any) -> tuple[tuple[str, str, Callable[[], Any] | None], ...]:
-    return tuple((x.name, camel_case(x.name), _default(x)) for x in fields(kind) if x.init)
+    return tuple(
+        (x.name, camel_case(x.name), _default(x))
+        for x in fields(kind)
+        if x.init and x.metadata != NOT_IN_JSON
+    )
 
 
 def camel_case(name: str) -> str:

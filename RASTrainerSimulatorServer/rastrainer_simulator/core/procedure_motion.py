@@ -47,8 +47,7 @@ class TrueHead:
     """The surfaces of skin and skull of a scenario with procedures."""
 
     def __init__(self, scenario: Scenario, skin: HeadMesh) -> None:
-        assert scenario.skull_mesh is not None, "a scenario with procedures has a skull"
-        self._skin, self._skull = skin, read_head_mesh(scenario.skull_mesh)
+        self._skin, self._skull = skin, read_head_mesh(scenario.skull_path)
         # Computed now, not in the tick in which the first guide is locked.
         _ = skin.triangle_spheres, self._skull.triangle_spheres
         self.planned_bone: PlannedBone = {
@@ -106,7 +105,7 @@ class ProcedureMotion:
         if scenario.procedures:
             self._true_head = TrueHead(scenario, head)
             self.planned_bone = self._true_head.planned_bone
-            self._outline = HeadOutline(head.vertices, scenario.target_position)
+            self._outline = HeadOutline(head.vertices, scenario.target.position_ras)
 
     def reset(self, feed: Feed = NO_FEED) -> None:
         """Adopt a feed, and end a commanded one."""

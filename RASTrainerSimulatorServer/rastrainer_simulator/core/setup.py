@@ -217,7 +217,6 @@ def load_setup(
     else:
         robot = model_from_json(prepared["model"], path.parent)
         shape = shape_from_json(prepared["shape"])
-    skull = scenario.skull_mesh
     return SimulationSetup(
         scenario=scenario,
         robot=robot,
@@ -225,9 +224,10 @@ def load_setup(
         settings=settings or SimulationSettings(),
         scenario_sha256=scenario_sha256(scenario),
         landmarks_sha256=landmarks_sha256(scenario),
-        procedure_sha256={}
-        if skull is None
-        else {procedure.name: procedure.sha256(skull) for procedure in scenario.procedures},
+        procedure_sha256={
+            procedure.name: procedure.sha256(scenario.skull_path)
+            for procedure in scenario.procedures
+        },
     )
 
 
@@ -242,7 +242,7 @@ def scenario_sha256(scenario: Scenario) -> str:
     whole = hashlib.sha256()
     for content in (
         _without(scenario.folder / FILE_NAME, left_out),
-        scenario.head_mesh.read_bytes(),
+        scenario.head.read_bytes(),
     ):
         whole.update(hashlib.sha256(content).digest())
     for task in scenario.tasks:

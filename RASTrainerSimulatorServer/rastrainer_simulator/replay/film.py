@@ -110,7 +110,7 @@ class _FilmedScene:
 
     def __init__(self, trial: RecordedTrial, setup: SimulationSetup) -> None:
         scenario = setup.scenario
-        head = read_head_mesh(scenario.head_mesh)
+        head = read_head_mesh(scenario.head)
         first = trial.state_at(0.0)
         task = task_by_method(scenario, trial.task, first.training.method)
         self.count = len(task.labels)

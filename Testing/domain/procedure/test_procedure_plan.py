@@ -49,7 +49,7 @@ def test_a_written_procedure_is_read_again(folder):
     assert left.length_mm == 70.0
     assert left.direction.tolist() == [0.0, 0.0, -1.0]
     assert not left.entry_ras.flags.writeable
-    meshes = read_procedure_meshes(procedure, scenario.skull_mesh)
+    meshes = read_procedure_meshes(procedure, scenario.skull.file)
     assert len(meshes.skull.triangles) == len(shell().triangles)
     assert np.allclose(meshes.no_go["Vessel"].vertices, vessel().vertices, atol=1e-4)
 
@@ -156,7 +156,7 @@ def test_an_invalid_procedure_is_refused_in_one_sentence(folder, change, sentenc
 
 def meshes_of(folder):
     scenario = load_scenario(folder)
-    return read_procedure_meshes(scenario.procedures[0], scenario.skull_mesh)
+    return read_procedure_meshes(scenario.procedures[0], scenario.skull.file)
 
 
 def test_a_missing_no_go_mesh_is_named(folder):
@@ -191,7 +191,7 @@ def test_an_open_skull_is_refused(folder):
 
 def hash_of(folder):
     scenario = load_scenario(folder)
-    return scenario.procedures[0].sha256(scenario.skull_mesh)
+    return scenario.procedures[0].sha256(scenario.skull.file)
 
 
 def test_the_hash_of_a_procedure_covers_what_a_trial_depends_on(folder):

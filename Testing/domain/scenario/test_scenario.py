@@ -70,9 +70,9 @@ def changed(path, value):
 def test_a_scenario_is_read_completely(folder):
     scenario = load_scenario(folder)
     assert (scenario.name, scenario.title, scenario.folder) == ("sphere", "A sphere", folder)
-    assert scenario.head_mesh == (folder / "head.ply").resolve()
-    assert scenario.target_name == "Center"
-    assert scenario.target_position.tolist() == [1, -17, 2]
+    assert scenario.head == (folder / "head.ply").resolve()
+    assert scenario.target.name == "Center"
+    assert scenario.target.position_ras.tolist() == [1, -17, 2]
     assert scenario.head_to_world[:3, 3].tolist() == [480, -17, 218]
     assert [task.name for task in scenario.tasks] == ["trial-run", "task-1"]
     assert scenario.task("task-1").complexity == 7.0
@@ -80,7 +80,7 @@ def test_a_scenario_is_read_completely(folder):
     assert np.array_equal(scenario.task("trial-run").fiducials, POINTS)
     assert scenario.cameras["close-up"].view_up.tolist() == [0, 0, 1]
     assert scenario.cameras["far"].position_mm.tolist() == [240, -2000, 1000]
-    assert scenario.furniture.stand.diameter_mm == 80
+    assert scenario.stand.diameter_mm == 80
     assert scenario.provenance.license == "none needed"
 
 
@@ -98,14 +98,14 @@ def test_the_same_seed_gives_the_same_pose(folder):
 
 def test_perturbed_poses_fill_the_limits_and_stay_within_them(folder):
     scenario = load_scenario(folder)
-    center = transforms.apply(scenario.head_to_world, scenario.target_position)
+    center = transforms.apply(scenario.head_to_world, scenario.target.position_ras)
     shifts, tilts, yaws = [], [], []
     for seed in range(500):
         pose = scenario.perturbed_head_to_world(seed)
         turn = pose[:3, :3] @ scenario.head_to_world[:3, :3].T
         assert np.allclose(turn @ turn.T, np.eye(3))
         assert np.linalg.det(turn) == pytest.approx(1)
-        shifts.append(transforms.apply(pose, scenario.target_position) - center)
+        shifts.append(transforms.apply(pose, scenario.target.position_ras) - center)
         tilts.append(np.degrees(np.arccos(np.clip(turn[2, 2], -1, 1))))
         yaws.append(np.degrees(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1])))
     for values, limit in ((shifts, 15), (tilts, 3), (yaws, 8)):

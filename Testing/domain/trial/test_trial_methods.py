@@ -33,7 +33,7 @@ def scenario():
 @pytest.fixture(scope="module")
 def traced(scenario):
     """Return what was given by a trainee who misses the landmarks and traces exactly."""
-    head, pose = read_head_mesh(scenario.head_mesh), scenario.perturbed_head_to_world(8)
+    head, pose = read_head_mesh(scenario.head), scenario.perturbed_head_to_world(8)
     trace = np.concatenate([on_skin(head, corners, 2.0) for corners in OVER_THE_FACE])
     missed = np.random.default_rng(4).normal(0.0, SLIP_MM / np.sqrt(3), (3, 3))
     places = np.array([landmark.position_ras for landmark in LANDMARKS[:3]]) + missed
@@ -44,7 +44,7 @@ def traced(scenario):
 
 
 def off_target(scenario, registered, pose):
-    target = scenario.target_position
+    target = scenario.target.position_ras
     found = transforms.apply(registered.rigid.matrix @ pose, target)
     return float(np.linalg.norm(found - target))
 

@@ -30,7 +30,7 @@ def _known_marks():
     known, on_skin = {}, TouchViews._on_skin
 
     def kept(views, task):
-        key = views._scenario.head_mesh, task.fiducials.tobytes()
+        key = views._scenario.head, task.fiducials.tobytes()
         if key not in known:
             known[key] = on_skin(views, task)
         return known[key]

@@ -137,8 +137,8 @@ def pack(folder: Path, package: Path) -> Path:
     scenario, package = checked_scenario(folder), Path(package)
     if package.exists():
         raise InputError(f"{package} already exists; name a new file.")
-    head = read_head_mesh(scenario.head_mesh)
-    skull = read_head_mesh(scenario.skull_mesh) if scenario.skull_mesh else None
+    head = read_head_mesh(scenario.head)
+    skull = read_head_mesh(scenario.skull.file) if scenario.skull else None
     volume = read_head_volume(scenario.volume) if scenario.volume else None
     no_go = read_all_no_go(scenario.procedures)
     partial = package.parent / f".{uuid.uuid4().hex}.partial"
@@ -191,17 +191,18 @@ def unpack(package: Path, library: Path, progress: Progress = no_progress) -> Pa
 def checked_scenario(folder: Path) -> Scenario:
     """Load a scenario and check its meshes, its volume and the lines of its procedures."""
     scenario = load_scenario(folder)
-    for path in filter(None, (scenario.head_mesh, scenario.skull_mesh)):
+    paths = [scenario.head, *([scenario.skull.file] if scenario.skull else [])]
+    for path in paths:
         mesh = read_head_mesh(path)
         if len(mesh.triangles) > MAX_TRIANGLES:
             raise InputError(
                 f"The mesh {path} has {len(mesh.triangles)} triangles; a scenario's may have "
                 f"{MAX_TRIANGLES}."
             )
-        if path == scenario.head_mesh and not mesh.is_closed:
+        if path == scenario.head and not mesh.is_closed:
             raise InputError(f"The head mesh {path} is not closed: it has a hole.")
     if scenario.volume is not None:
-        volume, head = read_head_volume(scenario.volume), read_head_mesh(scenario.head_mesh)
+        volume, head = read_head_volume(scenario.volume), read_head_mesh(scenario.head)
         check_place(volume, head, scenario.volume.file)
     require_usable_lines(scenario)
     return scenario
@@ -209,12 +210,12 @@ def checked_scenario(folder: Path) -> Scenario:
 
 def require_usable_lines(scenario: Scenario) -> None:
     """Check that instruments can be placed along all trajectories of a scenario's procedures."""
-    if scenario.skull_mesh is None or not scenario.procedures:
+    if scenario.skull is None or not scenario.procedures:
         return
-    head = read_head_mesh(scenario.head_mesh)
+    head = read_head_mesh(scenario.head)
     wrong = []
     for procedure in scenario.procedures:
-        meshes = read_procedure_meshes(procedure, scenario.skull_mesh)
+        meshes = read_procedure_meshes(procedure, scenario.skull.file)
         wrong += unusable_lines(procedure, head, meshes.skull)
     if wrong:
         raise InputError(" ".join(wrong))

@@ -182,7 +182,7 @@ def analyze_trial(
     normals = normals_at(scenario, record.task, rigid.labels, record.method)
     analysis = TrialAnalysis(
         record=record,
-        target_name=scenario.target_name,
+        target_name=scenario.target.name,
         fits=registered.fits,
         target_errors=registered.target_errors,
         truth=None,

@@ -253,8 +253,7 @@ def procedure_outcome(
     if done is None:
         return None
     procedure = scenario.procedure(done.procedure)
-    skull = scenario.skull_mesh
-    assert skull is not None, "a scenario with procedures has a skull"
+    skull = scenario.skull_path
     meshes = read_procedure_meshes(procedure, skull)
     if done.sha256 != procedure.sha256(skull):
         raise InputError(

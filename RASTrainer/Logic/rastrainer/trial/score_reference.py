@@ -54,7 +54,7 @@ def computed_once(
 
     The cache is valid while the mesh's file is unchanged.
     """
-    mesh = scenario.head_mesh
+    mesh = scenario.head
     changed = mesh.stat().st_mtime_ns if mesh.is_file() else 0
     return _computed(mesh, changed, compute, arguments)
 
@@ -113,7 +113,7 @@ class Region:
 
 
 def region_of(scenario: Scenario) -> Region:
-    targets = [scenario.target_position, *(target.position_ras for target in scenario.targets)]
+    targets = [scenario.target.position_ras, *(target.position_ras for target in scenario.targets)]
     return Region(np.array(targets, dtype=float), computed_once(scenario, brain_grid))
 
 

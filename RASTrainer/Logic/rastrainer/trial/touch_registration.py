@@ -127,7 +127,7 @@ class TraceFollower:
 
     def __init__(self, scenario: Scenario) -> None:
         self._scenario = scenario
-        self._mesh = read_head_mesh(scenario.head_mesh)
+        self._mesh = read_head_mesh(scenario.head)
         self._guide = trace_guide(scenario, self._mesh)
         self._traced = np.zeros((0, 3))
         self._matrix = np.eye(4)
@@ -151,7 +151,7 @@ class TraceFollower:
 def trace_guide(scenario: Scenario, mesh: HeadMesh) -> TraceGuide:
     to_head = transforms.inverse(scenario.head_to_world)
     eye = transforms.apply(to_head, scenario.cameras["close-up"].position_mm)
-    return TraceGuide(mesh, scenario.target_position, eye)
+    return TraceGuide(mesh, scenario.target.position_ras, eye)
 
 
 LEAST_ALONG_SURFACE = 6
@@ -203,7 +203,7 @@ def register_trial(
         coarse = fits[RIGID]
         match = match_surface(given.trace_mm, head_of(scenario), coarse.matrix)
         pause()
-        error = surface_target_error(knowledge_of(match), scenario.target_position)
+        error = surface_target_error(knowledge_of(match), scenario.target.position_ras)
         vectors = transforms.apply(match.matrix, coarse.moving_mm) - coarse.fixed_mm
         matched = replace(
             coarse,
@@ -221,14 +221,14 @@ def register_trial(
         is_along = len(labels) >= LEAST_ALONG_SURFACE
         localization = error_along_surface(fit, normals) if is_along else isotropic_error(fit)
         pause()
-        errors[kind] = target_error(fit, scenario.target_position, localization)
+        errors[kind] = target_error(fit, scenario.target.position_ras, localization)
     pause()
     return TouchRegistration(fits, errors)
 
 
 def head_of(scenario: Scenario) -> HeadMesh:
     """Return the scenario's head, which is read once while its file is unchanged."""
-    path = scenario.head_mesh
+    path = scenario.head
     return _read_head(path, path.stat().st_mtime_ns if path.is_file() else 0)
 
 
@@ -272,7 +272,7 @@ def unshifted_tre_mm(
         matrix = register_trial(unshifted, scenario).rigid.matrix
     except InputError:
         return None
-    return float(np.linalg.norm(true_errors(matrix, head_to_world, scenario.target_position)))
+    return float(np.linalg.norm(true_errors(matrix, head_to_world, scenario.target.position_ras)))
 
 
 def skin_sentences(
