@@ -22,6 +22,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass, fields, is_dataclass
 from enum import Enum
 from functools import cache
+from pathlib import PurePath
 from typing import Annotated, Any, Literal, TypeVar, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -191,6 +192,8 @@ def _plain(value: Any, with_defaults: bool) -> Any:
         return record_to_json(value, with_defaults)
     if isinstance(value, Enum):
         return value.value
+    if isinstance(value, PurePath):
+        return value.as_posix()
     if isinstance(value, np.ndarray):
         return value.ravel().tolist()
     if isinstance(value, Mapping):

@@ -10,7 +10,7 @@ from scipy import stats
 from rastrainer import transforms
 from rastrainer.registration.distributions import (
     ratio_quantile,
-    widened_probability,
+    widened_distribution,
     widened_quantile,
 )
 from rastrainer.registration.fits import KINDS
@@ -126,7 +126,7 @@ def test_quantiles_are_those_of_simulated_lengths(weights, dof, added):
         # Four standard errors.
         off = 4 * np.sqrt(probability * (1 - probability) / count)
         assert np.mean(squares <= found) == pytest.approx(probability, abs=off)
-        again = widened_probability(found, np.array(weights), dof, added)
+        again = widened_distribution(np.array(weights), dof, added)(found)
         assert again == pytest.approx(probability, abs=1e-6)
 
 

@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from rastrainer.errors import InputError
 from rastrainer.registration.fits import PARAMETERS, motions
@@ -87,14 +88,11 @@ def expected_fre(registration: Registration, localization: LocalizationError) ->
 def misfit_probability(registration: Registration, fle_mm: np.ndarray) -> float:
     """Return the probability of residuals this large or larger where the stated errors are true.
 
-    Σ 3|rᵢ|²/FLEᵢ² of a fit weighted by 1/FLE² is χ² with 3N − p degrees of freedom; its tail is
-    taken by the cube-root approximation (Wilson and Hilferty 1931). `fle_mm` is as stated, (n,).
+    Σ 3|rᵢ|²/FLEᵢ² of a fit weighted by 1/FLE² is χ² with 3N − p degrees of freedom. `fle_mm` is as
+    stated, (n,).
     """
-    dof = degrees_of_freedom(registration)
     value = float(np.sum(3.0 * registration.residuals_mm**2 / np.asarray(fle_mm) ** 2))
-    spread = 2.0 / (9.0 * dof)
-    z = ((value / dof) ** (1.0 / 3.0) - (1.0 - spread)) / math.sqrt(spread)
-    return 0.5 * math.erfc(z / math.sqrt(2.0))
+    return float(scipy.special.chdtrc(degrees_of_freedom(registration), value))
 
 
 def error_along_surface(registration: Registration, normals: np.ndarray) -> LocalizationError:

@@ -20,13 +20,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.registration.distributions import (
-    f_tail,
     ratio_quantile,
-    widened_probability,
+    widened_distribution,
     widened_quantile,
 )
 from rastrainer.registration.fits import motions
@@ -149,7 +149,10 @@ def error_of_covariance(
     variances = np.linalg.eigvalsh(covariance).clip(min=0.0)
     independent = float(variances.sum())
     added, dof = common_bias_sd_mm**2, degrees_of_freedom
-    lowest = _quantile((1 - confidence) / 2, variances, dof, 0.0)
+    below = (1 - confidence) / 2
+    lowest = _quantile(below, variances, dof, 0.0)
+    if added > 0.0:
+        below = widened_distribution(variances, dof, added)(lowest)
     x, y, z = (float(value) for value in target)
     return TargetError(
         target_mm=(x, y, z),
@@ -158,7 +161,7 @@ def error_of_covariance(
         independent_mm=math.sqrt(independent),
         interval_mm=(
             math.sqrt(lowest),
-            math.sqrt(_highest(lowest, confidence, variances, dof, added)),
+            math.sqrt(_quantile(below + confidence, variances, dof, added)),
         ),
         confidence=confidence,
         common_bias_sd_mm=common_bias_sd_mm,
@@ -182,16 +185,6 @@ def _quantile(probability: float, variances: np.ndarray, dof: float, added: floa
     if added == 0.0 and math.isfinite(dof):
         return ratio_quantile(probability, variances, dof)
     return widened_quantile(probability, variances, dof, added)
-
-
-def _highest(
-    lowest: float, confidence: float, variances: np.ndarray, dof: float, added: float
-) -> float:
-    """Return the TRE², mm², that is not exceeded, from the lowest one, with this confidence."""
-    if added == 0.0:
-        return _quantile((1 + confidence) / 2, variances, dof, 0.0)
-    below = widened_probability(lowest, variances, dof, added)
-    return _quantile(below + confidence, variances, dof, added)
 
 
 def _propagated(
@@ -269,7 +262,7 @@ def common_bias(errors_mm: np.ndarray, normals: np.ndarray) -> CommonBias:
     dof = 2 * len(normals) - known
     ratio = explained / known * dof / left if left > 0 else np.inf if explained > 0 else 0.0
     x, y, z = (float(value) for value in bias)
-    return CommonBias((x, y, z), f_tail(ratio, known, dof))
+    return CommonBias((x, y, z), float(scipy.special.fdtrc(known, dof, ratio)))
 
 
 def bias_of_errors(normals: np.ndarray) -> np.ndarray:

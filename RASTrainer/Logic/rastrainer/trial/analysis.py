@@ -14,10 +14,8 @@ from rastrainer.json_checks import number, numbers
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.fits import RIGID
-from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import (
     CommonBias,
-    TargetError,
     common_bias,
     true_touch_errors,
 )
@@ -71,13 +69,12 @@ class PublishedScore:
     reference: ctps.CohortReference
 
 
-@dataclass(frozen=True)
-class TrialAnalysis:
+@dataclass(frozen=True, kw_only=True)
+class TrialAnalysis(TouchRegistration):
     """The results of one trial.
 
     Attributes:
         target_name: of the scenario's target, at which target errors are computed.
-        fits: possible registrations by kind; rigid is always included.
         published_score: CTPS of the rigid registration; None without a cohort.
         feedback: on this trial alone.
         procedure: errors and score of the procedure; None without the truth, or of touches alone.
@@ -85,17 +82,11 @@ class TrialAnalysis:
 
     record: TrialRecord
     target_name: str
-    fits: Mapping[str, Registration]
-    target_errors: Mapping[str, TargetError]
     truth: RevealedTruth | None
     score: TrialScore | None
     published_score: PublishedScore | None
     feedback: TrialFeedback
     procedure: ProcedureOutcome | None = None
-
-    @property
-    def rigid(self) -> Registration:
-        return self.fits[RIGID]
 
     def scored(
         self,
@@ -151,9 +142,9 @@ class TrialAnalysis:
     def _common_bias(self, scenario: Scenario, truth: RevealedTruth) -> CommonBias | None:
         """Return the common bias of touched fiducials; None of a trial by another method."""
         rigid, record = self.rigid, self.record
-        errors = true_touch_errors(rigid.moving_mm, truth.matrix, rigid.fixed_mm)
         if record.method is not RegistrationMethod.FIDUCIALS:
             return None
+        errors = true_touch_errors(rigid.moving_mm, truth.matrix, rigid.fixed_mm)
         normals = normals_at(scenario, record.task, rigid.labels, record.method)
         return common_bias(errors, normals)
 
@@ -181,10 +172,9 @@ def analyze_trial(
     rigid = registered.rigid
     normals = normals_at(scenario, record.task, rigid.labels, record.method)
     analysis = TrialAnalysis(
+        **vars(registered),
         record=record,
         target_name=scenario.target.name,
-        fits=registered.fits,
-        target_errors=registered.target_errors,
         truth=None,
         score=None,
         published_score=(
@@ -207,16 +197,6 @@ def published_score(
         return None
     published = ctps.published_ctps(record.completion_time_s, fre_mm, reference)
     return PublishedScore(published, published / 2, reference)
-
-
-def registration_arguments(analysis: TrialAnalysis) -> dict[str, Any]:
-    """Return the arguments of SubmitRegistration, ready for JSON.
-
-    Slicer sends them over OpenIGTLink; a simulator that no Slicer is connected to gives them to
-    itself.
-    """
-    registered = TouchRegistration(analysis.fits, analysis.target_errors)
-    return registered.arguments(analysis.record.trial_id)
 
 
 def score_arguments(analysis: TrialAnalysis) -> dict[str, Any]:

@@ -78,6 +78,9 @@ def _text_or_number(value: Any) -> str | float:
 
 
 Count = Annotated[int, json_checks.whole_number(0, TOUCH_LIMIT)]
+PlayedMethod = Annotated[
+    RegistrationMethod, json_checks.one_of(*(each.value for each in PLAYED_METHODS))
+]
 Utc = Annotated[str, utc_time]
 """The wall clock may jump, so no duration is taken from it."""
 
@@ -120,9 +123,7 @@ class AnyTrial:
     touch_rule: Annotated[str, json_checks.one_of(*(rule.value for rule in TouchRule))] = (
         TouchRule.WITHIN_RADIUS.value
     )
-    method: Annotated[
-        RegistrationMethod, json_checks.one_of(*(each.value for each in PLAYED_METHODS))
-    ] = RegistrationMethod.FIDUCIALS
+    method: PlayedMethod = RegistrationMethod.FIDUCIALS
     number: Annotated[int, json_checks.whole_number(0, NUMBER_LIMIT)] = 0
     series: Annotated[str, json_checks.text(36, 0)] = ""
 

@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, pair
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.trial_head import SkinShift
-from rastrainer.json_checks import accepted
+from rastrainer.json_checks import list_of
 from rastrainer.json_records import record_from_json
 from rastrainer.procedure.record import RegisteredTouch
 from rastrainer.protocol import (
@@ -44,8 +44,8 @@ from rastrainer.registration.surface_error import (
 )
 from rastrainer.registration.surface_match import SurfaceMatch, match_surface
 from rastrainer.registration.target_error import TargetError, target_error, true_errors
-from rastrainer.scenario.scenario import Scenario, method_of, task_by_method
-from rastrainer.trial.record import TracePoint, TrialRecord, trace_points
+from rastrainer.scenario.scenario import Scenario, task_by_method
+from rastrainer.trial.record import PlayedMethod, TracePoint, TrialRecord, trace_points
 from rastrainer.trial.score_reference import point_normals
 from rastrainer.trial.wording import Sentence, say
 
@@ -77,30 +77,31 @@ class GivenPoints:
 
         Of a trace, `least_traced` points are needed: as many as register it, or fewer to show it.
         """
-        method, given = method_of(answer.get("method")), answer.get("touches")
-        is_by_fiducials = method is RegistrationMethod.FIDUCIALS
-        least = FIDUCIAL_COUNT if is_by_fiducials else COARSE_LANDMARKS
-        if not isinstance(given, list) or not least <= len(given) <= FIDUCIAL_COUNT:
-            wanted = FIDUCIAL_COUNT if is_by_fiducials else "landmarks"
+        what = "The simulator's answer to GetTrial"
+        given = record_from_json(_OpenTrial, answer, what)
+        is_by_fiducials = given.method is RegistrationMethod.FIDUCIALS
+        if is_by_fiducials and len(given.touches) < FIDUCIAL_COUNT:
+            raise InputError(f"{what}: touches must be a list of {FIDUCIAL_COUNT} touches.")
+        trace = given.trace if given.method in TRACED_METHODS else ()
+        if given.method in TRACED_METHODS and len(trace) < least_traced:
             raise InputError(
-                f"The simulator's answer to GetTrial must hold touches, a list of {wanted}."
+                f"{what}: trace must be a list of {least_traced} points or more, not {len(trace)}."
             )
-        points = [
-            record_from_json(RegisteredTouch, touch, "Each touch of the trial") for touch in given
-        ]
-        places = np.array([point.position_mm for point in points])
-        touches = PointList(tuple(point.label for point in points), places)
-        trace: tuple[TracePoint, ...] = ()
-        if method in TRACED_METHODS:
-            what = "The trace in the answer to GetTrial"
-            trace = accepted(trace_points, answer.get("trace"), what)
-            if len(trace) < least_traced:
-                raise InputError(
-                    f"The simulator's answer to GetTrial must hold a trace of {least_traced} "
-                    f"points or more, not {len(trace)}."
-                )
-        traced = np.array(trace, dtype=float).reshape(-1, 4)[:, :3]
-        return cls(str(answer.get("task", "")), touches, method, traced)
+        places = np.array([point.position_mm for point in given.touches])
+        touches = PointList(tuple(point.label for point in given.touches), places)
+        return cls(given.task, touches, given.method, np.reshape(trace, (-1, 4))[:, :3])
+
+
+@dataclass(frozen=True)
+class _OpenTrial:
+    """What an answer to GetTrial holds of the points of an open trial."""
+
+    task: str
+    touches: Annotated[
+        tuple[RegisteredTouch, ...], list_of(COARSE_LANDMARKS, FIDUCIAL_COUNT, "touches")
+    ]
+    method: PlayedMethod = RegistrationMethod.FIDUCIALS
+    trace: Annotated[tuple[TracePoint, ...], trace_points] = ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -44,7 +44,6 @@ from rastrainer.study.delivered_trial import (
 from rastrainer.trial.analysis import (
     RevealedTruth,
     TrialAnalysis,
-    registration_arguments,
     score_arguments,
 )
 from rastrainer.trial.ctps import Trial
@@ -196,7 +195,7 @@ class TrialLogic(DeliveryQueue):
         connection, with the same outcome.
         """
         trialId, ask = analysis.record.trial_id, partial(Question, timeoutS=ANSWER_TIMEOUT_S)
-        answer = yield ask(CommandName.SUBMIT_REGISTRATION, registration_arguments(analysis))
+        answer = yield ask(CommandName.SUBMIT_REGISTRATION, analysis.arguments(trialId))
         truth = record_from_json(RevealedTruth, answer, "The simulator's answer")
 
         def storeTruth(study: Study) -> None:
