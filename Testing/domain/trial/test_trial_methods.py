@@ -87,10 +87,14 @@ def test_an_unfinished_trial_is_registered_from_the_simulators_answer(scenario, 
     ("changes", "said"),
     [
         pytest.param({"trace": None}, "a list of at most 500 points", id="no trace"),
-        pytest.param({"trace": [[1.0, 2.0, 3.0, 4.0]]}, "trace of 30 points", id="too short"),
-        pytest.param({"touches": []}, "a list of landmarks", id="no landmark"),
-        pytest.param({"method": "fiducials"}, "a list of 15", id="fiducials"),
-        pytest.param({"method": "laser"}, "methods are fiducials, landmarks", id="unknown"),
+        pytest.param(
+            {"trace": [[1.0, 2.0, 3.0, 4.0]]}, "trace must be a list of 30 points", id="too short"
+        ),
+        pytest.param({"touches": []}, "touches must be a list of 3 to 15", id="no landmark"),
+        pytest.param({"method": "fiducials"}, "touches must be a list of 15", id="fiducials"),
+        pytest.param(
+            {"method": "laser"}, "method must be one of fiducials, landmarks", id="unknown"
+        ),
     ],
 )
 def test_an_answer_that_cannot_be_registered_is_refused_with_a_message(traced, changes, said):

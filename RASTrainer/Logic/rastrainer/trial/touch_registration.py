@@ -78,7 +78,7 @@ class GivenPoints:
         Of a trace, `least_traced` points are needed: as many as register it, or fewer to show it.
         """
         what = "The simulator's answer to GetTrial"
-        given = record_from_json(_OpenTrial, answer, what)
+        given = record_from_json(_TrialAnswer, answer, what)
         is_by_fiducials = given.method is RegistrationMethod.FIDUCIALS
         if is_by_fiducials and len(given.touches) < FIDUCIAL_COUNT:
             raise InputError(f"{what}: touches must be a list of {FIDUCIAL_COUNT} touches.")
@@ -93,7 +93,7 @@ class GivenPoints:
 
 
 @dataclass(frozen=True)
-class _OpenTrial:
+class _TrialAnswer:
     """What an answer to GetTrial holds of the points of an open trial."""
 
     task: str
